@@ -71,7 +71,10 @@ std::vector<Judgements> judgements(const std::vector<TrialRecord>& trials,
     if (zeros > 0)
       one.statements.push_back(
           {"zero-magnitudes", texts::phrase("statement.zero_magnitudes", {texts::plain(zeros)})});
-    if (judged != Judged::ratings) add_exponent(one, judged == Judged::magnitudes_dB);
+    if (one.levels.empty())
+      one.statements.push_back({"no-trials", texts::phrase("statement.no_trials")});
+    else if (judged != Judged::ratings)
+      add_exponent(one, judged == Judged::magnitudes_dB);
     all.push_back(std::move(one));
   }
   return all;

@@ -118,6 +118,10 @@ std::string judgement_section(const Summary& summary) {
                      picture(judgement_figure(summary));
   for (const auto& judged : summary.judgements) {
     if (!judged.condition.empty()) html += "<h3>" + escaped(judged.condition) + "</h3>\n";
+    if (judged.levels.empty()) {
+      html += notes(judged.statements);
+      continue;
+    }
     html += "<table><tr><th>" + escaped(summary.data.level_label) + "</th><th>Answers</th><th>" + mean +
             "</th><th>Median</th></tr>";
     for (const auto& level : judged.levels)

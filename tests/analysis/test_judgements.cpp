@@ -76,3 +76,16 @@ TEST_CASE("ratings have means and medians by condition and level, practice left 
   CHECK_FALSE(all[1].levels[1].mean);  // no mean, because a single answer gives no interval
   CHECK_FALSE(all[1].exponent);
 }
+
+TEST_CASE("judgements without an answer say why they are empty", "[analysis]") {
+  for (const auto kind : {Judged::ratings, Judged::magnitudes}) {
+    auto unanswered = judged(0.1, 1);
+    unanswered.setting.reset();
+    const auto all = analysis::judgements({unanswered}, {}, kind);
+    REQUIRE(all.size() == 1);
+    CHECK(all[0].levels.empty());
+    REQUIRE(all[0].statements.size() == 1);
+    CHECK(all[0].statements[0].code == "no-trials");
+    CHECK(analysis::judgements({judged(0.1, 1)}, {}, kind)[0].levels.size() == 1);
+  }
+}

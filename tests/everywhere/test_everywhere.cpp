@@ -137,7 +137,7 @@ constexpr Recorded kSessions[] = {
     {"friction-2ifc", "f254fac43e67db5f", "9eea4be7ac753c59"},
     {"friction-staircase", "73be2a4b407a38ee", "59166cc9296dd387"},
     {"friction-same-different", "6cf59207376ed713", "db60992d42e78ad8"},
-    {"speed-accuracy", "d6cdfb21b5174f97", "f6301fcfbdf34bf9"},
+    {"speed-accuracy", "ab11b2008b1dfe51", "6df765de11f2a4fd"},
     {"smoothness-points", "97853ee09d67fb8a", "5820a77bdc8728a7"},
     {"smoothness-line", "50117bb6c419b5e1", "5820a77bdc8728a7"},
     {"magnitude-free", "e896a54b91f9083a", "5820a77bdc8728a7"},
