@@ -190,6 +190,7 @@ ReportPages report_pages(const report::Summary& summary) {
   pages.health = summary.data.health;
   if (summary.bias) add_statements(summary.bias->statements, "", pages);
   add_statements(summary.fatigue.statements, "", pages);
+  pages.compares_instructions = summary.trade.instructions.size() > 1;
   pages.trade = drawing(report::trade_figure(summary));
   pages.fits =
       drawing(report::judges(summary.data.design)                 ? report::judgement_figure(summary)

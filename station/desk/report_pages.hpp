@@ -15,7 +15,9 @@ struct ReportPages {
   /// the tables of the report, as pairs of a label and a value
   std::vector<std::pair<std::string, std::string>> outcomes, fit, speed_accuracy, forces;
   std::vector<std::pair<texts::Phrase, texts::Phrase>> health;  ///< facts about the station
-  std::vector<texts::Phrase> statements;                 ///< remarks that must be shown with the numbers
+  std::vector<texts::Phrase> statements;  ///< remarks that must be shown with the numbers
+  bool compares_instructions =
+      false;  ///< whether the session asked for speed in some trials and for accuracy in others
   Drawing trade, fits, levels, times, finger, friction;  ///< figures; empty if there are no data
 };
 

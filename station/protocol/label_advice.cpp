@@ -9,9 +9,9 @@ using texts::phrase, texts::plain;
 
 namespace {
 
-/// How much room labels have on a button, in letters of the smallest size (2.4 mm), on the smallest screens:
-/// 7 inches, 800x480 upright or across. Long words are not broken. tests/ui/tst_labels.qml shows that such
-/// labels fit.
+/// How much room labels have on a button, in letters of the smallest size (capitals of 2.5 mm), on the
+/// smallest screens: 7 inches, 800x480 upright or across. Long words are not broken. tests/ui/tst_labels.qml
+/// shows that such labels fit.
 struct Room {
   int word, label;
 };

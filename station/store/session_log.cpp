@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 #include <sys/statvfs.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "station/store/checksum.hpp"
@@ -16,6 +19,7 @@
 #include "station/store/rows.hpp"
 #include "station/store/seal.hpp"
 #include "station/store/station.hpp"
+#include "station/store/whole_file.hpp"
 #include "station/store/withdraw.hpp"
 #include "station/system/clocks.hpp"
 #include "station/system/uuid.hpp"
@@ -27,6 +31,8 @@ namespace {
 
 /// Free space that must be available when a session begins. A long session writes several MiB.
 constexpr std::uint64_t kFreeBytesWanted = 16U << 20U;
+/// A file of this size is read within a second, even from a memory card.
+constexpr std::uintmax_t kQuickToRead_B = 16U << 20U;
 
 void require_space(const std::string& database) {
   struct statvfs disk {};
@@ -40,6 +46,27 @@ void require_space(const std::string& database) {
                                "nothing was written; free some space, then begin again",
                                database, free_bytes >> 20U, kFreeBytesWanted >> 20U));
 }
+
+}  // namespace
+
+void require_recordable(const std::string& path) {
+  require_space(path);
+  const auto folder = std::filesystem::absolute(path).parent_path().string();
+  const bool exists = std::filesystem::exists(path);
+  for (const auto& place : {folder, exists ? path : folder})
+    if (::access(place.c_str(), W_OK) != 0)
+      throw StoreError(
+          ErrorKind::read_only,
+          fmt::format("database {}: {} cannot be written ({}); nothing was changed; make it writable, "
+                      "or choose a database in another place",
+                      path, place, std::generic_category().message(errno)));
+  if (!exists) return;
+  auto database = open_reader(path);
+  if (std::filesystem::file_size(path) <= kQuickToRead_B) check_pages(database);
+  list_sessions(database);
+}
+
+namespace {
 
 void refuse(Database& database, ErrorKind kind, const std::string& what) {
   throw StoreError(kind, fmt::format("database {}: {}", database.path(), what));

@@ -31,6 +31,11 @@ struct SessionRecord {
   std::string checksum;                  ///< last link of the session's checksum chain (checksum.hpp)
 };
 
+/// Throws StoreError if no session could be recorded in this database: too little space, a file or folder
+/// that cannot be written, or a damaged file (a file of up to 16 MiB is read as a whole). A file that does
+/// not exist yet is fine. Changes nothing.
+void require_recordable(const std::string& path);
+
 /// Writes one session. It has the station's only connection for writing (WAL, synchronous FULL, foreign keys)
 /// and holds a lock against a second station. Not thread-safe; it belongs to the session thread. When a
 /// function other than event() returns, its rows are durable. Throws StoreError: the message says what was

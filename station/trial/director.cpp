@@ -100,6 +100,21 @@ int Director::State::block_expected(const Block& b) const {
   return static_cast<int>(std::lround(trials * (1 + (b.catch_trials ? b.catch_trials->rate : 0))));
 }
 
+/// The number of trials that the current block still has, as far as its procedures know: a trial that is to
+/// be repeated is left, and as long as a procedure goes on, at least one is.
+int Director::State::left_in_block() const {
+  const auto* b = now();
+  if (b == nullptr) return 0;
+  if (procedures.empty() || b->trials) return std::max(block_expected(*b) - trial, current ? 1 : 0);
+  double left = 0;
+  for (const auto& procedure : procedures) {
+    const int own = procedure->expected() - procedure->recorded();
+    left += own > 0 ? own : procedure->ready() && procedure->next() ? 1 : 0;
+  }
+  left *= 1 + (b->catch_trials ? b->catch_trials->rate : 0);
+  return std::max(static_cast<int>(std::lround(left)), current ? 1 : 0);
+}
+
 Director::Director(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed,
                    procedure::Programs* programs, procedure::EarlierTrials earlier)
     : state_(std::make_unique<State>(protocol, visit, seed, programs, std::move(earlier))) {}
@@ -153,7 +168,6 @@ void Director::finish_block() {
   } else if (failed) {
     s.ended = "practice \"" + b->name + "\" was not passed in " + std::to_string(s.attempt + 1) + " attempts";
   } else {
-    s.expected_before += s.trial - s.block_expected(*b);
     ++s.block;
     s.attempt = s.first_attempt;
   }
@@ -191,9 +205,11 @@ const std::string& Director::ended_because() const { return state_->ended; }
 int Director::trials_done() const { return state_->done; }
 
 int Director::trials_expected() const {
-  int sum = state_->expected_before;
-  for (const auto& block : state_->blocks) sum += state_->block_expected(block);
-  return std::max(sum, state_->done);
+  const auto& s = *state_;
+  int sum = s.done + s.left_in_block();
+  for (std::size_t i = s.block + 1; s.now() != nullptr && i < s.blocks.size(); ++i)
+    sum += s.block_expected(s.blocks[i]);
+  return sum;
 }
 
 std::vector<ProcedureEstimate> Director::estimates() const {

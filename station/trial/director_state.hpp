@@ -29,7 +29,7 @@ struct Director::State {
   int trial = 0;
   int shown = 0, right = 0;
   int warmups = 0, warmups_given = 0;
-  int done = 0, expected_before = 0;
+  int done = 0;
   std::string ended;
   std::vector<const procedure::Spec*> specs;
   std::vector<std::unique_ptr<procedure::Procedure>> procedures;
@@ -84,6 +84,7 @@ struct Director::State {
   procedure::Context context_for() const;
   void learn(const TrialEnd& end);
   int block_expected(const protocol::Block& b) const;
+  int left_in_block() const;
 
   // These functions make one trial (director_trials.cpp).
   bool timeouts_are_data() const;

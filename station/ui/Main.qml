@@ -179,6 +179,7 @@ Window {
                 sessions: root.sessions
                 rig: root.rig
                 design: root.design
+                lock: root.operatorLock
                 pixelsPerMm: root.pixelsPerMm
             }
         }

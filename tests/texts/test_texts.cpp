@@ -66,7 +66,7 @@ struct Quoted {
 };
 
 Quoted quoted() {
-  static const std::regex word("\"([a-z_.]+)\""), use("\\btext\\(\\s*\"([a-z_.]+)\"");
+  static const std::regex word("\"([a-z_.]+)\""), use("\\b(?:text|fill)\\(\\s*\"([a-z_.]+)\"");
   Quoted all;
   const auto add = [](const std::regex& what, const std::string& source, std::set<std::string>& to) {
     for (std::sregex_iterator found(source.begin(), source.end(), what), end; found != end; ++found)

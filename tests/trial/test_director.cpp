@@ -296,3 +296,27 @@ TEST_CASE("a warm-up trial of a procedure over two dimensions has a value of bot
   CHECK(trial->type == terms::TrialType::warmup);
   CHECK(std::get<double>(trial->factors.at("end_mm")) == 150);
 }
+
+TEST_CASE("the progress never reaches its end before the last trial, however many trials are repeated",
+          "[session]") {
+  const auto* name =
+      GENERATE("boundary-constant", "boundary-adaptive", "demo", "friction-2ifc", "two-spots-oddity");
+  const int unanswered_every = GENERATE(0, 3);
+  CAPTURE(name, unanswered_every);
+  const auto protocol = shipped(name);
+  Director director(protocol, 0, 7);
+  int number = 0;
+  while (director.block() != nullptr && number < 3000) {
+    while (const auto spec = director.next()) {
+      REQUIRE(director.trials_done() < director.trials_expected());
+      ++number;
+      if (unanswered_every > 0 && number % unanswered_every == 0)
+        director.record({terms::Outcome::timeout, {}, {}, {}});
+      else
+        director.record(answered(*spec, number % 4 != 1));
+    }
+    director.finish_block();
+  }
+  CHECK(number < 3000);
+  CHECK(director.trials_done() == director.trials_expected());
+}

@@ -275,6 +275,22 @@ void add_starts(std::vector<Exhibit>& all, const Words& words) {
       words.pick("Be as ACCURATE as you can. Take your time.", "So GENAU wie möglich. Nehmen Sie sich Zeit.",
                  "できるだけ正確に答えてください。時間をかけて構いません。");
   all.push_back({"instructions-accuracy", page});
+  // as long as an instruction can be, with the badge
+  page.text += " " + words.pick(
+                         "Slide one finger to and fro along the strip. Part of it feels smooth. Say on which "
+                         "side of the mark "
+                         "the smooth "
+                         "part ends.",
+                         "Gleiten Sie mit einem Finger auf dem Streifen hin und her. Ein Teil fühlt sich "
+                         "glatt an. Sagen Sie, "
+                         "auf welcher "
+                         "Seite der Markierung der glatte Teil endet.",
+                         "一本の指を帯の上で左右にすべらせてください。一部がなめらかに感じられます。なめらか"
+                         "な部分が印のどちら側"
+                         "で終わるかを答えてください。");
+  page.text += "\n\n" + page.text;
+  page.mark_mm = 160;
+  all.push_back({"instructions-long", page});
   Page adjust = boundary(words, PageKind::adjust);
   adjust.text = words.pick("Move the slider until the smooth part ends at the mark.",
                            "Den Regler schieben, bis der glatte Teil an der Markierung endet.",
@@ -300,17 +316,15 @@ std::vector<Exhibit> gallery(const std::string& language) {
   add_judgements(all, words);
   add_interludes(all, words);
   add_notices(all, words);
-  for (auto exhibit : std::vector<Exhibit>(all))
-    if (exhibit.name == "fault-amplifier" || exhibit.name == "adjust" || exhibit.name == "cue" ||
-        exhibit.name == "response") {
-      exhibit.page.run_mode = "pilot";
-      all.push_back({exhibit.name + "-pilot", exhibit.page});
-    }
-  Page pilot = boundary(words, PageKind::stimulus);
-  pilot.run_mode = "pilot";
-  all.push_back({"explore-pilot", pilot});
-  pilot.run_mode = "simulated";
-  all.push_back({"explore-simulated", pilot});
+  return all;
+}
+
+std::vector<Exhibit> gallery_in_mode(const std::string& language, const std::string& mode) {
+  auto all = gallery(language);
+  for (auto& exhibit : all) {
+    exhibit.page.run_mode = mode;
+    if (mode != "live") exhibit.name += "-" + mode;
+  }
   return all;
 }
 

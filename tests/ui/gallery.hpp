@@ -14,5 +14,8 @@ struct Exhibit {
 
 /// One page of every kind, with texts as long as in real protocols. Languages: en, de, ja, ar, zh.
 std::vector<Exhibit> gallery(const std::string& language);
+/// The same pages of a run that is live, pilot or simulated. The names of the latter two end with "-pilot" or
+/// "-simulated".
+std::vector<Exhibit> gallery_in_mode(const std::string& language, const std::string& mode);
 
 }  // namespace turnpoint::ui

@@ -5,6 +5,7 @@
 #include <QQmlEngine>
 #include <QQuickItem>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "station/ui/shared/operator_screen.hpp"
@@ -12,9 +13,13 @@
 namespace turnpoint::ui {
 
 Panel panel_of(const QString& text) {
-  const auto parts = text.split('x');
-  if (parts.size() != 2) qFatal("--sizes: %s; allowed: WIDTHxHEIGHT", qPrintable(text));
+  const auto known = text.split('@');
+  const auto parts = known[0].split('x');
+  if (parts.size() != 2 || known.size() > 2)
+    qFatal("--sizes: %s; allowed: WIDTHxHEIGHT or WIDTHxHEIGHT@INCHES", qPrintable(text));
   const QSize size(parts[0].toInt(), parts[1].toInt());
+  if (known.size() == 2)
+    return {size, std::hypot(size.width(), size.height()) / (25.4 * known[1].toDouble())};
   const int longer = std::max(size.width(), size.height());
   return {size, longer <= 800    ? 5.2
                 : longer <= 1280 ? 5.9

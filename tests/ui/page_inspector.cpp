@@ -136,6 +136,9 @@ QStringList PageInspector::overlaps(QQuickItem* page) const {
                       "[" + button.objectName() + " " + button.property("text").toString() + "]"});
   });
   QStringList found;
+  const QRectF room = page->mapRectToScene(page->boundingRect()).adjusted(-1, -1, 1, 1);
+  for (const auto& thing : things)
+    if (!thing.area.isEmpty() && !room.contains(thing.area)) found += thing.name + " / the edge of the page";
   for (std::size_t i = 0; i < things.size(); ++i)
     for (std::size_t k = std::max(i + 1, i < texts ? 0 : texts); k < things.size(); ++k) {
       const auto common = things[i].area.intersected(things[k].area);
@@ -260,6 +263,44 @@ int PageInspector::opened() {
        size = ::read(watch_, events, sizeof events))
     opened_ += static_cast<int>(static_cast<std::size_t>(size) / sizeof(inotify_event));
   return opened_;
+}
+
+QStringList PageInspector::blurredEdges(QQuickItem* page) const {
+  QStringList found;
+  const auto whole = [](double value) { return std::abs(value - std::round(value)) < 0.01; };
+  const std::function<void(const QQuickItem&)> look = [&](const QQuickItem& item) {
+    if (!item.isVisible()) return;
+    const bool button = item.property("holdMs").isValid() || item.objectName().startsWith("answer") ||
+                        item.objectName().startsWith("key");
+    if (button) {
+      const auto area = item.mapRectToScene(item.boundingRect());
+      if (!whole(area.x()) || !whole(area.y()) || !whole(area.width()) || !whole(area.height()))
+        found += QString("%1 %2: %3, %4, %5 x %6")
+                     .arg(item.objectName(), item.property("text").toString())
+                     .arg(area.x())
+                     .arg(area.y())
+                     .arg(area.width())
+                     .arg(area.height());
+    }
+    for (const auto* child : item.childItems()) look(*child);
+  };
+  look(*page);
+  return found;
+}
+
+QStringList PageInspector::smallTexts(QQuickItem* page, double capitals_px) const {
+  QStringList small;
+  each_text(*page, [&](const QQuickItem& text) {
+    QFont font = text.property("font").value<QFont>();
+    font.setPixelSize(text.property("fontInfo").value<QJSValue>().property("pixelSize").toInt());
+    // An item around the text may have a scale of its own.
+    const double scale = text.mapRectToScene(QRectF(0, 0, 1, 1)).height();
+    const double found = scale * 0.727 * font.pixelSize();  // the capitals of Inter
+    if (found < capitals_px - 0.05)
+      small +=
+          text.property("text").toString() + ": capitals of " + QString::number(found, 'f', 1) + " pixels";
+  });
+  return small;
 }
 
 int PageInspector::texts(QQuickItem* page) const {

@@ -22,8 +22,13 @@ class PageInspector : public QObject {
   /// Texts below `page` with a line break inside a word. (Breaks between Chinese or Japanese characters do
   /// not count.)
   Q_INVOKABLE QStringList brokenWords(QQuickItem* page) const;
+  /// Buttons, keys and answers below `page` whose edges are not on whole pixels, so that their lines are
+  /// blurred.
+  Q_INVOKABLE QStringList blurredEdges(QQuickItem* page) const;
+  /// Texts below `page` whose capitals are lower than this, as "text: capitals of 12.3 pixels".
+  Q_INVOKABLE QStringList smallTexts(QQuickItem* page, double capitals_px) const;
   /// Returns pairs of items that touch each other: a text and another text, a text and a button that it is
-  /// not part of, or two buttons.
+  /// not part of, or two buttons; or one of them and the edge of the page.
   Q_INVOKABLE QStringList overlaps(QQuickItem* page) const;
   /// True if anything but the background reaches the left or the right edge of an item.
   Q_INVOKABLE bool reachesEdge(QQuickItem* item) const;

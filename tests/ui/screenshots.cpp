@@ -81,6 +81,7 @@ class Camera {
   }
 
   void shoot(const turnpoint::session::Page& page, const QString& name) {
+    if (!only_.isEmpty() && !only_.contains(name)) return;
     bridge_.show(page);
     QGuiApplication::processEvents();
     // Only the operator can open the end page with numbers.
@@ -343,8 +344,9 @@ int shoot_all(Camera& camera, const QString& language) {
   camera.start().consent();
   camera.shoot("code");
   camera.start().enterCode("P07");
-  for (const auto& exhibit : turnpoint::ui::gallery(language.toStdString()))
-    camera.shoot(exhibit.page, QString::fromStdString(exhibit.name));
+  for (const char* mode : {"live", "pilot", "simulated"})
+    for (const auto& exhibit : turnpoint::ui::gallery_in_mode(language.toStdString(), mode))
+      camera.shoot(exhibit.page, QString::fromStdString(exhibit.name));
   return camera.count();
 }
 
@@ -358,7 +360,8 @@ int main(int argc, char** argv) {
   parser.addHelpOption();
   parser.addOptions({{"out", "Folder for the pictures", "dir", "screenshots"},
                      {"languages", "Languages", "list", "en,ja"},
-                     {"sizes", "Panel sizes in pixels", "list", "800x480,1280x800,1920x1080,800x1280"},
+                     {"sizes", "Panel sizes in pixels, WIDTHxHEIGHT or WIDTHxHEIGHT@INCHES", "list",
+                      "800x480,1280x800,1920x1080,800x1280"},
                      {"only", "Some participant's pages, early, operator", "list", ""}});
   parser.process(app);
   turnpoint::ui::set_fonts();

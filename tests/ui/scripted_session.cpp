@@ -15,7 +15,8 @@ ScriptedSession::ScriptedSession(QObject* parent)
     : QObject(parent), bridge_(steady_ns, [this](const session::Input& input) { take(input); }) {}
 
 void ScriptedSession::show(const QString& name, const QString& language) {
-  for (const auto& exhibit : gallery(language.toStdString())) {
+  const char* mode = name.endsWith("-pilot") ? "pilot" : name.endsWith("-simulated") ? "simulated" : "live";
+  for (const auto& exhibit : gallery_in_mode(language.toStdString(), mode)) {
     if (exhibit.name == name.toStdString()) return bridge_.show(exhibit.page);
   }
   qFatal("no page %s in the gallery", qPrintable(name));

@@ -24,6 +24,7 @@ class ScriptedSession : public QObject {
   /// The names of all pages in the gallery.
   static QStringList pages();
 
+  /// Shows a page of the gallery. If its name ends with "-pilot" or "-simulated", the run is one.
   Q_INVOKABLE void show(const QString& name, const QString& language);
   /// Shows the page with this text in every place whose text comes from a file or a device.
   Q_INVOKABLE void showWith(const QString& name, const QString& text);

@@ -63,24 +63,34 @@ void StationRoom::entitle(const QString& title) {
   write(path("protocols/short.toml"), lines.join('\n').toStdString());
 }
 
-void StationRoom::reopen(const QString& code) { start(code, Begins::open); }
+void StationRoom::reopen(const QString& code) {
+  start(desk::OperatorCode::of_digits(code.toStdString()), Begins::open);
+}
 
-void StationRoom::reopenLocked(const QString& code) { start(code, Begins::locked); }
+void StationRoom::reopenLocked(const QString& code) {
+  start(desk::OperatorCode::of_digits(code.toStdString()), Begins::locked);
+}
+
+void StationRoom::reopenBuiltIn() { start(desk::OperatorCode(), Begins::locked); }
+
+void StationRoom::damageDatabase() {
+  std::fstream file(path("lab.sqlite"), std::ios::in | std::ios::out | std::ios::binary);
+  file << std::string(4096, 'Z');
+}
 
 void StationRoom::reopenEmpty(const QString& code) {
   QFile::remove(folder_->filePath("protocols/short.toml"));
   reopen(code);
 }
 
-void StationRoom::start(const QString& digits, Begins begins) {
+void StationRoom::start(const desk::OperatorCode& code, Begins begins) {
   close();
   const bool locked = begins == Begins::locked;
   operating_ = std::make_unique<OperatorController>(
       setup::StationRequest{path("protocols"), path("rig.toml"), path("lab.sqlite"), locked});
   station_ = std::make_unique<StationWindow>(
       StationWindow::Place{5.9, QSize(1280, 800), false},
-      StationWindow::Operator{operating_.get(), desk::OperatorCode::of_digits(digits.toStdString()), locked,
-                              disks()},
+      StationWindow::Operator{operating_.get(), code, locked, disks(), path("operator-code")},
       path("lab.sqlite"));
   Q_EMIT opened();
 }

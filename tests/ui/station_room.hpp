@@ -63,6 +63,11 @@ class StationRoom : public QObject {
   /// Presses or releases a key of a keyboard.
   Q_INVOKABLE void pressKey(int key);
   Q_INVOKABLE void releaseKey(int key);
+  /// Overwrites the beginning of the database.
+  Q_INVOKABLE void damageDatabase();
+  /// Ends the program and starts it again as a locked station with the built-in code, which a new code
+  /// replaces in the folder.
+  Q_INVOKABLE void reopenBuiltIn();
   /// Writes a protocol file with two mistakes into the folder of protocols.
   Q_INVOKABLE void addMistaken();
 
@@ -110,7 +115,7 @@ class StationRoom : public QObject {
 
  private:
   enum class Begins { open, locked };
-  void start(const QString& digits, Begins begins);
+  void start(const desk::OperatorCode& code, Begins begins);
   QStringList read(const std::string& database, const QString& file, const QString& name,
                    const QString& where, const QString& is) const;
   maintenance::DiskSources disks() const;

@@ -1,6 +1,7 @@
 // stopped_session PROTOCOL RIG DATABASE: runs a session on the screen in the same way as the program. The
 // simulated participant gives the second answer in the first trial. In the middle of the second trial's
-// stimulus, the process sends itself SIGTERM.
+// stimulus, the process sends itself SIGTERM. With a fourth argument, it first writes this file until the
+// disk is full.
 #include <signal.h>
 
 #include <QGuiApplication>
@@ -13,6 +14,7 @@
 #include "station/records/records.hpp"
 #include "station/ui/participant/session_bridge.hpp"
 #include "station/ui/platform/screens.hpp"
+#include "tests/support/small_disk.hpp"
 
 Q_IMPORT_QML_PLUGIN(TurnpointPlugin)
 
@@ -20,12 +22,17 @@ using namespace turnpoint;
 
 namespace {
 
+std::string filling;
+
 void take_part(ui::SessionBridge& bridge) {
   using Kind = ui::PageModel::Kind;
   const auto* page = bridge.page();
   if (page->kind() == Kind::Instructions) return bridge.next();
   if (page->kind() != Kind::Stimulus || !page->answers_open()) return;
-  if (page->trials_done() == 1) return void(::raise(SIGTERM));
+  if (page->trials_done() == 1) {
+    if (!filling.empty()) SmallDisk::fill(filling);
+    return void(::raise(SIGTERM));
+  }
   // answers count only after a page has been shown for a while
   bridge.answer(1, bridge.now_ns() + 300'000'000);
 }
@@ -44,7 +51,8 @@ void sit_down() {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  if (argc != 4) return 2;
+  if (argc < 4) return 2;
+  if (argc > 4) filling = argv[4];
   setup::RunRequest request;
   request.protocol = argv[1];
   request.rig = argv[2];

@@ -3,6 +3,7 @@
 
 #include "station/ui/operator/operator_lock.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/ui/event_loop.hpp"
 
 using namespace turnpoint;
@@ -64,4 +65,33 @@ TEST_CASE("after wrong codes the lock refuses even the right one until the waiti
   keypad.enter("1111");
   keypad.enter("2222");
   CHECK(keypad.lock.wait_s() == 0);  // the right code reset the count of wrong ones
+}
+
+TEST_CASE(
+    "as long as the code is the built-in one, the lock shows it; a chosen code replaces it and is stored",
+    "[lock]") {
+  const TemporaryFolder folder;
+  EventLoop<> loop;
+  ui::OperatorLock lock{desk::OperatorCode()};
+  lock.store_in(folder / "operator-code");
+  int chosen = 0, refused = 0;
+  QObject::connect(&lock, &ui::OperatorLock::chosen, [&] { ++chosen; });
+  QObject::connect(&lock, &ui::OperatorLock::refused, [&] { ++refused; });
+  const auto choose = [&](const char* digits) {
+    lock.choose(digits);
+    const auto until = std::chrono::steady_clock::now() + kPatience;
+    while (lock.checking() && std::chrono::steady_clock::now() < until)
+      QCoreApplication::processEvents(QEventLoop::WaitForMoreEvents);
+    REQUIRE_FALSE(lock.checking());
+  };
+  CHECK(lock.built_in());
+  CHECK(lock.shown_code() == desk::OperatorCode::built_in);
+  for (const char* impossible : {"123", desk::OperatorCode::built_in}) choose(impossible);
+  CHECK(refused == 2);
+  CHECK(lock.built_in());
+  choose("7391");
+  CHECK(chosen == 1);
+  CHECK_FALSE(lock.built_in());
+  CHECK(lock.shown_code().isEmpty());
+  CHECK(desk::operator_code({folder / "operator-code"}).opens("7391"));
 }

@@ -7,6 +7,7 @@
 #include "station/ui/platform/stop_signals.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/child.hpp"
+#include "tests/support/small_disk.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/ui/event_loop.hpp"
 
@@ -102,6 +103,31 @@ TEST_CASE("a session stopped during a stimulus is closed in its log, and can be 
   const auto sessions = turnpoint::store::list_sessions(folder / "db");
   REQUIRE(sessions.size() == 1);
   CHECK(sessions[0].status == turnpoint::records::SessionStatus::interrupted);
+}
+
+TEST_CASE("on a full disk, a session ends within three seconds of the signal and says what was kept",
+          "[stop]") {
+  SmallDisk disk(24);
+  if (!disk.mounted) {
+    WARN("not tested: needs the right to mount a file system");
+    return;
+  }
+  const TemporaryFolder folder;
+  Child child({STOPPED_SESSION, kSource + "/tests/ui/short.toml", kSource + "/tests/support/thin_plate.toml",
+               disk / "db", disk / "filling"},
+              without_screen(folder));
+  for (int waited_ms = 0; !std::filesystem::exists(disk / "filling") && waited_ms < kPatience_ms;
+       waited_ms += 10)
+    REQUIRE_FALSE(child.ends_within(10));
+  REQUIRE(child.ends_within(3000));
+  CAPTURE(child.said());
+  CHECK(child.outcome() == 1);
+  CHECK(child.said().find("1 trials are stored") != std::string::npos);
+  CHECK(child.said().find("turnpoint resume") != std::string::npos);
+  std::filesystem::remove(disk / "filling");
+  const auto sessions = turnpoint::store::list_sessions(disk / "db");
+  REQUIRE(sessions.size() == 1);
+  CHECK(sessions[0].trials == 1);
 }
 
 TEST_CASE(

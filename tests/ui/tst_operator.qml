@@ -26,6 +26,15 @@ Item {
     }
 
     Texts { id: words; language: "en" }
+    Theme { id: dense; width: stage.width; height: stage.height; pixelsPerMm: 5.9; dense: true }
+    StationLine {
+        id: line
+        anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
+        visible: false
+        theme: dense
+        texts: words
+        operating: desk.operating
+    }
 
     PageTest {
         name: "Operator"
@@ -43,11 +52,25 @@ Item {
         }
 
         function test_a_backup_that_is_missing_or_old_is_marked_in_words_and_by_a_sign() {
-            page.active = true
+            line.visible = true
             liveView.visible = false
-            tryVerify(() => says(page.item, "No backup yet"), 5000)
-            verify(find(page.item, "backupDue") !== null)
-            page.active = false
+            words.language = "en"
+            tryVerify(() => says(line, "No backup yet"), 5000)
+            verify(find(line, "backupDue") !== null)
+            line.visible = false
+        }
+        function test_the_line_says_whether_the_station_is_fit_for_a_session() {
+            line.visible = true
+            words.language = "en"
+            for (const name of ["sign-database", "sign-disk", "sign-clock", "sign-amplifier"]) tryVerify(() => find(line, name) !== null, 5000, name)
+            verify(says(line, "Database: good"))
+            verify(says(line, "Amplifier: off"))
+            verify(says(line, desk.operating.station))
+            desk.operating.setArmed(true)
+            verify(says(line, "Amplifier: will be armed"))
+            desk.operating.setArmed(false)
+            compare(inspector.cutTexts(line), [])
+            line.visible = false
         }
         function test_the_age_of_the_last_backup_is_shown_in_each_language_data() {
             return [{ tag: "en", age: "3 h ago", old: "9 days ago, older than 7 days" },

@@ -145,15 +145,51 @@ Item {
             wait(400)
             for (let i = 0; i < 4; ++i) mouseClick(room.screen, place.x, place.y)
             verify(shown("withdrawing"))
-            verify(/^T1: 1 sessions, 2 trials, .* would be deleted\./.test(find(room.screen, "withdrawing").text))
+            verify(/^This would be deleted of T1: sessions: 1, trials: 2, /.test(find(room.screen, "withdrawing").text))
             verify(says(room.screen, "This cannot be undone."))
+            room.pressKey(Qt.Key_Escape)
+            verify(!shown("withdrawing") && shown("session0"))
+            tap("withdraw")
             tap("keep")
             verify(!shown("withdrawing") && shown("session0"))
             tap("withdraw")
+            // a short press deletes nothing
             tap("confirm")
-            tryVerify(() => says(room.screen, "were deleted."), 20000)
+            verify(shown("withdrawing"))
+            const confirm = appears("confirm")
+            mousePress(confirm, confirm.width / 2, confirm.height / 2)
+            tryVerify(() => says(room.screen, "Deleted of T1"), 20000)
+            mouseRelease(confirm)
             verify(!shown("session0"))
             verify(says(room.screen, "No session has been recorded yet"))
+        }
+
+        function test_a_study_that_was_not_saved_is_offered_after_the_program_was_killed() {
+            goTo("studies")
+            const design = find(room.screen, "stationPages").design
+            verify(design.open(operating.folder + "/short.toml"))
+            design.setText(design.text.replace("Four quick trials", "Changed trials"))
+            room.reopen("1234")
+            goTo("studies")
+            tap("continueKept")
+            const again = find(room.screen, "stationPages").design
+            verify(again.text.includes("Changed trials") && again.unsaved)
+            again.close()
+            compare(again.kept, "")
+        }
+
+        function test_a_damaged_database_is_told_to_the_operator_and_no_session_begins() {
+            interrupt()
+            room.damageDatabase()
+            tap("bar-run")
+            operating.refresh()
+            tryVerify(() => says(room.screen, "Database: damaged"), 20000)
+            verify(!operating.mayBegin)
+            verify(says(find(room.screen, "operatorPage"), "damaged"))
+            tap("bar-sessions")
+            tryVerify(() => says(room.screen, "The sessions cannot be read."), 20000)
+            verify(!says(room.screen, "No session has been recorded yet"))
+            verify(says(room.screen, "Database: damaged"))
         }
 
         function test_the_rig_is_examined_and_tested_and_other_pages_wait_meanwhile() {

@@ -327,6 +327,36 @@ Item {
             verify(!says(room.screen, "Wrong code") && says(room.screen, "Operator's code"))
         }
 
+        function test_the_built_in_code_is_shown_and_a_keyboard_chooses_another() {
+            room.open("7391")
+            room.reopenBuiltIn()
+            appears("gate")
+            verify(says(room.screen, "2468"))
+            const keys = digits => { for (const digit of digits) { room.pressKey(Qt.Key_0 + Number(digit)); room.releaseKey(Qt.Key_0 + Number(digit)) } }
+            keys("1")
+            room.pressKey(Qt.Key_Backspace)
+            room.releaseKey(Qt.Key_Backspace)
+            keys("2468")
+            room.pressKey(Qt.Key_Return)
+            room.releaseKey(Qt.Key_Return)
+            appears("codeOffer")
+            verify(says(room.screen, "2468"))
+            tap("chooseCode")
+            appears("codeChoice")
+            room.pressKey(Qt.Key_Escape)
+            room.releaseKey(Qt.Key_Escape)
+            tryVerify(() => !shown("codeChoice"), 5000)
+            tap("chooseCode")
+            appears("codeChoice")
+            keys("2468")
+            room.pressKey(Qt.Key_Return)
+            tryVerify(() => says(room.screen, "Not possible"), 20000)
+            keys("7391")
+            room.pressKey(Qt.Key_Enter)
+            tryVerify(() => !shown("codeChoice") && !shown("codeOffer"), 20000)
+            verify(!says(room.screen, "2468"))
+        }
+
         function test_an_empty_folder_says_what_to_do() {
             room.open("7391")
             room.reopenEmpty("7391")

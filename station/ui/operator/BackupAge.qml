@@ -8,7 +8,7 @@ Row {
     required property Texts texts
     required property var age
     readonly property bool due: age.state !== "recent"
-    spacing: 0.5 * theme.unit
+    spacing: Math.round(0.5 * theme.unit)
 
     Glyph {
         objectName: "backupDue"

@@ -22,11 +22,11 @@ Rectangle {
     Keys.onSpacePressed: activated()
     Column {
         anchors.centerIn: parent
-        width: parent.width - 0.6 * root.theme.unit
-        spacing: 0.4 * root.theme.unit
+        width: parent.width - Math.round(0.6 * root.theme.unit)
+        spacing: Math.round(0.4 * root.theme.unit)
         Glyph {
             anchors.horizontalCenter: parent.horizontalCenter
-            height: Math.min(2.6 * root.theme.unit, 0.4 * root.height)
+            height: Math.min(Math.round(2.6 * root.theme.unit), 0.4 * root.height)
             name: root.glyph
             color: root.foreground
         }

@@ -24,7 +24,7 @@ Item {
         id: card
         anchors { left: parent.left; right: parent.right; top: parent.top; bottom: buttons.top; bottomMargin: root.theme.unit }
         theme: root.theme
-        heading: root.measuring ? root.name(root.guide.chosen) + " · " + root.texts.text("operator.guide_point").arg(root.guide.at + 1).arg(root.guide.count) : ""
+        heading: root.measuring ? root.name(root.guide.chosen) + " · " + root.texts.fill("operator.guide_point", root.guide.at + 1, root.guide.count) : ""
         PlainText {
             objectName: "guideSays"
             width: card.inner
@@ -32,7 +32,7 @@ Item {
                 : root.guide.chosen === "boundaries" ? root.texts.text("operator.guide_boundaries_text")
                 : root.guide.chosen === "friction" ? root.texts.text("operator.guide_friction_text")
                 : root.guide.chosen === "sound" ? root.texts.text("operator.guide_sound_text")
-                : root.guide.file !== "" ? root.texts.text("operator.guide_done").arg(root.guide.file.split("/").pop()) : root.texts.text("operator.guide_text")
+                : root.guide.file !== "" ? root.texts.fill("operator.guide_done", root.guide.file.split("/").pop()) : root.texts.text("operator.guide_text")
             color: root.theme.ink
             font.pixelSize: root.theme.textBody
             wrapMode: Text.Wrap
@@ -63,7 +63,7 @@ Item {
         Item {
             visible: root.measuring && root.guide.chosen !== "boundaries"
             width: card.inner
-            readonly property real strip: Math.max(8.4 * root.theme.unit, 1.4 * root.theme.controlHeight)
+            readonly property real strip: Math.max(Math.round(8.4 * root.theme.unit), 1.4 * root.theme.controlHeight)
             height: root.guide.chosen === "sound" ? strip / 0.7 : strip  // the meter is above the surface
             SurfaceDrawing {
                 id: picture
@@ -93,7 +93,7 @@ Item {
             objectName: "guideTone"
             visible: root.measuring
             width: card.inner
-            text: root.texts.text("operator.guide_tone").arg(root.point.kHz ?? "").arg(root.point.um ?? "").arg(root.point.percent ?? "").arg(root.point.transducer ?? "")
+            text: root.texts.fill("operator.guide_tone", root.point.kHz ?? "", root.point.um ?? "", root.point.percent ?? "", root.point.transducer ?? "")
             color: root.theme.quiet
             font.pixelSize: root.theme.textSmall
             wrapMode: Text.Wrap
@@ -110,7 +110,7 @@ Item {
                 enabled: root.guide.playing || root.guide.mayPlay
                 glyph: root.guide.playing ? "cross" : "run"
                 holdMs: !root.guide.playing && root.guide.real ? 900 : 0
-                text: root.guide.playing ? root.texts.text("operator.guide_left").arg(root.guide.remainingSeconds.toFixed(1))
+                text: root.guide.playing ? root.texts.fill("operator.guide_left", root.guide.remainingSeconds.toFixed(1))
                     : root.texts.text(root.guide.real ? "operator.guide_hold" : "operator.guide_play")
                 onActivated: {
                     if (root.guide.playing) root.guide.stop()
@@ -121,7 +121,7 @@ Item {
                 objectName: "guideReading"
                 theme: root.theme
                 primary: false
-                text: root.texts.text("operator.guide_reading").arg(root.reading === "" ? root.texts.text("operator.guide_none") : root.reading + root.unit)
+                text: root.texts.fill("operator.guide_reading", root.reading === "" ? root.texts.text("operator.guide_none") : root.reading + root.unit)
                 onActivated: entry.ask(false)
             }
             ActionButton {
@@ -129,7 +129,7 @@ Item {
                 visible: root.guide.chosen === "response"
                 theme: root.theme
                 primary: false
-                text: root.texts.text("operator.guide_phase").arg((root.point.phase ?? "") === "" ? root.texts.text("operator.guide_none") : root.point.phase + "°")
+                text: root.texts.fill("operator.guide_phase", (root.point.phase ?? "") === "" ? root.texts.text("operator.guide_none") : root.point.phase + "°")
                 onActivated: entry.ask(true)
             }
         }
@@ -142,18 +142,17 @@ Item {
                 required property var modelData
                 objectName: "guideLive"
                 width: card.inner
-                spacing: 0.2 * root.theme.unit
+                spacing: Math.round(0.2 * root.theme.unit)
                 PlainText {
                     width: parent.width
-                    text: root.texts.text("operator.guide_pick_up").arg(reading.modelData.channel)
-                        .arg((reading.modelData.um === "" ? "" : reading.modelData.um + " µm, ") + root.texts.text("operator.guide_of_range").arg(reading.modelData.percent.toFixed(1)))
+                    text: root.texts.fill("operator.guide_pick_up", reading.modelData.channel, (reading.modelData.um === "" ? "" : reading.modelData.um + " µm, ") + root.texts.fill("operator.guide_of_range", reading.modelData.percent.toFixed(1)))
                     color: root.theme.ink
                     font.pixelSize: root.theme.textBody
                     wrapMode: Text.Wrap
                 }
                 Rectangle {
                     width: parent.width
-                    height: 0.8 * root.theme.unit
+                    height: Math.round(0.8 * root.theme.unit)
                     radius: height / 2
                     color: root.theme.paper
                     border { color: root.theme.line; width: 1 }
@@ -220,7 +219,7 @@ Item {
             objectName: "guideFinish"
             theme: root.theme
             enabled: root.guide.mayFinish
-            text: root.texts.text("operator.guide_finish").arg(root.guide.entered).arg(root.guide.count)
+            text: root.texts.fill("operator.guide_finish", root.guide.entered, root.guide.count)
             onActivated: root.guide.finish()
         }
         ActionButton {
@@ -229,7 +228,7 @@ Item {
             primary: false
             enabled: !root.guide.playing && root.guide.at < root.guide.count - 1
             glyph: root.texts.mirrored ? "previous" : "next"
-            label: root.texts.text("design.next").arg(card.heading)
+            label: root.texts.fill("design.next", card.heading)
             onActivated: root.guide.show(root.guide.at + 1)
         }
         ActionButton {
@@ -238,7 +237,7 @@ Item {
             primary: false
             enabled: !root.guide.playing && root.guide.at > 0
             glyph: root.texts.mirrored ? "next" : "previous"
-            label: root.texts.text("design.previous").arg(card.heading)
+            label: root.texts.fill("design.previous", card.heading)
             onActivated: root.guide.show(root.guide.at - 1)
         }
         ActionButton {

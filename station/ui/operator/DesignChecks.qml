@@ -40,12 +40,12 @@ OperatorCard {
             Keys.onSpacePressed: root.remarkChosen(index)
             Column {
                 id: words
-                anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: 0.8 * root.theme.unit }
+                anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: Math.round(0.8 * root.theme.unit) }
                 PlainText {
                     readAloud: false
                     width: parent.width
                     text: (remark.problem ? root.texts.text("operator.problem") : remark.modelData.kind === "warning" ? root.texts.text("operator.warning") : root.texts.text("operator.remark"))
-                        + (remark.modelData.line > 0 ? "   ·   " + root.texts.text("operator.line").arg(remark.modelData.line) : "")
+                        + (remark.modelData.line > 0 ? "   ·   " + root.texts.fill("operator.line", remark.modelData.line) : "")
                     color: remark.problem ? root.theme.wrong : root.theme.quiet
                     font { pixelSize: root.theme.textSmall; weight: Font.Bold }
                 }

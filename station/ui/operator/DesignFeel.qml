@@ -34,7 +34,7 @@ Item {
         anchors { left: button.right; leftMargin: root.theme.unit; right: parent.right; verticalCenter: parent.verticalCenter }
         readonly property bool mine: root.feeling.last === root.scene && !root.playing
         text: mine && root.feeling.problem !== "" ? root.texts.say(root.feeling.problem)
-            : mine && root.feeling.tones > 0 ? root.texts.text(root.feeling.real ? "design.felt" : "design.felt_simulated").arg(Number(root.feeling.seconds.toFixed(2))).arg(root.feeling.tones).arg(root.feeling.peakPercent)
+            : mine && root.feeling.tones > 0 ? root.texts.fill(root.feeling.real ? "design.felt" : "design.felt_simulated", Number(root.feeling.seconds.toFixed(2)), root.feeling.tones, root.feeling.peakPercent)
             : root.feeling.real ? root.texts.text("design.feel_text") : ""
         color: mine && root.feeling.problem !== "" ? root.theme.wrong : root.theme.quiet
         font.pixelSize: root.theme.textSmall

@@ -16,11 +16,11 @@ Item {
     signal editWanted()
     signal picked(word: string)
 
-    height: Math.max(value.visible ? value.height : chips.height, name.implicitHeight) + notes.height + 0.5 * theme.unit
+    height: Math.max(value.visible ? value.height : chips.height, name.implicitHeight) + notes.height + Math.round(0.5 * theme.unit)
 
     Rectangle {
         visible: root.pointedAt
-        anchors { fill: parent; margins: -0.3 * root.theme.unit }
+        anchors { fill: parent; margins: -Math.round(0.3 * root.theme.unit) }
         radius: root.theme.radius
         color: "transparent"
         border { color: root.theme.warning; width: root.theme.stroke }
@@ -44,7 +44,7 @@ Item {
         visible: root.words
         anchors { right: parent.right }
         width: 0.6 * parent.width
-        spacing: 0.5 * root.theme.unit
+        spacing: Math.round(0.5 * root.theme.unit)
         Repeater {
             model: root.words ? root.field.allowed : []
             ChoiceButton {
@@ -91,7 +91,7 @@ Item {
     }
     Column {
         id: notes
-        anchors { right: parent.right; bottom: parent.bottom; bottomMargin: 0.5 * root.theme.unit }
+        anchors { right: parent.right; bottom: parent.bottom; bottomMargin: Math.round(0.5 * root.theme.unit) }
         width: 0.6 * parent.width
         Repeater {
             model: root.field.remarks

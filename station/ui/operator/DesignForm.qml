@@ -77,14 +77,14 @@ Rectangle {
     Flickable {
         id: scroll
         objectName: "formScroll"
-        anchors { fill: parent; margins: 1.2 * root.theme.unit }
+        anchors { fill: parent; margins: Math.round(1.2 * root.theme.unit) }
         contentHeight: sheet.height
         boundsBehavior: Flickable.StopAtBounds
         clip: true
         Column {
             id: sheet
             width: scroll.width
-            spacing: 1.6 * root.theme.unit
+            spacing: Math.round(1.6 * root.theme.unit)
             DesignTimeline {
                 objectName: "timeline"
                 visible: root.design.sections[root.design.section]?.name === "timing" && parts.length > 0
@@ -104,7 +104,7 @@ Rectangle {
                     readonly property int absent: modelData.fields.filter(field => !field.present && !field.required).length
                     objectName: "group" + index
                     width: sheet.width
-                    spacing: 0.6 * root.theme.unit
+                    spacing: Math.round(0.6 * root.theme.unit)
                     Item {
                         width: parent.width
                         height: Math.max(title.implicitHeight, tools.height)
@@ -120,7 +120,7 @@ Rectangle {
                         Row {
                             id: tools
                             anchors { right: parent.right; verticalCenter: parent.verticalCenter }
-                            spacing: 0.5 * root.theme.unit
+                            spacing: Math.round(0.5 * root.theme.unit)
                             ActionButton {
                                 objectName: "copy" + table.index
                                 visible: table.modelData.copied

@@ -38,7 +38,7 @@ Rectangle {
     }
 
     function trouble() : string {
-        return design.trouble === "taken" ? texts.text("design.taken").arg(naming.typed) : design.trouble === "name" ? texts.text("design.name_of_study")
+        return design.trouble === "taken" ? texts.fill("design.taken", naming.typed) : design.trouble === "name" ? texts.text("design.name_of_study")
             : design.trouble === "on_disk" ? texts.text("design.on_disk_title") : texts.say(design.trouble)
     }
     function nameIt(wish: string, title: string, text: string) {
@@ -84,7 +84,7 @@ Rectangle {
             anchors { left: title.left; right: title.right; top: title.bottom }
             height: 0.4 * look.controlHeight
             text: root.design.trouble !== "" && !naming.visible && !entry.visible ? root.trouble() : root.design.unsaved ? texts.text("design.unsaved")
-                : root.design.savedAs !== "" ? texts.text("design.saved").arg(root.design.savedAs) : ""
+                : root.design.savedAs !== "" ? texts.fill("design.saved", root.design.savedAs) : ""
             color: root.design.trouble !== "" ? look.wrong : look.quiet
             font.pixelSize: look.textSmall
             elide: Text.ElideMiddle
@@ -92,7 +92,7 @@ Rectangle {
         Row {
             id: buttons
             anchors { right: parent.right; top: parent.top }
-            spacing: 0.5 * look.unit
+            spacing: Math.round(0.5 * look.unit)
             ActionButton { objectName: "undo"; theme: look; primary: false; quiet: true; enabled: root.design.canUndo; text: texts.text("design.undo"); onActivated: root.design.undo() }
             ActionButton { objectName: "redo"; theme: look; primary: false; quiet: true; enabled: root.design.canRedo; text: texts.text("design.redo"); onActivated: root.design.redo() }
             ActionButton { objectName: "saveAs"; theme: look; primary: false; text: texts.text("design.save_as"); onActivated: root.nameIt("save", "design.name_of_study", root.design.name) }
@@ -109,7 +109,7 @@ Rectangle {
             Column {
                 id: list
                 width: tabs.width
-                spacing: 0.4 * look.unit
+                spacing: Math.round(0.4 * look.unit)
                 Repeater {
                     model: root.design.sections
                     ActionButton {
@@ -170,7 +170,7 @@ Rectangle {
                 id: sides
                 anchors { left: parent.left; right: parent.right }
                 visible: root.wide
-                spacing: 0.5 * look.unit
+                spacing: Math.round(0.5 * look.unit)
                 Repeater {
                     model: root.wide ? root.besides : []
                     ChoiceButton {
@@ -184,7 +184,7 @@ Rectangle {
                 }
             }
             DesignChecks {
-                anchors { fill: parent; topMargin: sides.visible ? sides.height + 0.5 * look.unit : 0 }
+                anchors { fill: parent; topMargin: sides.visible ? sides.height + Math.round(0.5 * look.unit) : 0 }
                 visible: root.other === "check"
                 theme: look
                 texts: texts
@@ -201,12 +201,12 @@ Rectangle {
             }
             Loader {
                 id: text
-                anchors { fill: parent; topMargin: sides.visible ? sides.height + 0.5 * look.unit : 0 }
+                anchors { fill: parent; topMargin: sides.visible ? sides.height + Math.round(0.5 * look.unit) : 0 }
                 active: root.other === "text"
                 sourceComponent: DesignText { theme: look; texts: root.phrases; design: root.design }
             }
             Loader {
-                anchors { fill: parent; topMargin: sides.visible ? sides.height + 0.5 * look.unit : 0 }
+                anchors { fill: parent; topMargin: sides.visible ? sides.height + Math.round(0.5 * look.unit) : 0 }
                 active: root.other === "pages"
                 sourceComponent: DesignPreview {
                     theme: look
@@ -217,7 +217,7 @@ Rectangle {
                 }
             }
             DesignPrecision {
-                anchors { fill: parent; topMargin: sides.visible ? sides.height + 0.5 * look.unit : 0 }
+                anchors { fill: parent; topMargin: sides.visible ? sides.height + Math.round(0.5 * look.unit) : 0 }
                 visible: root.other === "precision"
                 theme: look
                 texts: texts
@@ -271,6 +271,7 @@ Rectangle {
         objectName: "leaving"
         anchors.fill: parent
         theme: look
+        texts: texts
         title: texts.text("design.leave_title")
         text: texts.text("design.leave_text")
         keepText: texts.text("design.leave_keep")
@@ -283,8 +284,9 @@ Rectangle {
         objectName: "onDisk"
         anchors.fill: parent
         theme: look
+        texts: texts
         title: texts.text("design.on_disk_title")
-        text: texts.text("design.on_disk_text").arg(root.design.name)
+        text: texts.fill("design.on_disk_text", root.design.name)
         keepText: texts.text("design.on_disk_load")
         confirmText: texts.text("design.on_disk_overwrite")
         onKept: root.design.reload()

@@ -20,8 +20,8 @@ OperatorCard {
         objectName: "precisionState"
         width: root.inner
         visible: root.precision.busy || root.precision.sessions > 0
-        text: root.precision.busy ? root.texts.text("design.precision_busy").arg(Math.round(100 * root.precision.progress))
-            : root.texts.text("design.precision_sessions").arg(root.precision.sessions)
+        text: root.precision.busy ? root.texts.fill("design.precision_busy", Math.round(100 * root.precision.progress))
+            : root.texts.fill("design.precision_sessions", root.precision.sessions)
         color: root.theme.quiet
         font { pixelSize: root.theme.textSmall; weight: Font.DemiBold }
         wrapMode: Text.Wrap
@@ -30,7 +30,7 @@ OperatorCard {
         objectName: "precisionBar"
         visible: root.precision.busy
         width: root.inner
-        height: 0.8 * root.theme.unit
+        height: Math.round(0.8 * root.theme.unit)
         radius: height / 2
         color: root.theme.paper
         border { color: root.theme.line; width: 1 }
@@ -51,7 +51,7 @@ OperatorCard {
             required property int index
             objectName: "precision" + index
             width: root.inner
-            spacing: 0.15 * root.theme.unit
+            spacing: Math.round(0.15 * root.theme.unit)
             // numbers of an earlier draft are pale until those of this one are there
             opacity: root.precision.busy && root.precision.progress < 0.09 ? 0.5 : 1
             PlainText {
@@ -63,7 +63,7 @@ OperatorCard {
             }
             PlainText {
                 width: parent.width
-                text: root.texts.text(number.modelData.tailed ? "design.precision_median" : "design.precision_estimate").arg(number.modelData.estimate).arg(number.modelData.spread)
+                text: root.texts.fill(number.modelData.tailed ? "design.precision_median" : "design.precision_estimate", number.modelData.estimate, number.modelData.spread)
                 color: root.theme.ink
                 font { pixelSize: root.theme.textBody; weight: Font.DemiBold }
                 wrapMode: Text.Wrap
@@ -71,7 +71,7 @@ OperatorCard {
             PlainText {
                 visible: number.modelData.truth !== ""
                 width: parent.width
-                text: root.texts.text("design.precision_truth").arg(number.modelData.truth)
+                text: root.texts.fill("design.precision_truth", number.modelData.truth)
                 color: root.theme.quiet
                 font.pixelSize: root.theme.textSmall
                 wrapMode: Text.Wrap
@@ -79,7 +79,7 @@ OperatorCard {
             PlainText {
                 visible: number.modelData.width !== "" && number.modelData.coverage !== ""
                 width: parent.width
-                text: root.texts.text("design.precision_interval").arg(number.modelData.width).arg(number.modelData.coverage)
+                text: root.texts.fill("design.precision_interval", number.modelData.width, number.modelData.coverage)
                 color: root.theme.quiet
                 font.pixelSize: root.theme.textSmall
                 wrapMode: Text.Wrap

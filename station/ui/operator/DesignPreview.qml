@@ -40,12 +40,12 @@ Rectangle {
             primary: false
             enabled: stepper.at > 0
             glyph: root.texts.mirrored ? "next" : "previous"
-            label: root.texts.text("design.previous").arg(stepper.what)
+            label: root.texts.fill("design.previous", stepper.what)
             onActivated: stepper.chosen(stepper.at - 1)
         }
         PlainText {
             objectName: stepper.objectName + "-says"
-            anchors { left: earlier.right; right: later.left; verticalCenter: parent.verticalCenter; leftMargin: 0.5 * root.theme.unit; rightMargin: 0.5 * root.theme.unit }
+            anchors { left: earlier.right; right: later.left; verticalCenter: parent.verticalCenter; leftMargin: Math.round(0.5 * root.theme.unit); rightMargin: Math.round(0.5 * root.theme.unit) }
             height: parent.height
             text: stepper.says
             color: root.theme.ink
@@ -64,7 +64,7 @@ Rectangle {
             primary: false
             enabled: stepper.at < stepper.count - 1
             glyph: root.texts.mirrored ? "previous" : "next"
-            label: root.texts.text("design.next").arg(stepper.what)
+            label: root.texts.fill("design.next", stepper.what)
             onActivated: stepper.chosen(stepper.at + 1)
         }
     }
@@ -72,10 +72,10 @@ Rectangle {
     Column {
         id: choices
         anchors { left: parent.left; right: parent.right; top: parent.top; margins: root.theme.unit }
-        spacing: 0.5 * root.theme.unit
+        spacing: Math.round(0.5 * root.theme.unit)
         Flow {
             width: parent.width
-            spacing: 0.5 * root.theme.unit
+            spacing: Math.round(0.5 * root.theme.unit)
             Repeater {
                 model: root.pages.languages
                 ChoiceButton {
@@ -103,7 +103,7 @@ Rectangle {
             what: root.texts.text("design.pages")
             at: root.pages.shown
             count: root.pages.names.length
-            says: count === 0 ? "" : root.texts.text(root.pages.names[at]) + " · " + root.texts.text("design.page_of").arg(at + 1).arg(count)
+            says: count === 0 ? "" : root.texts.text(root.pages.names[at]) + " · " + root.texts.fill("design.page_of", at + 1, count)
             onChosen: index => root.pages.show(index)
         }
         PlainText {
@@ -153,7 +153,7 @@ Rectangle {
                 objectName: "previewShield"
                 anchors.fill: parent
                 Accessible.role: Accessible.Button
-                Accessible.name: root.texts.text("design.next").arg(root.texts.text("design.pages"))
+                Accessible.name: root.texts.fill("design.next", root.texts.text("design.pages"))
                 onClicked: root.pages.show((root.pages.shown + 1) % root.pages.names.length)
             }
         }

@@ -15,7 +15,7 @@ Item {
     property var profile
     signal moved(which: string, mm: real)
 
-    height: strip.height + (picture.visible ? picture.height + 0.5 * theme.unit : 0) + hint.height
+    height: strip.height + (picture.visible ? picture.height + Math.round(0.5 * theme.unit) : 0) + hint.height
 
     PlainText {
         id: hint
@@ -48,13 +48,13 @@ Item {
             visible: mm >= 0
             x: at - width / 2
             y: 0.1 * strip.height
-            width: Math.max(3, 0.4 * root.theme.unit)
+            width: Math.max(3, Math.round(0.4 * root.theme.unit))
             height: 0.62 * strip.height
             color: root.theme.action
             Rectangle {
                 anchors { horizontalCenter: parent.horizontalCenter; top: parent.top }
                 width: flag.implicitWidth + root.theme.unit
-                height: flag.implicitHeight + 0.5 * root.theme.unit
+                height: flag.implicitHeight + Math.round(0.5 * root.theme.unit)
                 radius: root.theme.radius
                 color: root.theme.action
                 PlainText {
@@ -104,7 +104,7 @@ Item {
     FigureView {
         id: picture
         visible: root.profile !== undefined
-        anchors { left: parent.left; right: parent.right; top: strip.bottom; topMargin: 0.5 * root.theme.unit }
+        anchors { left: parent.left; right: parent.right; top: strip.bottom; topMargin: Math.round(0.5 * root.theme.unit) }
         height: Math.max(18 * root.theme.unit, 13 * root.theme.textSmall)
         textPixels: 0.8 * root.theme.textSmall
         dark: root.theme.dark

@@ -12,7 +12,7 @@ Item {
     readonly property real end: parts.reduce((most, part) => Math.max(most, part.to), 0)
 
     height: parts.length > 0 ? 2 * bar + 3 * theme.textSmall : 0
-    readonly property real bar: Math.max(2.4 * theme.unit, 1.8 * theme.textSmall)
+    readonly property real bar: Math.max(Math.round(2.4 * theme.unit), 1.8 * theme.textSmall)
     LayoutMirroring.enabled: false
     LayoutMirroring.childrenInherit: true
 
@@ -24,7 +24,7 @@ Item {
             readonly property bool answer: modelData.kind === "answer"
             readonly property bool filled: answer || modelData.kind === "interval"
             x: modelData.from / root.end * root.width
-            y: answer ? root.bar + 0.3 * root.theme.unit : 0
+            y: answer ? root.bar + Math.round(0.3 * root.theme.unit) : 0
             width: (modelData.to - modelData.from) / root.end * root.width
             height: root.bar
             radius: 0.5 * root.theme.radius

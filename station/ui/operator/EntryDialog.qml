@@ -24,6 +24,7 @@ Rectangle {
         entry.text = text
         visible = true
         entry.forceActiveFocus()
+        entry.cursorPosition = entry.length
     }
     function choose(word: string) {
         if (pick) {
@@ -96,7 +97,7 @@ Rectangle {
             Flow {
                 visible: root.suggestions.length > 0
                 width: parent.width
-                spacing: 0.6 * root.theme.unit
+                spacing: Math.round(0.6 * root.theme.unit)
                 Repeater {
                     model: root.suggestions
                     ActionButton {
@@ -117,8 +118,9 @@ Rectangle {
                 full: root.sentences
                 width: parent.width
                 theme: root.theme
-                onTyped: character => entry.text += character
-                onErased: entry.text = entry.text.slice(0, -1)
+                onTyped: character => entry.insert(entry.cursorPosition, character)
+                onErased: if (entry.cursorPosition > 0) entry.remove(entry.cursorPosition - 1, entry.cursorPosition)
+                onMoved: by => entry.cursorPosition = Math.max(0, Math.min(entry.length, entry.cursorPosition + by))
             }
             Flow {
                 width: parent.width

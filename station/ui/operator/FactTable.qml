@@ -16,9 +16,9 @@ Column {
         let widest = 0
         for (const fact of facts)
             for (const word of texts.say(fact.label).split(/[\s\u00ad]+/)) widest = Math.max(widest, metrics.advanceWidth(word))
-        return Math.max(labelShare * width, Math.min(0.6 * width, widest + 1.2 * theme.unit))
+        return Math.max(labelShare * width, Math.min(0.6 * width, widest + Math.round(1.2 * theme.unit)))
     }
-    spacing: 0.35 * theme.unit
+    spacing: Math.round(0.35 * theme.unit)
 
     FontMetrics { id: metrics; font.pixelSize: root.theme.textSmall }
     PlainText {

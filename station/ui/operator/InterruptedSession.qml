@@ -8,14 +8,14 @@ Rectangle {
     required property Texts texts
     required property OperatorController operating
     visible: says.text !== ""
-    height: visible ? resume.height + 1.2 * root.theme.unit : 0
+    height: visible ? resume.height + Math.round(1.2 * root.theme.unit) : 0
     radius: root.theme.radius
     color: root.theme.raised
     border { color: root.theme.action; width: root.theme.stroke }
     PlainText {
         id: says
         objectName: "interruptedSession"
-        anchors { left: parent.left; right: resume.left; verticalCenter: parent.verticalCenter; margins: 1.2 * root.theme.unit }
+        anchors { left: parent.left; right: resume.left; verticalCenter: parent.verticalCenter; margins: Math.round(1.2 * root.theme.unit) }
         text: root.texts.interrupted(root.operating.interrupted)
         color: root.theme.ink
         font { pixelSize: root.theme.textBody; weight: Font.DemiBold }
@@ -24,7 +24,7 @@ Rectangle {
     ActionButton {
         id: resume
         objectName: "resume"
-        anchors { right: parent.right; verticalCenter: parent.verticalCenter; rightMargin: 0.6 * root.theme.unit }
+        anchors { right: parent.right; verticalCenter: parent.verticalCenter; rightMargin: Math.round(0.6 * root.theme.unit) }
         theme: root.theme
         enabled: !root.operating.preparing
         text: root.texts.text("operator.resume")

@@ -24,7 +24,7 @@ Rectangle {
     Column {
         id: words
         anchors { left: parent.left; right: parent.right; top: parent.top; margins: look.margin }
-        spacing: 0.6 * look.unit
+        spacing: Math.round(0.6 * look.unit)
         PlainText {
             width: parent.width
             text: texts.text("latency.title")
@@ -41,9 +41,8 @@ Rectangle {
         PlainText {
             objectName: "result"
             width: parent.width
-            text: texts.text("latency.counts").arg(root.controller.taps).arg(root.controller.edges).arg(root.controller.pairs).arg(root.controller.wanted)
-                .arg(texts.text(root.controller.quality === "kernel" ? "latency.kernel" : "latency.toolkit")) + "\n" + (root.controller.medianMs === undefined ? " "
-                : texts.text("latency.result").arg(root.controller.medianMs.toFixed(2)).arg(root.controller.jitterMs.toFixed(2)).arg(root.controller.unmatched).arg(root.controller.taps))
+            text: texts.fill("latency.counts", root.controller.taps, root.controller.edges, root.controller.pairs, root.controller.wanted, texts.text(root.controller.quality === "kernel" ? "latency.kernel" : "latency.toolkit")) + "\n" + (root.controller.medianMs === undefined ? " "
+                : texts.fill("latency.result", root.controller.medianMs.toFixed(2), root.controller.jitterMs.toFixed(2), root.controller.unmatched, root.controller.taps))
             color: look.ink
             font { pixelSize: look.textBody; weight: Font.DemiBold }
             wrapMode: Text.Wrap

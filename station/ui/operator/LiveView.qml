@@ -137,7 +137,7 @@ Rectangle {
         anchors { left: parent.left; top: header.bottom; leftMargin: look.margin; topMargin: look.unit }
         width: root.tall ? root.width - 2 * look.margin : root.width - side.width - look.unit - 2 * look.margin
         height: (root.live.surfaces.length > 1 ? 0.4 : 0.24) * (root.tall ? 0.62 : 1) * (root.height - header.height - frame.band)
-        spacing: 0.4 * look.unit
+        spacing: Math.round(0.4 * look.unit)
         Repeater {
             model: root.live.surfaces
             FigureView {
@@ -154,17 +154,17 @@ Rectangle {
     Item {
         id: pictures
         objectName: "figures"
-        anchors { left: surfaces.left; right: surfaces.right; top: surfaces.bottom; bottom: root.tall ? side.top : parent.bottom; topMargin: 0.6 * look.unit; bottomMargin: root.tall ? look.unit : frame.edge + look.unit }
+        anchors { left: surfaces.left; right: surfaces.right; top: surfaces.bottom; bottom: root.tall ? side.top : parent.bottom; topMargin: Math.round(0.6 * look.unit); bottomMargin: root.tall ? look.unit : frame.edge + look.unit }
         // Show three figures if there is enough room for each. Otherwise show one, with buttons to choose it.
         // The figures in the lower row need room for legends.
-        readonly property real cell: 0.45 * (height - 0.6 * look.unit)
+        readonly property real cell: 0.45 * (height - Math.round(0.6 * look.unit))
         readonly property bool single: cell < 12.5 * root.small
-        readonly property real half: (width - 0.6 * look.unit) / 2
+        readonly property real half: (width - Math.round(0.6 * look.unit)) / 2
         Row {
             id: choices
             visible: pictures.single
             height: visible ? look.controlHeight : 0
-            spacing: 0.6 * look.unit
+            spacing: Math.round(0.6 * look.unit)
             Repeater {
                 model: root.live.hasStrip ? [texts.text("live.profile"), texts.text("live.levels"), texts.text("live.times"), texts.text("live.friction")]
                     : [texts.text("live.profile"), texts.text("live.levels"), texts.text("live.times")]
@@ -183,7 +183,7 @@ Rectangle {
         }
         Item {
             id: place
-            anchors { fill: parent; topMargin: pictures.single ? choices.height + 0.6 * look.unit : 0 }
+            anchors { fill: parent; topMargin: pictures.single ? choices.height + Math.round(0.6 * look.unit) : 0 }
         }
         FigureView {
             visible: !pictures.single || root.shown === 0
@@ -210,7 +210,7 @@ Rectangle {
             visible: !pictures.single || root.shown === 1
             anchors { left: place.left; bottom: place.bottom }
             width: pictures.single ? place.width : pictures.half
-            height: pictures.single ? place.height : place.height - pictures.cell - 0.6 * look.unit
+            height: pictures.single ? place.height : place.height - pictures.cell - Math.round(0.6 * look.unit)
             textPixels: root.small
             dark: look.dark
             paper: look.raised
@@ -220,7 +220,7 @@ Rectangle {
             visible: !pictures.single || root.shown === 2
             anchors { right: place.right; bottom: place.bottom }
             width: pictures.single ? place.width : pictures.half
-            height: pictures.single ? place.height : place.height - pictures.cell - 0.6 * look.unit
+            height: pictures.single ? place.height : place.height - pictures.cell - Math.round(0.6 * look.unit)
             textPixels: root.small
             dark: look.dark
             paper: look.raised
@@ -245,7 +245,7 @@ Rectangle {
             Column {
                 id: facts
                 width: scroll.width
-                spacing: 0.9 * look.unit
+                spacing: Math.round(0.9 * look.unit)
                 PlainText {
                     objectName: "picturesLater"
                     visible: root.bridge.page.kind === PageModel.Adjust
@@ -260,12 +260,22 @@ Rectangle {
                     visible: root.over
                     width: parent.width
                     text: root.bridge.page.kind === PageModel.Failed
-                        ? texts.text("live.had_to_stop").arg(root.bridge.page.text)
+                        ? texts.fill("live.had_to_stop", root.bridge.page.detail)
                         : root.bridge.page.resumable
                         ? texts.text("live.stopped")
                         : texts.text("live.ended")
                     color: look.ink
                     font { pixelSize: look.textBody; weight: Font.DemiBold }
+                    wrapMode: Text.Wrap
+                }
+                // what a device or the system reports; the participant's page does not show it
+                PlainText {
+                    objectName: "detail"
+                    visible: text !== ""
+                    width: parent.width
+                    text: root.bridge.page.kind === PageModel.Fault ? root.bridge.page.detail : ""
+                    color: look.wrong
+                    font.pixelSize: look.textSmall
                     wrapMode: Text.Wrap
                 }
                 FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("live.course"); facts: root.live.course }
@@ -274,7 +284,7 @@ Rectangle {
                     objectName: "gauges"
                     visible: root.live.gauged && !root.over
                     width: parent.width
-                    spacing: 0.6 * look.unit
+                    spacing: Math.round(0.6 * look.unit)
                     Row {
                         width: parent.width
                         spacing: look.unit
@@ -342,7 +352,7 @@ Rectangle {
             }
             Flow {
                 width: parent.width
-                spacing: 0.6 * look.unit
+                spacing: Math.round(0.6 * look.unit)
                 Repeater {
                     model: root.notes
                     ActionButton {
@@ -360,8 +370,9 @@ Rectangle {
             ScreenKeyboard {
                 width: parent.width
                 theme: look
-                onTyped: character => note.text += character
-                onErased: note.text = note.text.slice(0, -1)
+                onTyped: character => note.insert(note.cursorPosition, character)
+                onErased: if (note.cursorPosition > 0) note.remove(note.cursorPosition - 1, note.cursorPosition)
+                onMoved: by => note.cursorPosition = Math.max(0, Math.min(note.length, note.cursorPosition + by))
             }
             Row {
                 spacing: look.unit
@@ -386,6 +397,7 @@ Rectangle {
         objectName: "stopping"
         anchors.fill: parent
         theme: look
+        texts: texts
         title: texts.text("live.stop_title")
         text: texts.text("live.stop_text")
         keepText: texts.text("live.stop_keep")

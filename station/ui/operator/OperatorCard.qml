@@ -16,7 +16,7 @@ Rectangle {
     PlainText {
         id: title
         visible: root.heading !== ""
-        anchors { left: parent.left; right: parent.right; top: parent.top; margins: 1.2 * root.theme.unit; bottomMargin: 0 }
+        anchors { left: parent.left; right: parent.right; top: parent.top; margins: Math.round(1.2 * root.theme.unit); bottomMargin: 0 }
         text: root.heading
         color: root.theme.action
         font { pixelSize: root.theme.textBody; weight: Font.Bold }
@@ -24,14 +24,14 @@ Rectangle {
     }
     Flickable {
         id: scroll
-        anchors { left: parent.left; right: parent.right; top: title.visible ? title.bottom : parent.top; bottom: parent.bottom; margins: 1.2 * root.theme.unit; topMargin: title.visible ? 0.8 * root.theme.unit : 1.2 * root.theme.unit }
+        anchors { left: parent.left; right: parent.right; top: title.visible ? title.bottom : parent.top; bottom: parent.bottom; margins: Math.round(1.2 * root.theme.unit); topMargin: title.visible ? Math.round(0.8 * root.theme.unit) : Math.round(1.2 * root.theme.unit) }
         contentHeight: sheet.height
         boundsBehavior: Flickable.StopAtBounds
         clip: true
         Column {
             id: sheet
             width: scroll.width
-            spacing: 0.9 * root.theme.unit
+            spacing: Math.round(0.9 * root.theme.unit)
         }
     }
     ScrollCue { theme: root.theme; place: scroll }

@@ -34,6 +34,7 @@ Rectangle {
     // Large text on a small screen may not fit into the height of the page; the page then scrolls.
     Flickable {
         id: wholePage
+        clip: true
         anchors.fill: parent
         contentHeight: page.height
         interactive: contentHeight > height
@@ -57,18 +58,11 @@ Rectangle {
                     font { pixelSize: look.textTitle; weight: Font.Bold }
                 }
                 PlainText {
-                    anchors { left: brand.right; leftMargin: 2 * look.unit; right: backup.left; rightMargin: 2 * look.unit; baseline: brand.baseline }
+                    anchors { left: brand.right; leftMargin: 2 * look.unit; right: parent.right; baseline: brand.baseline }
                     text: root.operating.rig + "   ·   " + root.operating.database
                     color: look.quiet
                     font.pixelSize: look.textSmall
                     elide: Text.ElideMiddle
-                }
-                BackupAge {
-                    id: backup
-                    anchors { right: parent.right; verticalCenter: parent.verticalCenter }
-                    theme: look
-                    texts: texts
-                    age: root.operating.backup
                 }
             }
 
@@ -94,7 +88,7 @@ Rectangle {
                 theme: look
                 protocols: root.operating.protocols
                 selected: root.operating.selected
-                emptyText: texts.text("operator.no_protocols").arg(root.operating.folder)
+                emptyText: texts.fill("operator.no_protocols", root.operating.folder)
                 unusableText: texts.text("operator.study_bad")
                 onChosen: index => root.operating.select(index)
             }

@@ -17,6 +17,7 @@ Rectangle {
     function open() {
         sessions.lookForDisks()
         visible = true
+        forceActiveFocus()
     }
 
     visible: false

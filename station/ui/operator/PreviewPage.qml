@@ -28,7 +28,7 @@ Rectangle {
     Row {
         id: tabs
         anchors { left: parent.left; top: parent.top; margins: look.margin }
-        spacing: 0.6 * look.unit
+        spacing: Math.round(0.6 * look.unit)
         Repeater {
             model: root.controller.scenes
             ActionButton {
@@ -94,7 +94,7 @@ Rectangle {
             height: parent.height
             Rectangle {
                 anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter }
-                height: 0.5 * look.unit
+                height: Math.round(0.5 * look.unit)
                 radius: height / 2
                 color: look.line
             }
@@ -105,13 +105,13 @@ Rectangle {
                     x: handle.width / 2 + (knob.span > 0 ? (modelData - knob.modelData.low) / knob.span : 0) * (track.width - handle.width) - width / 2
                     anchors.verticalCenter: parent.verticalCenter
                     width: 2
-                    height: 1.4 * look.unit
+                    height: Math.round(1.4 * look.unit)
                     color: look.quiet
                 }
             }
             Rectangle {
                 id: handle
-                width: 2.6 * look.unit
+                width: Math.round(2.6 * look.unit)
                 height: width
                 radius: width / 2
                 anchors.verticalCenter: parent.verticalCenter
@@ -128,10 +128,10 @@ Rectangle {
     }
     Grid {
         id: knobs
-        anchors { left: parent.left; right: parent.right; top: tabs.bottom; margins: look.margin; topMargin: 0.6 * look.unit }
+        anchors { left: parent.left; right: parent.right; top: tabs.bottom; margins: look.margin; topMargin: Math.round(0.6 * look.unit) }
         columns: root.controller.knobs.length > 1 ? 2 : 1
         columnSpacing: 3 * look.unit
-        rowSpacing: 0.4 * look.unit
+        rowSpacing: Math.round(0.4 * look.unit)
         Repeater {
             model: root.controller.knobs
             Knob { width: (knobs.width - (knobs.columns - 1) * knobs.columnSpacing) / knobs.columns }
@@ -139,7 +139,7 @@ Rectangle {
     }
     PlainText {
         visible: root.controller.knobs.length === 0
-        anchors { left: parent.left; top: tabs.bottom; margins: look.margin; topMargin: 0.8 * look.unit }
+        anchors { left: parent.left; top: tabs.bottom; margins: look.margin; topMargin: Math.round(0.8 * look.unit) }
         text: texts.text("preview.no_factor")
         color: look.quiet
         font.pixelSize: look.textSmall
@@ -147,7 +147,7 @@ Rectangle {
 
     Item {
         id: pictures
-        anchors { left: parent.left; right: side.left; top: knobs.bottom; bottom: parent.bottom; leftMargin: look.margin; rightMargin: look.unit; topMargin: 1.6 * look.unit; bottomMargin: look.margin }
+        anchors { left: parent.left; right: side.left; top: knobs.bottom; bottom: parent.bottom; leftMargin: look.margin; rightMargin: look.unit; topMargin: Math.round(1.6 * look.unit); bottomMargin: look.margin }
         opacity: root.controller.busy ? 0.6 : 1
         FigureView {
             id: surface
@@ -160,7 +160,7 @@ Rectangle {
         }
         FigureView {
             id: profile
-            anchors { left: parent.left; right: parent.right; top: surface.bottom; topMargin: 0.6 * look.unit }
+            anchors { left: parent.left; right: parent.right; top: surface.bottom; topMargin: Math.round(0.6 * look.unit) }
             height: 0.36 * parent.height
             textPixels: Math.max(0.8 * look.textSmall, 2 * root.pixelsPerMm)
             dark: look.dark
@@ -168,7 +168,7 @@ Rectangle {
             picture: root.controller.profile
         }
         FigureView {
-            anchors { left: parent.left; right: parent.right; top: profile.bottom; bottom: parent.bottom; topMargin: 0.6 * look.unit }
+            anchors { left: parent.left; right: parent.right; top: profile.bottom; bottom: parent.bottom; topMargin: Math.round(0.6 * look.unit) }
             textPixels: Math.max(0.8 * look.textSmall, 2 * root.pixelsPerMm)
             dark: look.dark
             paper: look.raised
@@ -203,7 +203,7 @@ Rectangle {
         border { color: look.line; width: 1 }
         Flickable {
             id: scroll
-            anchors { fill: parent; margins: 1.2 * look.unit }
+            anchors { fill: parent; margins: Math.round(1.2 * look.unit) }
             contentHeight: sheet.height
             boundsBehavior: Flickable.StopAtBounds
             clip: true

@@ -17,7 +17,7 @@ Rectangle {
     PlainText {
         objectName: "noProtocols"
         visible: root.protocols.length === 0
-        anchors { fill: parent; margins: 1.4 * root.theme.unit }
+        anchors { fill: parent; margins: Math.round(1.4 * root.theme.unit) }
         text: root.emptyText
         color: root.theme.ink
         font.pixelSize: root.theme.textBody
@@ -26,10 +26,10 @@ Rectangle {
     ListView {
         id: list
         objectName: "protocols"
-        anchors { fill: parent; margins: 0.5 * root.theme.unit }
+        anchors { fill: parent; margins: Math.round(0.5 * root.theme.unit) }
         clip: true
         boundsBehavior: Flickable.StopAtBounds
-        spacing: 0.3 * root.theme.unit
+        spacing: Math.round(0.3 * root.theme.unit)
         // The number of protocols, not the list itself: the list is a new one whenever the page changes, and with a new
         // model the view would forget how far it was scrolled.
         model: root.protocols.length
@@ -59,7 +59,7 @@ Rectangle {
             color: chosen ? root.theme.action : root.theme.raised
             Column {
                 id: words
-                anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: 0.9 * root.theme.unit }
+                anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: Math.round(0.9 * root.theme.unit) }
                 PlainText {
                     readAloud: false
                     width: parent.width

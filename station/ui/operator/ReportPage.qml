@@ -71,7 +71,7 @@ Rectangle {
         id: tabs
         anchors { left: body.left; top: body.top }
         width: figure.width
-        spacing: 0.6 * look.unit
+        spacing: Math.round(0.6 * look.unit)
         Repeater {
             model: root.report.pictureNames
             ActionButton {
@@ -107,7 +107,7 @@ Rectangle {
         border { color: look.line; width: 1 }
         Flickable {
             id: scroll
-            anchors { fill: parent; margins: 1.2 * look.unit }
+            anchors { fill: parent; margins: Math.round(1.2 * look.unit) }
             contentHeight: sheet.height
             boundsBehavior: Flickable.StopAtBounds
             clip: true

@@ -26,7 +26,7 @@ Rectangle {
     readonly property var calibrationFacts: rig.calibration
     function step() : string {
         const remark = texts.say(weightStep.remark)
-        return (weightStep.trouble !== "" ? texts.text("operator.weights_repair").arg(texts.say(weightStep.trouble)) + "\n" : remark !== "" ? remark + "\n" : "") + texts.say(weightStep.asked)
+        return (weightStep.trouble !== "" ? texts.fill("operator.weights_repair", texts.say(weightStep.trouble)) + "\n" : remark !== "" ? remark + "\n" : "") + texts.say(weightStep.asked)
     }
 
     Theme {
@@ -62,7 +62,7 @@ Rectangle {
             labelShare: 0.3
             facts: root.calibrationFacts.map(fact => ({
                 label: texts.text(fact.label),
-                value: fact.parts.length > 0 ? fact.parts.map(part => texts.text(part)).join(", ") : fact.text === "" ? fact.value : texts.text(fact.text).arg(fact.value)
+                value: fact.parts.length > 0 ? fact.parts.map(part => texts.text(part)).join(", ") : fact.text === "" ? fact.value : texts.fill(fact.text, fact.value)
             }))
         }
         PlainText {
@@ -81,7 +81,7 @@ Rectangle {
         }
         Flow {
             width: state.inner
-            spacing: 0.6 * look.unit
+            spacing: Math.round(0.6 * look.unit)
             Repeater {
                 model: root.languages
                 ChoiceButton {
@@ -96,7 +96,7 @@ Rectangle {
         }
         Flow {
             width: state.inner
-            spacing: 0.6 * look.unit
+            spacing: Math.round(0.6 * look.unit)
             ChoiceButton { objectName: "light"; theme: look; chosen: !OperatorScreen.dark; text: texts.text("operator.light"); onActivated: OperatorScreen.dark = false }
             ChoiceButton { objectName: "dark"; theme: look; chosen: OperatorScreen.dark; text: texts.text("operator.dark"); onActivated: OperatorScreen.dark = true }
         }
@@ -116,7 +116,7 @@ Rectangle {
                 objectName: "textSize"
                 height: look.controlHeight
                 verticalAlignment: Text.AlignVCenter
-                text: texts.text("operator.text_size").arg(OperatorScreen.textPercent)
+                text: texts.fill("operator.text_size", OperatorScreen.textPercent)
                 color: look.ink
                 font.pixelSize: look.textBody
             }
@@ -158,7 +158,7 @@ Rectangle {
             width: results.inner
             text: root.rig.asked === "press_stop" ? texts.text("operator.press_stop")
                 : root.rig.asked === "release_stop" ? texts.text("operator.release_stop")
-                : root.rig.asked === "press_button" ? texts.text("operator.press_button").arg(root.rig.askedButton)
+                : root.rig.asked === "press_button" ? texts.fill("operator.press_button", root.rig.askedButton)
                 : root.rig.asked !== "" ? root.step()
                 : root.rig.busy !== "" ? texts.text("operator.working")
                 : root.weighing ? texts.text("operator.weights_text")
@@ -171,7 +171,7 @@ Rectangle {
             objectName: "weightsReading"
             visible: root.rig.busy === "weights" && text !== ""
             width: results.inner
-            text: root.rig.reading.length === 3 ? texts.text(root.weightStep.converter ? "operator.weights_converter" : "operator.weights_cells").arg(root.rig.reading[0]).arg(root.rig.reading[1]).arg(root.rig.reading[2]) : root.weightStep.unread ? texts.say(root.weightStep.unread) : ""
+            text: root.rig.reading.length === 3 ? texts.fill(root.weightStep.converter ? "operator.weights_converter" : "operator.weights_cells", root.rig.reading[0], root.rig.reading[1], root.rig.reading[2]) : root.weightStep.unread ? texts.say(root.weightStep.unread) : ""
             color: look.ink
             font.pixelSize: look.textBody
             wrapMode: Text.Wrap
@@ -196,7 +196,7 @@ Rectangle {
                 readonly property string state: modelData.status ?? modelData.verdict
                 objectName: "finding" + index
                 width: results.inner
-                spacing: 0.2 * look.unit
+                spacing: Math.round(0.2 * look.unit)
                 Item {
                     width: parent.width
                     height: Math.max(named.implicitHeight, judged.implicitHeight)
@@ -223,7 +223,7 @@ Rectangle {
                     objectName: visible ? "gauge" + finding.index : ""
                     visible: (finding.modelData.share ?? -1) >= 0
                     width: 0.5 * parent.width
-                    height: 0.8 * look.unit
+                    height: Math.round(0.8 * look.unit)
                     radius: height / 2
                     color: look.paper
                     border { color: look.line; width: 1 }

@@ -16,6 +16,7 @@ Item {
     component Choice: ChoiceButton { theme: root.theme }
 
     component Caption: PlainText {
+        width: Math.ceil(implicitWidth)
         height: root.theme.controlHeight
         color: root.theme.quiet
         font.pixelSize: root.theme.textBody
@@ -48,7 +49,7 @@ Item {
                 Choice {
                     objectName: "enterCode"
                     chosen: root.operating.participant !== ""
-                    text: root.operating.participant === "" ? root.texts.text("operator.enter_now") : root.texts.text(root.operating.participantKnown ? "operator.known" : "operator.new").arg(root.operating.participant)
+                    text: root.operating.participant === "" ? root.texts.text("operator.enter_now") : root.texts.fill(root.operating.participantKnown ? "operator.known" : "operator.new", root.operating.participant)
                     onActivated: root.codeWanted()
                 }
             }

@@ -16,7 +16,7 @@ Rectangle {
     function reasons() {
         const all = []
         for (const problem of operating.problems) all.push(texts.say(problem))
-        for (const reason of operating.notLive) all.push(texts.text("operator.not_live").arg(texts.say(reason)))
+        for (const reason of operating.notLive) all.push(texts.fill("operator.not_live", texts.say(reason)))
         return all
     }
 
@@ -33,7 +33,7 @@ Rectangle {
     Flickable {
         id: scroll
         objectName: "summaryScroll"
-        anchors { fill: parent; margins: 1.4 * root.theme.unit }
+        anchors { fill: parent; margins: Math.round(1.4 * root.theme.unit) }
         visible: !root.operating.checking
         contentHeight: sheet.height
         boundsBehavior: Flickable.StopAtBounds
@@ -41,14 +41,14 @@ Rectangle {
         Column {
             id: sheet
             width: scroll.width
-            spacing: 1.1 * root.theme.unit
+            spacing: Math.round(1.1 * root.theme.unit)
             Repeater {
                 model: root.reasons()
                 Row {
                     id: problem
                     required property string modelData
                     width: sheet.width
-                    spacing: 0.8 * root.theme.unit
+                    spacing: Math.round(0.8 * root.theme.unit)
                     Glyph {
                         id: sign
                         height: 1.4 * root.theme.textBody
@@ -69,7 +69,7 @@ Rectangle {
                 objectName: "refusedAsEarly"
                 visible: root.tooEarly !== ""
                 width: sheet.width
-                spacing: 0.8 * root.theme.unit
+                spacing: Math.round(0.8 * root.theme.unit)
                 Glyph {
                     id: earlySign
                     height: 1.4 * root.theme.textBody
@@ -107,7 +107,7 @@ Rectangle {
             Column {
                 visible: root.operating.cues.length > 0
                 width: parent.width
-                spacing: 0.35 * root.theme.unit
+                spacing: Math.round(0.35 * root.theme.unit)
                 PlainText {
                     width: parent.width
                     text: root.texts.text("operator.cues")

@@ -61,8 +61,8 @@ Rectangle {
             PlainText {
                 objectName: "noSessions"
                 visible: list.count === 0
-                anchors { fill: parent; margins: 1.4 * look.unit }
-                text: root.sessions.total === 0 ? texts.text("operator.no_sessions") : texts.text("operator.none_found")
+                anchors { fill: parent; margins: Math.round(1.4 * look.unit) }
+                text: root.sessions.unreadable ? texts.text("operator.sessions_unread") : root.sessions.total === 0 ? texts.text("operator.no_sessions") : texts.text("operator.none_found")
                 color: look.ink
                 font.pixelSize: look.textBody
                 wrapMode: Text.Wrap
@@ -70,10 +70,10 @@ Rectangle {
             ListView {
                 id: list
                 objectName: "sessions"
-                anchors { fill: parent; margins: 0.5 * look.unit }
+                anchors { fill: parent; margins: Math.round(0.5 * look.unit) }
                 clip: true
                 boundsBehavior: Flickable.StopAtBounds
-                spacing: 0.3 * look.unit
+                spacing: Math.round(0.3 * look.unit)
                 model: root.sessions.sessions
                 delegate: Rectangle {
                     id: row
@@ -95,7 +95,7 @@ Rectangle {
                     border { color: look.ink; width: activeFocus ? look.stroke : 0 }
                     Column {
                         id: words
-                        anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: 0.9 * look.unit }
+                        anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: Math.round(0.9 * look.unit) }
                         PlainText {
                             readAloud: false
                             width: parent.width
@@ -146,7 +146,7 @@ Rectangle {
                     visible: modelData.disk && modelData.mounted
                     theme: look
                     primary: false
-                    text: texts.text("operator.eject").arg(modelData.name)
+                    text: texts.fill("operator.eject", modelData.name)
                     onActivated: root.sessions.eject(index)
                 }
             }
@@ -286,7 +286,9 @@ Rectangle {
         objectName: "withdrawing"
         anchors.fill: parent
         theme: look
-        title: texts.text("operator.withdraw_title").arg(root.sessions.chosen.person ?? "")
+        texts: texts
+        holdMs: 1500
+        title: texts.fill("operator.withdraw_title", root.sessions.chosen.person ?? "")
         text: texts.say(root.sessions.consequence) + "\n" + texts.text("operator.withdraw_text")
         keepText: texts.text("operator.withdraw_keep")
         confirmText: texts.text("operator.withdraw_do")

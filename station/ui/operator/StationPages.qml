@@ -11,6 +11,10 @@ Rectangle {
     required property RigController rig
     required property DesignController design
     required property real pixelsPerMm
+    /// The lock of these pages; null if they have none.
+    property OperatorLock lock: null
+    /// True once the operator has put off the choice of a code.
+    property bool later: false
     /// name of the page that is shown: run, studies, sessions or rig
     property string shown: "run"
     readonly property bool tall: height > width
@@ -69,9 +73,55 @@ Rectangle {
             color: look.line
         }
     }
+    // The code that opens these pages is printed in the manual until somebody chooses one.
+    Rectangle {
+        id: offer
+        objectName: "codeOffer"
+        visible: root.lock !== null && root.lock.builtIn && !root.later
+        anchors { left: root.tall ? parent.left : bar.right; right: parent.right; top: parent.top }
+        height: visible ? offered.height + look.unit : 0
+        color: look.raised
+        Flow {
+            id: offered
+            anchors { left: parent.left; right: parent.right; top: parent.top; margins: Math.round(look.unit / 2); leftMargin: look.margin; rightMargin: look.margin }
+            spacing: look.unit
+            PlainText {
+                width: Math.min(implicitWidth, parent.width)
+                height: Math.max(contentHeight, chooseCode.height)
+                text: root.lock === null ? "" : texts.fill("operator.code_built_in", root.lock.shownCode)
+                color: look.ink
+                font { pixelSize: look.textBody; weight: Font.DemiBold }
+                wrapMode: Text.Wrap
+                verticalAlignment: Text.AlignVCenter
+            }
+            ActionButton {
+                id: chooseCode
+                objectName: "chooseCode"
+                theme: look
+                text: texts.text("operator.code_choose")
+                onActivated: choosing.wanted = true
+            }
+            ActionButton {
+                objectName: "codeLater"
+                theme: look
+                primary: false
+                quiet: true
+                text: texts.text("operator.code_later")
+                onActivated: root.later = true
+            }
+        }
+    }
+    StationLine {
+        id: line
+        objectName: "stationLine"
+        anchors { left: root.tall ? parent.left : bar.right; right: parent.right; bottom: root.tall ? bar.top : parent.bottom }
+        theme: look
+        texts: texts
+        operating: root.operating
+    }
     Item {
         id: place
-        anchors { left: root.tall ? parent.left : bar.right; right: parent.right; top: parent.top; bottom: root.tall ? bar.top : parent.bottom }
+        anchors { left: root.tall ? parent.left : bar.right; right: parent.right; top: offer.bottom; bottom: line.top }
         Loader {
             anchors.fill: parent
             active: root.shown === "run"
@@ -102,6 +152,9 @@ Rectangle {
                 objectName: "studiesPage"
                 studies: root.studies
                 pixelsPerMm: root.pixelsPerMm
+                kept: root.design.kept
+                onContinueWanted: root.design.continueKept()
+                onDiscardWanted: root.design.discardKept()
                 onNewWanted: root.design.startNew()
                 onChangeWanted: path => root.design.open(path)
                 onRunWanted: index => {
@@ -132,6 +185,22 @@ Rectangle {
                 rig: root.rig
                 pixelsPerMm: root.pixelsPerMm
             }
+        }
+    }
+    Loader {
+        id: choosing
+        property bool wanted: false
+        anchors.fill: parent
+        active: wanted
+        focus: wanted
+        onLoaded: item.forceActiveFocus()
+        sourceComponent: OperatorGate {
+            objectName: "codeChoice"
+            pixelsPerMm: root.pixelsPerMm
+            lock: root.lock
+            choosing: true
+            onAbandoned: choosing.wanted = false
+            onPassed: choosing.wanted = false
         }
     }
 }

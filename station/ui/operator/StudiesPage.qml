@@ -10,6 +10,10 @@ Rectangle {
     required property real pixelsPerMm
     readonly property bool tall: height > width
     readonly property color verdictColor: studies.verdict === "bad" ? look.wrong : studies.verdict === "good" ? look.right : look.ink
+    /// The name of a study that the program could not save when it ended; "" if there is none.
+    property string kept
+    signal continueWanted()
+    signal discardWanted()
     signal runWanted(index: int)
     signal newWanted()
     signal changeWanted(path: string)
@@ -34,7 +38,7 @@ Rectangle {
         theme: look
         protocols: root.studies.protocols
         selected: root.studies.selected
-        emptyText: texts.text("operator.no_protocols").arg(root.studies.folder)
+        emptyText: texts.fill("operator.no_protocols", root.studies.folder)
         unusableText: texts.text("operator.study_bad")
         onChosen: index => root.studies.select(index)
     }
@@ -42,6 +46,34 @@ Rectangle {
         id: card
         anchors { left: root.tall ? parent.left : list.right; right: parent.right; top: root.tall ? list.bottom : parent.top; bottom: footer.top; margins: look.margin; topMargin: root.tall ? look.unit : look.margin; bottomMargin: look.unit; leftMargin: root.tall ? look.margin : look.unit }
         theme: look
+        Flow {
+            objectName: "keptStudy"
+            visible: root.kept !== ""
+            width: card.inner
+            spacing: look.unit
+            PlainText {
+                width: Math.min(implicitWidth, parent.width)
+                text: texts.fill("design.kept", root.kept)
+                color: look.ink
+                font { pixelSize: look.textBody; weight: Font.DemiBold }
+                wrapMode: Text.Wrap
+            }
+            ActionButton {
+                objectName: "continueKept"
+                theme: look
+                text: texts.text("design.kept_continue")
+                onActivated: root.continueWanted()
+            }
+            ActionButton {
+                objectName: "discardKept"
+                theme: look
+                primary: false
+                danger: true
+                holdMs: 1000
+                text: texts.text("design.kept_discard")
+                onActivated: root.discardWanted()
+            }
+        }
         PlainText {
             objectName: "verdict"
             width: parent.width
@@ -64,7 +96,7 @@ Rectangle {
                     width: parent.width
                     text: (remark.problem ? texts.text("operator.problem") : remark.modelData.kind === "warning" ? texts.text("operator.warning") : texts.text("operator.remark"))
                         + (remark.modelData.file === "" ? "" : "   ·   " + remark.modelData.file)
-                        + (remark.modelData.line > 0 ? "   ·   " + texts.text("operator.line").arg(remark.modelData.line) : "")
+                        + (remark.modelData.line > 0 ? "   ·   " + texts.fill("operator.line", remark.modelData.line) : "")
                     color: remark.problem ? look.wrong : look.quiet
                     font { pixelSize: look.textSmall; weight: Font.Bold }
                     wrapMode: Text.Wrap

@@ -61,6 +61,7 @@ void DesignController::startNew() {
 }
 
 void DesignController::close() {
+  if (draft_) discardKept();
   draft_.reset();
   check_job_.abandon();
   profile_job_.abandon();
@@ -142,6 +143,7 @@ void DesignController::read_again() {
     for (const auto& problem : bad.problems()) remarks_.push_back({Kind::problem, problem});
   }
   make_form();
+  keep_draft();
   Q_EMIT changed();
   if (!checking_) return check_job_.abandon();
   start_check();

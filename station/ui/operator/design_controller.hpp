@@ -77,6 +77,8 @@ class DesignController : public QObject {
   Q_PROPERTY(turnpoint::ui::Precision* precision READ precision CONSTANT)
   Q_PROPERTY(turnpoint::ui::Feeling* feeling READ feeling CONSTANT)
 
+  Q_PROPERTY(QString kept READ kept NOTIFY changed)
+
  public:
   explicit DesignController(DesignPlace place, SourceChecker checker = check_source,
                             QObject* parent = nullptr);
@@ -122,8 +124,8 @@ class DesignController : public QObject {
   Q_INVOKABLE void close();
 
   Q_INVOKABLE void show(int section);
-  /// Shows the page with the field that a remark is about, and then emits reached(). Returns false if the form has no
-  /// such field, as when the text is no TOML.
+  /// Shows the page with the field that a remark is about, and then emits reached(). Returns false if the
+  /// form has no such field, as when the text is no TOML.
   Q_INVOKABLE bool goTo(int remark);
   /// Sets a field of the chosen page to what a person typed. An empty text removes the key from the file.
   Q_INVOKABLE bool change(int group, int field, const QString& typed);
@@ -138,6 +140,13 @@ class DesignController : public QObject {
   Q_INVOKABLE bool save(const QString& name);
   Q_INVOKABLE bool overwrite();
   Q_INVOKABLE bool reload();
+
+  /// The name of a study that was being changed when the program ended without saving it; "" if there is
+  /// none.
+  QString kept() const;
+  /// Goes on with that study. Returns false if it cannot be read.
+  Q_INVOKABLE bool continueKept();
+  Q_INVOKABLE void discardKept();
 
   /// Returns the label for a key of the file, such as "Zone · from (mm)".
   Q_INVOKABLE static QString label(const QStringList& path, const QString& language);
@@ -164,6 +173,8 @@ class DesignController : public QObject {
   void make_form();
   bool refuse(texts::Phrase trouble);
   bool write_to(const std::string& path);
+  std::string kept_path() const;
+  void keep_draft() const;
   bool changed_on_disk() const;
   void raise_version();
   std::string path_for(const std::string& name) const;

@@ -1,4 +1,5 @@
 // The designer's controller and the file: saving, and what is suggested while somebody types its text.
+#include <QFile>
 #include <QFileInfo>
 #include <algorithm>
 #include <exception>
@@ -12,6 +13,46 @@
 #include "station/ui/operator/facts.hpp"
 
 namespace turnpoint::ui {
+
+std::string DesignController::kept_path() const {
+  return place_.folder + (place_.folder.empty() ? "" : "/") + ".unsaved-study";
+}
+
+/// Writes the text beside the studies as it is changed, so that it survives the end of the program: the path
+/// of the study in the first line, then its text.
+void DesignController::keep_draft() const {
+  if (!unsaved()) return;
+  try {
+    if (!place_.folder.empty()) system::make_folder(place_.folder);
+    system::write_file(kept_path(), path_ + "\n" + draft_->text(), 0666, system::Replaces::input);
+  } catch (const std::exception&) {
+    // The folder cannot be written, which saving the study says.
+  }
+}
+
+QString DesignController::kept() const {
+  if (draft_) return "";
+  QFile file(QString::fromStdString(kept_path()));
+  if (!file.open(QIODevice::ReadOnly)) return "";
+  return QFileInfo(QString::fromUtf8(file.readLine()).trimmed()).completeBaseName();
+}
+
+bool DesignController::continueKept() try {
+  const auto all = text::read_text_file(kept_path());
+  const auto end = all.find('\n');
+  const auto path = all.substr(0, end);
+  saved_ = QFileInfo::exists(QString::fromStdString(path)) ? text::read_text_file(path) : "";
+  old_version_.clear();
+  begin(end == std::string::npos ? "" : all.substr(end + 1), path);
+  return true;
+} catch (const std::exception& error) {
+  return refuse(phrases_of(error).front());
+}
+
+void DesignController::discardKept() {
+  QFile::remove(QString::fromStdString(kept_path()));
+  Q_EMIT changed();
+}
 
 bool DesignController::changed_on_disk() const {
   return !saved_.empty() && QFileInfo::exists(QString::fromStdString(path_)) &&
@@ -34,6 +75,7 @@ bool DesignController::write_to(const std::string& path) {
   path_ = path;
   name_ = QFileInfo(QString::fromStdString(path)).completeBaseName().toStdString();
   saved_ = draft_->text();
+  discardKept();
   saved_as_ = QString::fromStdString(path);
   trouble_ = {};
   Q_EMIT changed();

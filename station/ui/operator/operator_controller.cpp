@@ -19,9 +19,10 @@ OperatorController::OperatorController(setup::StationRequest request, Checker ch
       request_(std::move(request)),
       checker_(std::move(checker)),
       may_check_(checks == Checks::at_once),
+      looker_(*this),
       worker_(*this) {
   std::filesystem::create_directories(std::filesystem::absolute(request_.database).parent_path());
-  connect(&minutes_, &QTimer::timeout, this, &OperatorController::look_at_backup);
+  connect(&minutes_, &QTimer::timeout, this, &OperatorController::look_at_station);
   minutes_.start(std::chrono::minutes(1));
   refresh();
 }
@@ -38,16 +39,41 @@ void OperatorController::refresh() {
     interrupted_ = desk::interrupted_note(request_.database);
     backup_ = desk::backup_note(request_.database);
   } catch (const std::exception& error) {
-    words_.problems = phrases_of(error);
+    state_.refusal = texts::phrase_of(error);  // until the state of the station has been read
   }
+  look_at_station();
   Q_EMIT changed();
   if (selected_ < 0 && !protocols_.empty()) return select(0);
   if (checking_) check_selected();  // the check was stopped when the session began
 }
 
-void OperatorController::look_at_backup() {
-  const auto now = desk::backup_note(request_.database);
-  if (now == std::exchange(backup_, now)) return;
+void OperatorController::look_at_station() {
+  looker_.start([this, database = request_.database](const std::stop_token&) -> Then {
+    auto state = desk::station_state(database);
+    desk::BackupNote backup;
+    try {
+      backup = desk::backup_note(database);
+    } catch (const std::exception& error) {
+      state.refusal = texts::phrase_of(error);
+    }
+    return [this, state = std::move(state), backup] {
+      state_ = state;
+      backup_ = backup;
+      Q_EMIT changed();
+    };
+  });
+}
+
+QVariantList OperatorController::signs() const {
+  QVariantList list;
+  for (const auto& sign : state_.signs)
+    list += QVariantMap{
+        {"name", QString::fromStdString(sign.name)}, {"good", sign.good}, {"says", to_variant(sign.says)}};
+  return list;
+}
+
+void OperatorController::tell_failure(const texts::Phrase& why) {
+  refused_ = {why};
   Q_EMIT changed();
 }
 
@@ -182,7 +208,8 @@ void OperatorController::setArmed(bool armed) {
 }
 
 bool OperatorController::may_begin() const {
-  return entry() != nullptr && !checking_ && !preparing_ && words_.problems.empty() && not_live_.empty();
+  return entry() != nullptr && !refuses() && !checking_ && !preparing_ && words_.problems.empty() &&
+         not_live_.empty();
 }
 
 void OperatorController::begin() { prepare(""); }
@@ -266,7 +293,14 @@ QVariantList OperatorController::protocols() const {
 }
 
 QVariantList OperatorController::facts() const { return to_list(words_.facts); }
-QVariantList OperatorController::problems() const { return to_list(words_.problems) + to_list(refused_); }
+/// True if the station can record no session.
+bool OperatorController::refuses() const { return state_.refusal != texts::Phrase(); }
+
+QVariantList OperatorController::problems() const {
+  QVariantList all;
+  if (refuses()) all += to_variant(state_.refusal);
+  return all + to_list(words_.problems) + to_list(refused_);
+}
 QVariantList OperatorController::not_live() const { return to_list(not_live_); }
 QVariantList OperatorController::warnings() const { return to_list(words_.warnings); }
 

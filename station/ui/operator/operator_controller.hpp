@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "station/desk/choices.hpp"
+#include "station/desk/station_state.hpp"
 #include "station/session/session.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/setup/station_request.hpp"
@@ -60,6 +61,10 @@ class OperatorController : public QObject {
   Q_PROPERTY(QVariantMap interrupted READ interrupted NOTIFY changed)
   /// age of the last backup as {state: none | recent | old | ahead (its time is in the future), hours}
   Q_PROPERTY(QVariantMap backup READ backup NOTIFY changed)
+  /// what the operator has to know before a session, as {name (database, disk, clock), good, says}; empty
+  /// until it was read
+  Q_PROPERTY(QVariantList signs READ signs NOTIFY changed)
+  Q_PROPERTY(QString station READ station NOTIFY changed)  ///< the name under which the station records
   Q_PROPERTY(bool mayBegin READ may_begin NOTIFY changed)
   Q_PROPERTY(bool preparing READ preparing NOTIFY changed)
   Q_PROPERTY(QString rig READ rig CONSTANT)
@@ -96,6 +101,8 @@ class OperatorController : public QObject {
   bool armed() const { return armed_; }
   QVariantMap interrupted() const;
   QVariantMap backup() const;
+  QVariantList signs() const;
+  QString station() const { return QString::fromStdString(state_.station); }
   bool may_begin() const;
   bool preparing() const { return preparing_; }
   QString rig() const { return QString::fromStdString(request_.rig); }
@@ -104,6 +111,8 @@ class OperatorController : public QObject {
 
   /// Reads protocols, participants and interrupted sessions again: at the start and after each session.
   Q_INVOKABLE void refresh();
+  /// Tells the operator why the last session failed. The participant's page does not say it.
+  void tell_failure(const texts::Phrase& why);
   Q_INVOKABLE void select(int index);
   Q_INVOKABLE void chooseLanguage(int index);
   Q_INVOKABLE void enterParticipant(const QString& code);
@@ -132,8 +141,9 @@ class OperatorController : public QObject {
   void check_selected();
   void check_live();
   void refuse_live(std::vector<texts::Phrase> reasons);
-  void look_at_backup();
+  void look_at_station();
   void stay();
+  bool refuses() const;
   void fail(std::vector<texts::Phrase> problems);
   void refuse(std::vector<texts::Phrase> reasons);
   const desk::ProtocolEntry* entry() const;
@@ -144,6 +154,7 @@ class OperatorController : public QObject {
   QStringList participants_;
   std::optional<desk::InterruptedNote> interrupted_;
   desk::BackupNote backup_;
+  desk::StationState state_;
   QTimer minutes_;  ///< updates the ages shown on the page, which may be open for days
   desk::CheckWords words_;
   std::vector<texts::Phrase> refused_;  ///< why the last chosen session did not begin
@@ -153,7 +164,8 @@ class OperatorController : public QObject {
   QString participant_;
   bool live_ = false, armed_ = false, checking_ = false, preparing_ = false;
   bool may_check_;
-  // The last member, so that its thread ends before the objects that it uses are destroyed.
+  // The last members, so that their threads end before the objects that they use are destroyed.
+  NewestJob looker_;  ///< reads the state of the station
   NewestJob worker_;
 };
 

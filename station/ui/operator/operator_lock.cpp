@@ -40,6 +40,32 @@ void OperatorLock::enter(const QString& typed) {
   });
 }
 
+void OperatorLock::choose(const QString& digits) {
+  if (checking_ || digits.isEmpty()) return;
+  checking_ = true;
+  Q_EMIT changed();
+  const auto file = file_.empty() ? desk::operator_code_files().front() : file_;
+  job_.start([this, file, text = digits.toStdString()](const std::stop_token&) -> std::function<void()> {
+    try {
+      auto code = desk::OperatorCode::of_digits(text);
+      desk::store_operator_code(code, file);
+      return [this, code = std::move(code)] {
+        code_ = code;
+        checking_ = false;
+        Q_EMIT changed();
+        Q_EMIT chosen();
+      };
+    } catch (const std::exception& error) {
+      qWarning("%s", error.what());
+      return [this] {
+        checking_ = false;
+        Q_EMIT changed();
+        Q_EMIT refused();
+      };
+    }
+  });
+}
+
 void OperatorLock::judge(bool right) {
   checking_ = false;
   if (right) {

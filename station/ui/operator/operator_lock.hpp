@@ -3,6 +3,8 @@
 #include <QQmlEngine>
 #include <QTimer>
 #include <functional>
+#include <string>
+#include <utility>
 
 #include "station/desk/code_back_off.hpp"
 #include "station/desk/operator_code.hpp"
@@ -18,10 +20,16 @@ class OperatorLock : public QObject {
   QML_ELEMENT
   QML_UNCREATABLE("made by the program")
   Q_PROPERTY(int digits READ digits CONSTANT)  ///< largest number of digits of a code
+  Q_PROPERTY(bool builtIn READ built_in NOTIFY changed)
+  Q_PROPERTY(
+      QString shownCode READ shown_code NOTIFY changed)  ///< the built-in code; "" for one that was chosen
   Q_PROPERTY(bool checking READ checking NOTIFY changed)
   Q_PROPERTY(int waitS READ wait_s NOTIFY changed)  ///< number of seconds until the next code is accepted
 
  public:
+  /// True as long as nobody has chosen a code. The code is then shown, because it is no secret.
+  bool built_in() const { return code_.is_built_in(); }
+  QString shown_code() const { return built_in() ? desk::OperatorCode::built_in : ""; }
   using Clock = std::function<double()>;  ///< returns the time of a monotonic clock in s
 
   explicit OperatorLock(desk::OperatorCode code, QObject* parent = nullptr);
@@ -34,9 +42,15 @@ class OperatorLock : public QObject {
   /// Checks a typed code, then emits opened() or refused(). Ignored while a code is being checked or the
   /// waiting time has not ended.
   Q_INVOKABLE void enter(const QString& typed);
+  /// Makes these digits the operator's code and stores it. Then emits chosen() or, if the code is not
+  /// possible or cannot be stored, refused().
+  Q_INVOKABLE void choose(const QString& digits);
+  /// Where choose() stores the code; "" (the default) is the first of desk::operator_code_files().
+  void store_in(std::string file) { file_ = std::move(file); }
 
  Q_SIGNALS:
   void opened();
+  void chosen();
   void refused();
   void changed();
 
@@ -45,6 +59,7 @@ class OperatorLock : public QObject {
 
   desk::OperatorCode code_;
   Clock clock_;
+  std::string file_;
   desk::CodeBackOff back_off_;
   bool checking_ = false;
   QTimer second_;

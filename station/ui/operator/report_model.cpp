@@ -61,8 +61,9 @@ std::vector<std::pair<QString, desk::Drawing>> ReportModel::all_pictures() const
   const auto add = [&list](const char* name, const desk::Drawing& drawing) {
     if (drawing) list.emplace_back(name, drawing);
   };
-  add("report.speed_accuracy", pages_.trade);
+  if (pages_.compares_instructions) add("report.speed_accuracy", pages_.trade);
   add("report.fit", pages_.fits);
+  if (!pages_.compares_instructions) add("report.speed_accuracy", pages_.trade);
   add("live.levels", pages_.levels);
   add("live.times", pages_.times);
   add("report.finger", pages_.finger);

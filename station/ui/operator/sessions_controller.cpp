@@ -78,10 +78,11 @@ SessionsController::SessionsController(const setup::StationRequest& request, mai
 void SessionsController::open() {
   said_ = {};
   failed_ = false;
+  unreadable_ = false;
   try {
     read_list();
   } catch (const std::exception& error) {
-    failed_ = true;
+    failed_ = unreadable_ = true;
     said_ = explanation_of(error);
   }
   lookForDisks();

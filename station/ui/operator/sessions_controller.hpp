@@ -35,6 +35,7 @@ class SessionsController : public QObject {
   /// what the last action did, or why it failed
   Q_PROPERTY(QVariant said READ said NOTIFY changed)
   Q_PROPERTY(bool failed READ failed NOTIFY changed)
+  Q_PROPERTY(bool unreadable READ unreadable NOTIFY changed)  ///< the list of sessions could not be read
   /// places for exports and backups as {name, folder, disk, mounted}; the first is a folder of this machine
   Q_PROPERTY(QVariantList places READ places NOTIFY changed)
   /// what a withdrawal of the chosen participant would delete; "" before planWithdrawal()
@@ -56,6 +57,7 @@ class SessionsController : public QObject {
   bool busy() const { return busy_; }
   QVariant said() const { return to_variant(said_); }
   bool failed() const { return failed_; }
+  bool unreadable() const { return unreadable_; }
   QVariantList places() const;
   QVariant consequence() const { return to_variant(consequence_); }
   ReportModel* report() { return &report_; }
@@ -97,7 +99,7 @@ class SessionsController : public QObject {
   QString search_;
   std::string chosen_;  ///< id of the chosen session
   texts::Phrase said_;
-  bool busy_ = false, failed_ = false;
+  bool busy_ = false, failed_ = false, unreadable_ = false;
   texts::Phrase consequence_;
   std::string withdrawing_;  ///< participant whose withdrawal `consequence_` describes
   ReportModel report_;

@@ -12,13 +12,21 @@ Item {
     property bool armed: true
     property bool leftHanded: false
     readonly property PageModel page: bridge.page
+    /// The height of the buttons: as large as a finger needs, if the question and the surface keep their room.
+    readonly property real target: Math.max(root.theme.targetLeast, Math.min(root.theme.targetMin, Math.round(0.3 * height)))
     readonly property real span: page.sliderMax - page.sliderMin
     /// True if the tones have ended, so that a setting made now could not be felt.
     readonly property bool silent: page.answersOpen
     readonly property real step: page.sliderStep > 0 ? page.sliderStep : span / 100
     property real value: page.slider
+    /// True once the participant has touched the slider or a button of it. There is nothing to confirm before.
+    property bool touched: false
+    onVisibleChanged: touched = false
+    readonly property int trial: page.trialsDone
+    onTrialChanged: touched = false
 
     function moveTo(wanted: real) {
+        touched = true
         const steps = Math.round((wanted - page.sliderMin) / step)
         const next = Math.max(page.sliderMin, Math.min(page.sliderMax, page.sliderMin + steps * step))
         if (next === value) return
@@ -34,7 +42,8 @@ Item {
     SurfaceDrawing {
         id: surface
         anchors { left: parent.left; right: parent.right; top: parent.top }
-        height: 0.3 * parent.height
+        // gives way to the question
+        height: Math.round(Math.max(7 * root.theme.unit, Math.min(0.3 * parent.height, slider.y - Math.ceil(asked.height) - 2 * root.theme.unit)))
         lengthMm: root.page.lengthMm
         wideHalfWidthMm: root.page.wideHalfWidthMm
         narrowHalfWidthMm: root.page.narrowHalfWidthMm
@@ -46,13 +55,23 @@ Item {
         paper: root.theme.paper
         accent: root.theme.action
     }
+    // the question at the smallest size, which tells how much room it needs
     PlainText {
+        id: asked
+        visible: false
+        width: parent.width
+        text: question.text
+        font { pixelSize: root.theme.textLeast; weight: Font.Medium }
+        wrapMode: Text.Wrap
+    }
+    PlainText {
+        id: question
         anchors { left: parent.left; right: parent.right; top: surface.bottom; bottom: slider.top; bottomMargin: root.theme.unit }
         text: root.silent ? root.texts.pressDone : root.texts.phrased(root.page.text)
         color: root.theme.ink
         font { pixelSize: 1.1 * root.theme.textBody; weight: Font.Medium }
         fontSizeMode: Text.Fit
-        minimumPixelSize: root.theme.textSmall
+        minimumPixelSize: root.theme.textLeast
         wrapMode: Text.Wrap
         horizontalAlignment: Text.AlignHCenter
         verticalAlignment: Text.AlignVCenter
@@ -65,10 +84,10 @@ Item {
         readonly property real knob: Math.max(root.theme.targetMin, 9 * root.theme.unit)
         anchors { left: parent.left; right: parent.right; bottom: controls.top; bottomMargin: root.theme.unit }
         opacity: root.silent ? 0.35 : 1
-        height: Math.max(0.6 * root.theme.targetMin, 6 * root.theme.unit)
+        height: Math.round(Math.max(0.6 * root.target, 6 * root.theme.unit))
         Rectangle {
             anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter }
-            height: 1.4 * root.theme.unit
+            height: Math.round(1.4 * root.theme.unit)
             radius: height / 2
             color: root.theme.line
         }
@@ -102,7 +121,8 @@ Item {
             ActionButton {
                 objectName: "stepDown"
                 label: root.texts.text("step_down")
-                height: root.theme.targetMin
+                height: root.target
+                width: root.target
                 enabled: !root.silent
                 theme: root.theme
                 primary: false
@@ -113,7 +133,8 @@ Item {
             ActionButton {
                 objectName: "stepUp"
                 label: root.texts.text("step_up")
-                height: root.theme.targetMin
+                height: root.target
+                width: root.target
                 enabled: !root.silent
                 theme: root.theme
                 primary: false
@@ -124,9 +145,10 @@ Item {
         }
         ActionButton {
             objectName: "proceed"
-            height: root.theme.targetMin
-            width: Math.max(implicitWidth, 22 * root.theme.unit)
+            height: root.target
+            width: Math.min(Math.max(implicitWidth, 22 * root.theme.unit), root.width - 2 * (root.target + root.theme.targetGap))
             theme: root.theme
+            enabled: root.touched || root.silent
             armed: root.armed
             text: root.texts.done
             onActivated: root.bridge.next()

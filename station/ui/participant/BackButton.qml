@@ -10,6 +10,6 @@ ActionButton {
     primary: false
     quiet: true
     size: theme.textSmall
-    implicitHeight: Math.max(9 * theme.pixelsPerMm, 5 * theme.unit)
+    implicitHeight: Math.ceil(Math.max(9 * theme.pixelsPerMm, 5 * theme.unit))
     text: texts.back
 }

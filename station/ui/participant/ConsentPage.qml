@@ -33,33 +33,21 @@ Item {
             root.refused = false
         }
     }
-    FittedColumn {
+    Statement {
         theme: root.theme
+        texts: root.texts
         anchors { left: parent.left; right: parent.right; top: back.bottom; bottom: buttons.top; bottomMargin: root.theme.unit }
-        spacing: 2 * root.theme.unit
-        PlainText {
-            width: parent.width
-            text: root.refused ? root.texts.declinedTitle : root.texts.consentTitle
-            color: root.theme.ink
-            font { pixelSize: root.theme.textTitle; weight: Font.Bold }
-            horizontalAlignment: Text.AlignHCenter
-            wrapMode: Text.Wrap
-        }
-        PlainText {
-            objectName: "consentVersion"
-            width: parent.width
-            text: root.refused ? root.texts.declinedText : root.texts.consentText.arg(root.version)
-            color: root.theme.ink
-            font.pixelSize: 1.1 * root.theme.textBody
-            lineHeight: 1.25
-            horizontalAlignment: Text.AlignHCenter
-            wrapMode: Text.Wrap
-        }
+        title: root.refused ? root.texts.declinedTitle : root.texts.consentTitle
+        text: root.refused ? root.texts.declinedText : root.texts.fill("consent_text", root.version)
+        size: Math.round(1.1 * root.theme.textBody)
+        textName: "consentVersion"
+        armed: root.armed && !arming.running
     }
-    Row {
+    ButtonGroup {
         id: buttons
+        theme: root.theme
+        room: root.width
         anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom }
-        spacing: root.theme.targetGap
         ActionButton {
             objectName: "declined"
             width: Math.max(implicitWidth, 18 * root.theme.unit)

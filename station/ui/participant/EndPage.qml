@@ -17,38 +17,24 @@ Item {
     signal closed()
     signal reportWanted()
 
-    FittedColumn {
+    Statement {
         theme: root.theme
+        texts: root.texts
         anchors { left: parent.left; right: parent.right; top: parent.top; bottom: buttons.top; bottomMargin: root.theme.unit }
-        spacing: 1.2 * root.theme.unit
-        Glyph {
-            anchors.horizontalCenter: parent.horizontalCenter
-            height: 12 * root.theme.unit
-            name: "tick"
-            color: root.theme.right
-        }
-        PlainText {
-            width: parent.width
-            text: root.page.title !== "" ? root.texts.phrased(root.page.title) : root.texts.thanks
-            color: root.theme.ink
-            font { pixelSize: root.theme.textTitle; weight: Font.Bold }
-            horizontalAlignment: Text.AlignHCenter
-            wrapMode: Text.Wrap
-        }
-        PlainText {
-            width: parent.width
-            text: root.page.text !== "" ? root.texts.phrased(root.page.text)
-                : root.page.resumable ? root.texts.stoppedText : root.texts.thanksText
-            color: root.theme.quiet
-            font.pixelSize: root.theme.textBody
-            horizontalAlignment: Text.AlignHCenter
-            wrapMode: Text.Wrap
-        }
+        glyph: "tick"
+        glyphHeight: 12 * root.theme.unit
+        tint: root.theme.right
+        title: root.page.title !== "" ? root.texts.phrased(root.page.title) : root.texts.thanks
+        text: root.page.text !== "" ? root.texts.phrased(root.page.text)
+            : root.page.resumable ? root.texts.stoppedText : root.texts.thanksText
+        color: root.theme.quiet
+        armed: root.armed
     }
-    Row {
+    ButtonGroup {
         id: buttons
+        theme: root.theme
+        room: root.width
         anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom }
-        spacing: root.theme.targetGap
         ActionButton {
             objectName: "results"
             theme: root.theme
@@ -90,7 +76,7 @@ Item {
         }
         Grid {
             id: numbers
-            anchors { left: parent.left; right: parent.right; top: heading.bottom; topMargin: 1.6 * root.theme.unit }
+            anchors { left: parent.left; right: parent.right; top: heading.bottom; topMargin: Math.round(1.6 * root.theme.unit) }
             columns: 2
             columnSpacing: 4 * root.theme.unit
             rowSpacing: root.theme.unit

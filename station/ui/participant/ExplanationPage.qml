@@ -29,16 +29,15 @@ Item {
             fillMode: Image.PreserveAspectFit
             mirror: false
         }
-        PlainText {
+        PagedText {
+            id: words
+            theme: root.theme
+            texts: root.texts
+            armed: root.armed
             anchors { left: parent.left; right: parent.right; top: picture.bottom; bottom: parent.bottom; topMargin: root.illustrated ? root.theme.unit : 0 }
             text: root.page.playing ? root.texts.slideNow : root.texts.phrased(root.page.text)
-            color: root.theme.ink
-            font { pixelSize: (root.page.playing ? 1.5 : 1.1) * root.theme.textBody; weight: root.page.playing ? Font.Bold : Font.Normal }
-            fontSizeMode: Text.Fit
-            minimumPixelSize: root.theme.textSmall
-            wrapMode: Text.Wrap
-            horizontalAlignment: Text.AlignHCenter
-            verticalAlignment: Text.AlignVCenter
+            size: Math.round((root.page.playing ? 1.5 : 1.1) * root.theme.textBody)
+            weight: root.page.playing ? Font.Bold : Font.Normal
         }
     }
     Row {
@@ -53,7 +52,7 @@ Item {
                 required property int index
                 objectName: "example" + index
                 width: Math.min(examples.share, 34 * root.theme.unit)
-                height: root.theme.targetMin
+                height: Math.max(root.theme.targetLeast, Math.min(root.theme.targetMin, Math.round(0.3 * root.height)))
                 theme: root.theme
                 primary: false
                 enabled: !root.page.playing
@@ -67,11 +66,19 @@ Item {
         id: go
         objectName: "proceed"
         anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom }
-        width: Math.max(implicitWidth, 26 * root.theme.unit)
+        width: Math.min(Math.max(implicitWidth, 26 * root.theme.unit), root.width - 2 * root.theme.targetMin - 4 * root.theme.unit)
         theme: root.theme
         enabled: !root.page.playing
         armed: root.armed
         text: root.texts.proceed
-        onActivated: root.bridge.next()
+        onActivated: if (!words.turn()) root.bridge.next()
+    }
+    TextTurner {
+        theme: root.theme
+        texts: root.texts
+        of: words
+        armed: root.armed
+        between: go.width
+        anchors { left: parent.left; right: parent.right; verticalCenter: go.verticalCenter }
     }
 }

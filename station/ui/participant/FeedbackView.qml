@@ -21,7 +21,7 @@ Column {
         anchors.horizontalCenter: parent.horizontalCenter
         width: 15 * root.theme.unit
         height: width
-        radius: root.bad ? 2.5 * root.theme.unit : width / 2
+        radius: root.bad ? Math.round(2.5 * root.theme.unit) : width / 2
         color: root.good || root.bad ? root.tint : "transparent"
         border { color: root.tint; width: root.theme.stroke }
         Glyph {

@@ -12,7 +12,7 @@ Item {
     required property list<double> bar
     property bool frozen: false
     readonly property bool known: bar.length === 3 && bar[0] >= 0 && !frozen
-    implicitHeight: name.height + 0.4 * theme.unit + track.height
+    implicitHeight: name.height + Math.round(0.4 * theme.unit) + track.height
 
     PlainText {
         id: name
@@ -27,7 +27,7 @@ Item {
         id: track
         LayoutMirroring.enabled: false
         anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
-        height: Math.max(4 * root.theme.pixelsPerMm, 2.6 * root.theme.unit)
+        height: Math.round(Math.max(4 * root.theme.pixelsPerMm, 2.6 * root.theme.unit))
         Rectangle {
             anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter }
             height: root.theme.stroke
@@ -38,7 +38,7 @@ Item {
             x: root.bar.length === 3 ? root.bar[1] * parent.width : 0
             width: root.bar.length === 3 ? (root.bar[2] - root.bar[1]) * parent.width : 0
             height: parent.height
-            radius: 0.4 * root.theme.unit
+            radius: Math.round(0.4 * root.theme.unit)
             color: root.theme.raised
             border { color: root.theme.ink; width: root.theme.stroke }
         }
@@ -48,7 +48,7 @@ Item {
             readonly property real share: root.bar.length === 3 ? root.bar[0] : 0
             x: Math.max(0, Math.min(parent.width - width, share * parent.width - width / 2))
             y: 2 * root.theme.stroke
-            width: 1.6 * root.theme.unit
+            width: Math.round(1.6 * root.theme.unit)
             height: parent.height - 4 * root.theme.stroke
             color: root.theme.action
         }

@@ -16,7 +16,7 @@ Item {
         theme: root.theme
         texts: root.texts
         instruction: root.page.instruction
-        size: root.theme.textTitle
+        size: Math.round(0.8 * root.theme.textTitle)
     }
     PlainText {
         id: title
@@ -28,26 +28,25 @@ Item {
         wrapMode: Text.Wrap
         horizontalAlignment: Text.AlignHCenter
     }
-    PlainText {
+    PagedText {
+        id: words
+        theme: root.theme
+        texts: root.texts
+        armed: root.armed
         anchors {
             left: parent.left; right: parent.right
             top: badge.visible ? badge.bottom : title.bottom; topMargin: root.theme.unit
             bottom: surface.top; bottomMargin: root.theme.unit
         }
         text: root.texts.phrased(root.page.text)
-        color: root.theme.ink
-        font.pixelSize: root.theme.textBody
-        fontSizeMode: Text.Fit
-        minimumPixelSize: root.theme.textSmall
-        wrapMode: Text.Wrap
-        horizontalAlignment: Text.AlignHCenter
-        verticalAlignment: Text.AlignVCenter
     }
     SurfaceDrawing {
         id: surface
         visible: root.page.lengthMm > 0
-        anchors { left: parent.left; right: parent.right; bottom: go.top; bottomMargin: 2 * root.theme.unit }
-        height: 0.32 * parent.height
+        anchors { left: parent.left; right: parent.right; bottom: go.top; bottomMargin: root.theme.unit }
+        // gives way to a text that does not fit beside it
+        height: Math.round(Math.max(7 * root.theme.unit, Math.min(0.32 * parent.height, parent.height - go.height - heading - words.natural - 4 * root.theme.unit)))
+        readonly property real heading: badge.visible ? badge.height : title.visible ? title.height : 0
         lengthMm: root.page.lengthMm
         wideHalfWidthMm: root.page.wideHalfWidthMm
         narrowHalfWidthMm: root.page.narrowHalfWidthMm
@@ -64,10 +63,18 @@ Item {
         id: go
         objectName: "proceed"
         anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom }
-        width: Math.max(implicitWidth, 26 * root.theme.unit)
+        width: Math.min(Math.max(implicitWidth, 26 * root.theme.unit), root.width - 2 * root.theme.targetMin - 4 * root.theme.unit)
         theme: root.theme
         armed: root.armed
         text: root.texts.proceed
-        onActivated: root.bridge.next()
+        onActivated: if (!words.turn()) root.bridge.next()
+    }
+    TextTurner {
+        theme: root.theme
+        texts: root.texts
+        of: words
+        armed: root.armed
+        between: go.width
+        anchors { left: parent.left; right: parent.right; verticalCenter: go.verticalCenter }
     }
 }

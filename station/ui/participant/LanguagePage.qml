@@ -13,8 +13,8 @@ Item {
 
     readonly property int columns: names.length > 3 ? 2 : 1
     readonly property int rows: Math.ceil(names.length / columns)
-    readonly property real gap: theme.targetGap * 0.7
-    readonly property real cell: Math.min(10 * theme.unit, (height - sign.height - (rows + 1) * gap) / rows)
+    readonly property real gap: Math.round(theme.targetGap * 0.7)
+    readonly property real cell: Math.floor(Math.min(Math.max(10 * theme.unit, 12 * theme.pixelsPerMm), (height - sign.height - (rows + 1) * gap) / rows))
 
     BackButton {
         theme: root.theme
@@ -25,7 +25,7 @@ Item {
     Row {
         id: sign
         anchors { horizontalCenter: parent.horizontalCenter; top: parent.top; topMargin: root.theme.unit }
-        spacing: 1.5 * root.theme.unit
+        spacing: Math.round(1.5 * root.theme.unit)
         Repeater {
             model: ["A", "あ", "Ä"]
             PlainText {

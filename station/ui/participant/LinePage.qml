@@ -29,7 +29,7 @@ Item {
         color: root.theme.ink
         font { pixelSize: 1.15 * root.theme.textBody; weight: Font.Medium }
         fontSizeMode: Text.Fit
-        minimumPixelSize: root.theme.textSmall
+        minimumPixelSize: root.theme.textLeast
         wrapMode: Text.Wrap
         horizontalAlignment: Text.AlignHCenter
         verticalAlignment: Text.AlignVCenter
@@ -43,12 +43,16 @@ Item {
         /// Position of an anchor (a labelled point of the line), in pixels from the left.
         function place(index: int): real { return line.inset + (root.page.anchorPlaces[index] ?? 0) * (width - 2 * line.inset) }
         anchors { left: parent.left; right: parent.right; bottom: line.top }
-        height: 3.4 * root.theme.textBody
+        /// On a narrow screen, every second text is in a row above the others, so that each has twice the width.
+        readonly property bool staggered: count > 2 && root.height > root.width
+        height: (staggered ? 2 : 1) * row
+        readonly property real row: Math.round(Math.min(3.4 * root.theme.textBody, 0.25 * root.height))
+        readonly property int step: staggered ? 2 : 1
         /// Returns the border between the space for the text of this anchor and that for the text of the next
         /// one. The texts at the two ends may extend to one side only, so they get more space.
         function border(index: int): real {
             const share = count < 3 ? 0.5 : index === 0 ? 0.6 : index === count - 2 ? 0.4 : 0.5
-            return (1 - share) * place(index) + share * place(index + 1)
+            return (1 - share) * place(index) + share * place(index + step)
         }
         Repeater {
             model: labels.count
@@ -57,17 +61,19 @@ Item {
                 readonly property real at: labels.place(index)
                 readonly property bool first: index === 0
                 readonly property bool last: index === labels.count - 1
-                readonly property real start: first ? 0 : labels.border(index - 1) + root.theme.unit / 4
-                readonly property real end: last ? labels.width : labels.border(index) - root.theme.unit / 4
+                readonly property bool raised: labels.staggered && index % 2 === 1 && !last
+                readonly property real start: first || index < labels.step ? 0 : labels.border(index - labels.step) + root.theme.unit / 4
+                readonly property real end: last || index + labels.step >= labels.count ? labels.width : labels.border(index) - root.theme.unit / 4
                 readonly property real half: Math.min(at - start, end - at)
                 x: first || last ? start : at - half
                 width: first || last ? end - start : 2 * half
-                height: labels.height
+                y: raised ? 0 : labels.height - labels.row
+                height: labels.row
                 text: root.texts.phrased(root.page.anchorTexts[index] ?? "")
                 color: root.theme.ink
                 font.pixelSize: root.theme.textBody
                 fontSizeMode: Text.Fit
-                minimumPixelSize: root.theme.textSmall
+                minimumPixelSize: root.theme.textLeast
                 wrapMode: Text.Wrap
                 horizontalAlignment: first ? Text.AlignLeft : last ? Text.AlignRight : Text.AlignHCenter
                 verticalAlignment: Text.AlignBottom
@@ -81,7 +87,7 @@ Item {
         Accessible.name: root.page.text
         readonly property real inset: 2 * root.theme.unit
         anchors { left: parent.left; right: parent.right; bottom: confirm.top; bottomMargin: root.theme.unit }
-        height: root.theme.targetMin
+        height: Math.min(root.theme.targetMin, Math.max(Math.round(10 * root.theme.pixelsPerMm), Math.round(0.22 * root.height)))
         Rectangle {
             anchors { left: parent.left; right: parent.right; margins: line.inset; verticalCenter: parent.verticalCenter }
             height: root.theme.stroke
@@ -101,7 +107,7 @@ Item {
         Rectangle {
             objectName: "mark"
             visible: root.mark >= 0
-            width: 1.2 * root.theme.unit
+            width: Math.round(1.2 * root.theme.unit)
             height: 0.8 * line.height
             radius: width / 2
             x: line.inset + root.mark * (line.width - 2 * line.inset) - width / 2
@@ -121,7 +127,7 @@ Item {
         objectName: "proceed"
         visible: root.mark >= 0
         anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom }
-        height: root.theme.targetMin
+        height: line.height
         width: Math.max(implicitWidth, 22 * root.theme.unit)
         theme: root.theme
         armed: root.armed

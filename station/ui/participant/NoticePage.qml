@@ -32,9 +32,9 @@ Item {
         visible: root.explained
         anchors { horizontalCenter: parent.horizontalCenter; top: parent.top }
         height: visible ? implicitHeight : 0
-        spacing: 1.4 * root.theme.unit
+        spacing: Math.round(1.4 * root.theme.unit)
         Glyph {
-            height: 4.6 * root.theme.unit
+            height: Math.round(4.6 * root.theme.unit)
             anchors.verticalCenter: parent.verticalCenter
             name: "alert"
             color: root.theme.wrong
@@ -42,53 +42,28 @@ Item {
         PlainText {
             objectName: "headline"
             anchors.verticalCenter: parent.verticalCenter
+            width: Math.min(implicitWidth, root.width - Math.round(6.6 * root.theme.unit))
+            wrapMode: Text.Wrap
             text: root.page.title !== "" ? root.texts.phrased(root.page.title) : root.texts.faultTitle
             color: root.theme.ink
-            font { pixelSize: 0.8 * root.theme.textTitle; weight: Font.Bold }
+            font { pixelSize: Math.max(0.8 * root.theme.textTitle, root.theme.textLeast); weight: Font.Bold }
         }
     }
-    FittedColumn {
+    Statement {
         theme: root.theme
+        texts: root.texts
         visible: !root.explained
         anchors { left: parent.left; right: parent.right; top: parent.top; bottom: buttons.top; bottomMargin: root.theme.unit }
-        spacing: 1.6 * root.theme.unit
-        Glyph {
-            anchors.horizontalCenter: parent.horizontalCenter
-            height: 10 * root.theme.unit
-            name: root.fault ? "alert" : "bars"
-            color: root.fault ? root.theme.wrong : root.theme.ink
-            weight: 0.08
-        }
-        PlainText {
-            width: parent.width
-            text: root.page.title !== "" ? root.texts.phrased(root.page.title) : root.tooEarly !== "" ? root.texts.declinedTitle
-                : root.failed ? root.texts.failedTitle : root.fault ? root.texts.faultTitle : root.texts.paused
-            color: root.theme.ink
-            font { pixelSize: 0.85 * root.theme.textTitle; weight: Font.Bold }
-            horizontalAlignment: Text.AlignHCenter
-            wrapMode: Text.Wrap
-        }
-        PlainText {
-            width: parent.width
-            objectName: "notice"
-            text: root.tooEarly !== "" ? root.tooEarly : root.page.text !== "" ? root.texts.phrased(root.page.text) : root.texts.pausedText
-            color: root.theme.quiet
-            font.pixelSize: root.theme.textBody
-            lineHeight: 1.2
-            horizontalAlignment: Text.AlignHCenter
-            wrapMode: Text.Wrap
-            maximumLineCount: 6
-            elide: Text.ElideRight
-        }
-        PlainText {
-            width: parent.width
-            visible: root.failed && root.tooEarly === ""
-            text: root.texts.failedText
-            color: root.theme.ink
-            font { pixelSize: root.theme.textBody; weight: Font.DemiBold }
-            horizontalAlignment: Text.AlignHCenter
-            wrapMode: Text.Wrap
-        }
+        glyph: root.fault ? "alert" : "bars"
+        tint: root.fault ? root.theme.wrong : root.theme.ink
+        title: root.page.title !== "" ? root.texts.phrased(root.page.title) : root.tooEarly !== "" ? root.texts.declinedTitle
+            : root.failed ? root.texts.failedTitle : root.fault ? root.texts.faultTitle : root.texts.paused
+        titleSize: Math.round(Math.max(0.85 * root.theme.textTitle, root.theme.textLeast))
+        textName: "notice"
+        text: root.tooEarly !== "" ? root.tooEarly : root.failed ? root.texts.failedText
+            : root.page.text !== "" ? root.texts.phrased(root.page.text) : root.texts.pausedText
+        color: root.theme.quiet
+        armed: root.armed
     }
 
     // Symbol, heading and text side by side, so that each can be found at a glance. On a tall screen the text is
@@ -100,8 +75,8 @@ Item {
         property string says
         property color tint: root.theme.ink
         readonly property real needed: label.implicitWidth
-        readonly property real textSize: root.tall ? 1.2 * root.theme.textBody : Math.max(root.theme.textSmall, 0.84 * root.theme.textBody)
-        readonly property real gap: 1.2 * root.theme.unit
+        readonly property real textSize: lines.textSize
+        readonly property real gap: Math.round(1.2 * root.theme.unit)
         width: parent.width
         implicitHeight: Math.max(sign.height, told.y + told.height)
         Glyph {
@@ -116,18 +91,19 @@ Item {
         PlainText {
             id: label
             objectName: "heading"
+            visible: !lines.signsOnly
             anchors { left: sign.right; leftMargin: line.gap; top: parent.top }
             width: root.tall ? implicitWidth : lines.headingWidth
             text: line.heading
             color: line.tint
-            font { pixelSize: Math.max(root.theme.textSmall, 0.9 * line.textSize); weight: Font.Bold }
+            font { pixelSize: Math.max(root.theme.textLeast, 0.9 * line.textSize); weight: Font.Bold }
         }
         PlainText {
             id: told
             objectName: "told"
             anchors {
                 left: root.tall ? label.left : label.right; leftMargin: root.tall ? 0 : line.gap; right: parent.right
-                top: root.tall ? label.bottom : parent.top; topMargin: root.tall ? 0.4 * root.theme.unit : 0
+                top: root.tall ? label.bottom : parent.top; topMargin: root.tall ? Math.round(0.4 * root.theme.unit) : 0
             }
             text: line.says
             color: root.theme.ink
@@ -139,7 +115,7 @@ Item {
         visible: root.explained
         anchors {
             left: parent.left; right: parent.right; top: banner.bottom; topMargin: root.theme.unit
-            bottom: buttons.top; bottomMargin: 1.2 * root.theme.unit
+            bottom: buttons.top; bottomMargin: Math.round(1.2 * root.theme.unit)
         }
         radius: root.theme.radius
         color: root.theme.raised
@@ -147,10 +123,23 @@ Item {
         Column {
             id: lines
             objectName: "explanation"
-            anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: 1.8 * root.theme.unit }
-            spacing: (root.tall ? 2.4 : 0.8) * root.theme.unit
-            scale: Math.min(1, (parent.height - root.theme.unit) / Math.max(1, implicitHeight))
-            readonly property real headingWidth: Math.max(happened.needed, safe.needed, toDo.needed) + 0.8 * root.theme.unit
+            anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: Math.round(1.8 * root.theme.unit) }
+            spacing: Math.round((signsOnly ? 0.2 : root.tall && !small ? 2.4 : 0.8) * root.theme.unit)
+            /// The size of the texts: as large as the place allows.
+            readonly property real textSize: small ? root.theme.textLeast : Math.round(root.tall ? 1.2 * root.theme.textBody : Math.max(root.theme.textSmall, 0.84 * root.theme.textBody))
+            property bool small: false
+            /// True if there is only room for the symbols before the texts.
+            property bool signsOnly: false
+            function settle() {
+                small = false
+                signsOnly = false
+                small = implicitHeight > parent.height - root.theme.unit
+                signsOnly = small && implicitHeight > parent.height - root.theme.unit
+            }
+            readonly property string told: [root.armable, root.page.text, root.page.safe, root.page.toDo, root.texts.language, root.width, parent.height].join()
+            onToldChanged: settle()
+            Component.onCompleted: settle()
+            readonly property real headingWidth: signsOnly ? 0 : Math.max(happened.needed, safe.needed, toDo.needed) + Math.round(0.8 * root.theme.unit)
             Line {
                 id: happened
                 glyph: "alert"
@@ -172,22 +161,23 @@ Item {
                 says: root.texts.phrased(root.page.toDo)
                 tint: root.theme.action
             }
+            // What a device or the system reports is for the operator, who has typed the code (or reads it in the live view).
             PlainText {
-                visible: root.page.detail !== ""
+                objectName: "detail"
+                visible: root.armable && root.page.detail !== ""
                 width: parent.width
                 text: root.page.detail
                 color: root.theme.quiet
-                font.pixelSize: (root.tall ? 1.1 : 0.9) * root.theme.textSmall
+                font.pixelSize: root.theme.textLeast
                 wrapMode: Text.Wrap
-                maximumLineCount: root.tall ? 4 : 2
-                elide: Text.ElideRight
             }
         }
     }
-    Row {
+    ButtonGroup {
         id: buttons
+        theme: root.theme
+        room: root.width
         anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom }
-        spacing: root.theme.targetGap
         ActionButton {
             objectName: "end"
             visible: !root.failed
@@ -227,6 +217,7 @@ Item {
         id: ending
         anchors.fill: parent
         theme: root.theme
+        texts: root.texts
         title: root.texts.reallyEnd
         text: root.page.unsaved ? root.texts.endUnsaved : root.texts.endText
         keepText: root.texts.keepGoing

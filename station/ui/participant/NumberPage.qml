@@ -37,7 +37,7 @@ Item {
         color: root.theme.ink
         font { pixelSize: 1.1 * root.theme.textBody; weight: Font.Medium }
         fontSizeMode: Text.Fit
-        minimumPixelSize: root.theme.textSmall
+        minimumPixelSize: root.theme.textLeast
         wrapMode: Text.Wrap
         horizontalAlignment: Text.AlignHCenter
         verticalAlignment: Text.AlignVCenter
@@ -47,11 +47,11 @@ Item {
         LayoutMirroring.enabled: false
         LayoutMirroring.childrenInherit: true
         anchors { bottom: pad.top; bottomMargin: root.theme.unit }
-        x: root.tall ? (root.width - width) / 2 : pad.x + pad.width - width
+        x: root.tall ? Math.round((root.width - width) / 2) : pad.x + pad.width - width
         spacing: root.theme.targetGap
-        height: root.theme.targetMin
+        height: pad.key
         Rectangle {
-            width: Math.min(24 * root.theme.unit, root.width - done.width - parent.spacing)
+            width: Math.min((root.theme.inches < 6 ? 15 : 24) * root.theme.unit, root.width - done.width - parent.spacing)
             height: parent.height
             radius: root.theme.radius
             color: root.theme.raised
@@ -63,7 +63,7 @@ Item {
                 color: root.theme.ink
                 font { pixelSize: root.theme.textHuge; weight: Font.DemiBold }
                 fontSizeMode: Text.Fit
-                minimumPixelSize: root.theme.textSmall
+                minimumPixelSize: root.theme.textLeast
                 horizontalAlignment: Text.AlignRight
                 verticalAlignment: Text.AlignVCenter
             }
@@ -85,7 +85,10 @@ Item {
         id: pad
         LayoutMirroring.enabled: false
         readonly property real gap: Math.min(root.theme.targetGap, root.theme.unit)
-        readonly property real key: Math.max(root.theme.targetMin, 0.14 * root.height)
+        readonly property int lines: 12 / columns
+        /// As large as a finger needs, if the question keeps three lines beside or above the keys.
+        readonly property real most: Math.floor((root.height - (root.tall ? 3.6 * root.theme.textLeast + root.theme.unit : 0) - root.theme.unit) / (lines + 1) - gap)
+        readonly property real key: Math.min(Math.max(root.theme.targetMin, Math.round(0.14 * root.height)), Math.max(root.theme.targetLeast, most))
         anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom }
         columns: root.tall ? 3 : 6
         spacing: gap
@@ -97,7 +100,7 @@ Item {
                 objectName: "key" + key
                 opacity: enabled ? 1 : 0
                 enabled: key !== "." || root.page.valueDecimals > 0
-                width: Math.max(height, Math.min(1.6 * height, (root.width - (pad.columns - 1) * pad.gap) / pad.columns))
+                width: Math.floor(Math.min(Math.max(root.theme.targetMin, 1.6 * height), (root.width - (pad.columns - 1) * pad.gap) / pad.columns))
                 height: pad.key
                 theme: root.theme
                 primary: false

@@ -12,7 +12,7 @@ Item {
     /// time for which the block has been moving (s)
     readonly property double seconds: frames.elapsedTime
     readonly property double travel: Math.max(1, width - block.width)
-    implicitHeight: Math.max(3 * theme.pixelsPerMm, 2 * theme.unit)
+    implicitHeight: Math.round(Math.max(3 * theme.pixelsPerMm, 2 * theme.unit))
     onRunningChanged: frames.reset()
 
     /// The distance of the block from the left end, in pixels, after this time.
@@ -33,7 +33,7 @@ Item {
         x: root.placeAfter(root.seconds)
         width: 3 * root.theme.unit
         height: parent.height
-        radius: 0.4 * root.theme.unit
+        radius: Math.round(0.4 * root.theme.unit)
         color: root.theme.ink
     }
     FrameAnimation {

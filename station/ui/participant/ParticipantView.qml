@@ -109,7 +109,7 @@ Rectangle {
             visible: root.mayPause
             anchors.verticalCenter: parent.verticalCenter
             x: root.leftHanded ? 0 : parent.width - width
-            implicitHeight: Math.max(9 * theme.pixelsPerMm, 5 * theme.unit)
+            implicitHeight: Math.ceil(Math.max(9 * theme.pixelsPerMm, 5 * theme.unit))
             theme: theme
             primary: false
             quiet: true
@@ -126,7 +126,7 @@ Rectangle {
         anchors {
             left: parent.left; right: parent.right; top: header.bottom; bottom: progress.top
             leftMargin: theme.margin; rightMargin: theme.margin
-            topMargin: theme.unit; bottomMargin: 1.2 * theme.unit
+            topMargin: theme.unit; bottomMargin: Math.round(1.2 * theme.unit)
         }
         TrialPage {
             objectName: "trialPage"
@@ -238,6 +238,11 @@ Rectangle {
             leftMargin: theme.margin; rightMargin: theme.margin; bottomMargin: frame.edge + theme.unit
         }
         theme: theme
+        texts: texts
+        // not during a trial, in which nothing may change
+        minutes: root.inTrial && root.kind !== PageModel.Interval ? shownMinutes : root.page.minutesLeft
+        property int shownMinutes: -1
+        onMinutesChanged: shownMinutes = minutes
         done: root.page.trialsDone
         total: root.page.trialsTotal
     }

@@ -43,7 +43,8 @@ Item {
     AnswerRow {
         id: answers
         anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
-        height: Math.min(Math.max(leastHeight, 0.3 * parent.height), rows * 18 * root.theme.unit)
+        height: Math.max(leastHeight, Math.min(Math.round(0.3 * parent.height), rows * 18 * root.theme.unit))
+        most: Math.round(0.75 * parent.height)
         theme: root.theme
         answers: root.page.answers
         captions: root.page.captions
@@ -55,7 +56,7 @@ Item {
         anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
         height: answers.height
         bridge: root.bridge
-        row: answers
+        row: answers.buttons
         count: root.page.answers.length
         columns: answers.columns
         gap: answers.gap

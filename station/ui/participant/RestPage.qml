@@ -26,33 +26,22 @@ Item {
         onTriggered: --root.secondsLeft
     }
 
-    FittedColumn {
+    Statement {
         theme: root.theme
+        texts: root.texts
         anchors { left: parent.left; right: parent.right; bottom: go.top; top: parent.top; bottomMargin: root.theme.unit }
-        spacing: 1.5 * root.theme.unit
-        PlainText {
-            width: parent.width
-            text: root.page.title !== "" ? root.texts.phrased(root.page.title) : root.texts.breakTitle
-            color: root.theme.ink
-            font { pixelSize: root.theme.textTitle; weight: Font.Bold }
-            horizontalAlignment: Text.AlignHCenter
-            wrapMode: Text.Wrap
-        }
-        PlainText {
-            width: parent.width
-            text: root.secondsLeft > 0 ? root.texts.breakRunning : root.texts.breakOver
-            color: root.theme.quiet
-            font.pixelSize: 1.1 * root.theme.textBody
-            horizontalAlignment: Text.AlignHCenter
-            wrapMode: Text.Wrap
-        }
+        title: root.page.title !== "" ? root.texts.phrased(root.page.title) : root.texts.breakTitle
+        text: root.secondsLeft > 0 ? root.texts.breakRunning : root.texts.breakOver
+        size: Math.round(1.1 * root.theme.textBody)
+        color: root.theme.quiet
+        armed: root.armed
         PlainText {
             objectName: "remaining"
             width: parent.width
             visible: root.secondsLeft > 0
             text: root.secondsLeft + " " + root.texts.seconds
             color: root.theme.ink
-            font { pixelSize: 1.6 * root.theme.textHuge; weight: Font.DemiBold }
+            font { pixelSize: Math.min(1.6 * root.theme.textHuge, Math.round(0.16 * root.height)); weight: Font.DemiBold }
             horizontalAlignment: Text.AlignHCenter
         }
     }

@@ -13,7 +13,9 @@ Item {
     readonly property bool pilot: runMode === "pilot"
     readonly property color background: pilot ? theme.warning : theme.simulated
     readonly property color foreground: pilot ? theme.warningText : theme.actionText
-    readonly property real band: shown ? 4 * theme.unit : 0
+    readonly property real band: shown ? Math.round(Math.max(4 * theme.unit, words.implicitHeight + Math.round(0.8 * theme.unit))) : 0
+    readonly property real gap: Math.round(1.2 * theme.unit)
+    readonly property real letters: Math.max(2 * theme.unit, theme.textLeast)
     readonly property real edge: shown ? theme.unit : 0
 
     visible: shown
@@ -28,20 +30,25 @@ Item {
         width: parent.width
         height: root.band
         color: root.background
-        Row {
+        Grid {
+            id: words
             anchors.centerIn: parent
-            spacing: 1.2 * root.theme.unit
+            // on a narrow screen below each other
+            columns: first.implicitWidth + second.implicitWidth + root.gap <= root.width - 2 * root.theme.unit ? 2 : 1
+            columnSpacing: root.gap
+            horizontalItemAlignment: Grid.AlignHCenter
+            verticalItemAlignment: Grid.AlignVCenter
             PlainText {
+                id: first
                 text: root.pilot ? root.texts.pilot : root.texts.simulated
                 color: root.foreground
-                font { pixelSize: 2.2 * root.theme.unit; weight: Font.ExtraBold; letterSpacing: 0.15 * root.theme.unit }
-                anchors.verticalCenter: parent.verticalCenter
+                font { pixelSize: root.letters; weight: Font.ExtraBold; letterSpacing: Math.round(0.15 * root.theme.unit) }
             }
             PlainText {
+                id: second
                 text: root.pilot ? root.texts.pilotText : root.texts.simulatedText
                 color: root.foreground
-                font { pixelSize: 2 * root.theme.unit; weight: Font.Medium }
-                anchors.verticalCenter: parent.verticalCenter
+                font { pixelSize: root.letters; weight: Font.Medium }
             }
         }
     }

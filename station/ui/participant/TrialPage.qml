@@ -51,10 +51,12 @@ Item {
         id: surface
         objectName: "surface"
         // A question about the mark needs it, so then it is there on every panel, and the question takes what is left.
-        readonly property real least: root.page.hasMark ? 7 * root.theme.unit : 0
+        readonly property real least: places.visible ? 10 * root.theme.unit : root.page.hasMark && !root.counted ? 7 * root.theme.unit : 0
         visible: !root.counted && !root.page.answerNow && height >= 7 * root.theme.unit && (root.cue || root.stimulus || root.page.kind === PageModel.Response)
         anchors { left: parent.left; right: parent.right; top: parent.top }
-        height: Math.max(least, Math.min(0.46 * parent.height, parent.height - answers.height - bars.height - pacer.height - (pacer.visible ? 6.6 : bars.visible ? 5.5 : 10) * root.theme.unit))
+        /// What is below the surface besides the question.
+        readonly property real below: bars.height + pacer.height + ((bars.visible ? 1 : 0) + (pacer.visible ? 1 : 0) + 1) * root.theme.unit
+        height: Math.round(Math.max(least, Math.min(0.46 * parent.height, parent.height - answers.height - below - Math.max(asked.height + root.theme.unit, (pacer.visible ? 3.6 : bars.visible ? 3.5 : 9) * root.theme.unit))))
         lengthMm: root.page.lengthMm
         wideHalfWidthMm: root.page.wideHalfWidthMm
         narrowHalfWidthMm: root.page.narrowHalfWidthMm
@@ -71,6 +73,7 @@ Item {
     // One dot for each interval; the dot of the current interval is filled. Dots and answers have the order of the
     // protocol from left to right, like the buttons, even if texts are read from right to left.
     Row {
+        id: places
         LayoutMirroring.enabled: false
         visible: root.counted && !root.page.answerNow && !root.confides && !root.feedback && root.page.kind !== PageModel.Interval
         anchors { horizontalCenter: parent.horizontalCenter; verticalCenter: surface.verticalCenter }
@@ -81,7 +84,7 @@ Item {
                 id: place
                 required property int index
                 readonly property bool running: root.stimulus && root.page.interval === index + 1
-                width: 13 * root.theme.unit
+                width: Math.round(Math.min(13 * root.theme.unit, surface.height))
                 height: width
                 radius: width / 2
                 color: running ? root.theme.ink : "transparent"
@@ -91,7 +94,7 @@ Item {
                     anchors.centerIn: parent
                     text: root.page.intervalNames.length > place.index ? root.page.intervalNames[place.index] : place.index + 1
                     color: place.running ? root.theme.actionText : root.theme.quiet
-                    font { pixelSize: root.theme.textHuge; weight: Font.DemiBold }
+                    font { pixelSize: Math.min(root.theme.textHuge, 0.5 * place.width); weight: Font.DemiBold }
                 }
             }
         }
@@ -160,24 +163,33 @@ Item {
             color: parent.dark ? root.theme.actionText : root.theme.ink
             font { pixelSize: root.theme.textHuge; weight: Font.Bold }
             fontSizeMode: Text.Fit
-            minimumPixelSize: root.theme.textSmall
+            minimumPixelSize: root.theme.textLeast
             wrapMode: Text.Wrap
             horizontalAlignment: Text.AlignHCenter
             verticalAlignment: Text.AlignVCenter
         }
     }
 
+    // the question at the smallest size, which tells how much room it needs
+    PlainText {
+        id: asked
+        visible: false
+        width: parent.width
+        text: question.text
+        font { pixelSize: root.theme.textLeast; weight: Font.Medium }
+        wrapMode: Text.Wrap
+    }
     PlainText {
         id: question
         visible: !root.feedback && !root.page.answerNow && root.page.kind !== PageModel.Interval
-        anchors { left: parent.left; right: parent.right; bottom: bars.top; bottomMargin: 1.5 * root.theme.unit; top: surface.bottom }
+        anchors { left: parent.left; right: parent.right; bottom: bars.top; bottomMargin: Math.min(Math.round(1.5 * root.theme.unit), Math.max(0, (bars.y - surface.y - (surface.visible || places.visible ? surface.height : 0) - asked.height) / 2)); top: surface.visible || places.visible ? surface.bottom : parent.top }
         text: root.counted && root.stimulus ? root.texts.slideNow
             : root.counted && !root.asks ? root.texts.getReady
             : root.cue ? root.texts.slideHere : root.texts.phrased(root.page.text)
         color: root.theme.ink
         font { pixelSize: 1.15 * root.theme.textBody; weight: Font.Medium }
         fontSizeMode: Text.Fit
-        minimumPixelSize: root.theme.textSmall
+        minimumPixelSize: root.theme.textLeast
         wrapMode: Text.Wrap
         horizontalAlignment: Text.AlignHCenter
         verticalAlignment: Text.AlignVCenter
@@ -187,7 +199,9 @@ Item {
         id: answers
         visible: root.asks && !root.flashing
         anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
-        height: Math.max(leastHeight, 0.36 * parent.height)
+        height: Math.max(leastHeight, Math.min(Math.round(0.36 * parent.height), most))
+        // the question and, if it speaks of the mark, the surface keep their place
+        most: Math.floor(parent.height - asked.height - surface.below - surface.least)
         theme: root.theme
         answers: root.page.answers
         captions: root.page.captions
@@ -208,7 +222,7 @@ Item {
         objectName: "touchField"
         anchors.fill: parent
         bridge: root.bridge
-        row: answers
+        row: answers.buttons
         count: root.page.answers.length
         columns: answers.columns
         gap: answers.gap

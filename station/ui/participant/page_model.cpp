@@ -1,13 +1,38 @@
 #include "station/ui/participant/page_model.hpp"
 
 #include <QUrl>
+#include <chrono>
+#include <cmath>
+#include <utility>
 
 #include "station/ui/shared/early_session.hpp"
 #include "station/ui/shared/phrases.hpp"
 
 namespace turnpoint::ui {
 
+namespace {
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// A pace is known after so many trials.
+constexpr int kTrialsForPace = 5;
+
+}  // namespace
+
+int PageModel::minutes_left() const {
+  const int done = page_.trials_done - began_with_, left = page_.trials_total - page_.trials_done;
+  if (done < kTrialsForPace || left <= 0) return -1;
+  return static_cast<int>(std::ceil((now_s() - began_s_) / done * left / 60));
+}
+
 void PageModel::set(session::Page page) {
+  // a session that begins or is resumed
+  if (page_.trials_total == 0 || page.trials_done < page_.trials_done) {
+    began_s_ = now_s();
+    began_with_ = page.trials_done;
+  }
   page_ = std::move(page);
   Q_EMIT changed();
   Q_EMIT barsMoved();

@@ -46,6 +46,8 @@ class PageModel : public QObject {
   Q_PROPERTY(QStringList intervalNames READ interval_names NOTIFY changed)
   Q_PROPERTY(int trialsDone READ trials_done NOTIFY changed)
   Q_PROPERTY(int trialsTotal READ trials_total NOTIFY changed)
+  /// about how many minutes the rest of the session takes, at the pace so far; -1 if that is not known yet
+  Q_PROPERTY(int minutesLeft READ minutes_left NOTIFY changed)
   Q_PROPERTY(double remainingSeconds READ remaining_s NOTIFY changed)
   Q_PROPERTY(double slider READ slider NOTIFY changed)
   Q_PROPERTY(double sliderMin READ slider_min NOTIFY changed)
@@ -142,6 +144,7 @@ class PageModel : public QObject {
   QStringList interval_names() const;
   int trials_done() const { return page_.trials_done; }
   int trials_total() const { return page_.trials_total; }
+  int minutes_left() const;
   double remaining_s() const { return page_.remaining_s; }
   double slider() const { return page_.slider; }
   double slider_min() const { return page_.slider_min; }
@@ -173,6 +176,9 @@ class PageModel : public QObject {
 
  private:
   session::Page page_;
+  /// when the first page of the session was shown (s), and how many trials were done then
+  double began_s_ = 0;
+  int began_with_ = 0;
 };
 
 }  // namespace turnpoint::ui

@@ -136,7 +136,8 @@ void SessionRunner::show_failure() {
   } catch (const session::TooEarly& refused) {
     page.early = refused.early();
   } catch (const std::exception& error) {
-    page.text = texts::say(texts::phrase_of(error), setup_.language);
+    // for the operator; the participant's page does not show it
+    page.detail = texts::say(texts::phrase_of(error), language_);
   }
   bridge_.show(page);
 }

@@ -2,9 +2,11 @@
 
 #include <QQmlApplicationEngine>
 #include <filesystem>
+#include <iostream>
 #include <stdexcept>
 
 #include "station/setup/places.hpp"
+#include "station/store/error.hpp"
 #include "station/text/toml.hpp"
 #include "station/ui/operator/design_controller.hpp"
 #include "station/ui/operator/latency_controller.hpp"
@@ -91,6 +93,9 @@ void run_station(const setup::StationRequest& request) {
   stop_in_order(application, window);
   try {
     window.run();
+  } catch (const store::StoreError& error) {
+    // The program was told to stop, so nobody may have read the screen.
+    std::cerr << "turnpoint: " << error.what() << "\n";
   } catch (const std::exception&) {
     // The screen has already shown why the session failed, so do not report the failure again.
   }

@@ -37,6 +37,7 @@ StationWindow::StationWindow(const Place& place, const Operator& allowed, const 
     : operating_(allowed.page),
       start_([database](const QString& code) { return is_known(database, code); }),
       lock_(allowed.code) {
+  lock_.store_in(allowed.code_file);
   connect(&start_, &StartController::ready, this, &StationWindow::begin);
   connect(&start_, &StartController::closed, this, &StationWindow::close);
   if (operating_ != nullptr) {
@@ -114,6 +115,9 @@ void StationWindow::close() {
   if (runner_.running()) return;
   start_.await_operator();
   operating_->refresh();
+  const auto& page = runner_.bridge().page()->page();
+  if (page.kind == session::PageKind::failed && !page.detail.empty())
+    operating_->tell_failure(texts::plain(page.detail));
 }
 
 }  // namespace turnpoint::ui

@@ -40,6 +40,7 @@ class StationWindow : public QObject {
     desk::OperatorCode code;  ///< the code that opens the operator's view from the participant's pages
     bool locked = false;      ///< true if the operator's page is locked from the beginning
     maintenance::DiskSources disks = {};  ///< where the page of sessions looks for USB disks
+    std::string code_file = {};           ///< where a new code is stored; "" for the usual place
   };
 
   StationWindow(const Place& place, const Operator& allowed, const std::string& database);

@@ -30,7 +30,8 @@ Rectangle {
     readonly property color foreground: filled ? theme.actionText : quiet ? theme.quiet : tint
 
     implicitHeight: theme.controlHeight
-    implicitWidth: theme.dense ? row.implicitWidth + 3 * theme.unit : Math.max(row.implicitWidth + 5 * theme.unit, theme.targetMin)
+    // even, so that a button in the middle of a place is on whole pixels
+    implicitWidth: 2 * Math.ceil((theme.dense ? row.implicitWidth + 3 * theme.unit : Math.max(row.implicitWidth + 5 * theme.unit, theme.targetMin)) / 2)
     radius: theme.radius
     color: filled ? tint : quiet ? theme.paper : theme.raised
     border { color: quiet ? theme.line : tint; width: quiet ? theme.stroke / 2 : theme.stroke }

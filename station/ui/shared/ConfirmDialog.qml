@@ -7,71 +7,68 @@ import Turnpoint
 Rectangle {
     id: root
     required property Theme theme
+    required property Texts texts
     property string title
     property string text
     property string keepText
     property string confirmText
+    /// If above 0, the button that confirms must be held for this number of milliseconds.
+    property int holdMs: 0
     signal confirmed()
     signal kept()
 
     function open() { visible = true }
+    function keep() {
+        visible = false
+        kept()
+    }
 
     visible: false
     color: theme.paper
-    onVisibleChanged: if (visible) arming.restart()
+    onVisibleChanged: {
+        if (!visible) return
+        arming.restart()
+        if (theme.dense) keepButton.forceActiveFocus()
+    }
+    Keys.onEscapePressed: keep()
 
     Timer {
         id: arming
         interval: 350
     }
     Shield {}
-    FittedColumn {
+    Statement {
         theme: root.theme
-        anchors { left: parent.left; right: parent.right; top: parent.top; bottom: buttons.top }
-        PlainText {
-            width: parent.width
-            text: root.title
-            color: root.theme.ink
-            font { pixelSize: root.theme.textTitle; weight: Font.Bold }
-            horizontalAlignment: Text.AlignHCenter
-            wrapMode: Text.Wrap
-        }
-        PlainText {
-            width: parent.width
-            text: root.text
-            color: root.theme.ink
-            font.pixelSize: root.theme.textBody
-            lineHeight: 1.2
-            horizontalAlignment: Text.AlignHCenter
-            wrapMode: Text.Wrap
-        }
+        texts: root.texts
+        anchors { left: parent.left; right: parent.right; top: parent.top; bottom: buttons.top; bottomMargin: root.theme.unit }
+        title: root.title
+        text: root.text
+        armed: !arming.running
     }
-    // The buttons are stacked, so that they are not at the places of a row of buttons on the page below.
-    Column {
+    // The buttons are higher than a row of buttons on the page below, so that a second tap there confirms nothing.
+    ButtonGroup {
         id: buttons
-        anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom; bottomMargin: root.theme.controlHeight + 2 * root.theme.targetGap }
-        width: Math.min(parent.width, Math.max(keep.implicitWidth, confirm.implicitWidth, 26 * root.theme.unit))
-        spacing: root.theme.targetGap
+        theme: root.theme
+        room: parent.width
+        anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom; bottomMargin: root.theme.controlHeight + root.theme.targetGap / 2 }
         ActionButton {
-            id: keep
+            id: keepButton
             objectName: "keep"
-            width: parent.width
+            width: Math.min(root.width, Math.max(implicitWidth, 22 * root.theme.unit))
             theme: root.theme
             armed: !arming.running
             text: root.keepText
-            onActivated: {
-                root.visible = false
-                root.kept()
-            }
+            onActivated: root.keep()
         }
         ActionButton {
             id: confirm
             objectName: "confirm"
-            width: parent.width
+            width: Math.min(root.width, Math.max(implicitWidth, 22 * root.theme.unit))
             theme: root.theme
             primary: false
             danger: true
             armed: !arming.running
+            holdMs: root.holdMs
             text: root.confirmText
             onActivated: {
                 root.visible = false

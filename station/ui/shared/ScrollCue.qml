@@ -12,7 +12,7 @@ Rectangle {
     visible: place.visible && place.contentHeight > place.height + 1
     x: place.x + place.width + Math.max(0, (parent.width - place.x - place.width - width) / 2)
     y: place.y + place.visibleArea.yPosition * place.height
-    width: 0.5 * theme.unit
+    width: Math.round(0.5 * theme.unit)
     height: place.visibleArea.heightRatio * place.height
     radius: width / 2
     color: theme.quiet

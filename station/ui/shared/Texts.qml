@@ -11,6 +11,13 @@ QtObject {
 
     function text(key: string) : string { return phrased(Catalogue.text(key, language)) }
 
+    /// A text of the catalogue with values in the places %1, %2 and so on. In a text that is read from right to left, each value
+    /// is isolated (U+2068, U+2069), so that numbers, dates, names and file names keep their order.
+    function fill(key: string, ...values) : string {
+        return text(key).replace(/%([1-9])/g, (place, number) => values[number - 1] === undefined ? place
+            : mirrored ? "\u2068" + values[number - 1] + "\u2069" : String(values[number - 1]))
+    }
+
     /// Prepares a text for display. By default, a line may break between almost any two Japanese characters,
     /// even inside a word. This function inserts word joiners (U+2060), so that lines break only after
     /// punctuation, or after hiragana (the end of a phrase) if the next character begins a phrase. A phrase
@@ -35,14 +42,12 @@ QtObject {
     }
 
     // Says a phrase that C++ gives: a string, or {key, values}, whose values are phrases as well. Without a key, the
-    // values follow one another. In a text that is read from right to left, each value is isolated (U+2068, U+2069), so
-    // that numbers, names and file names keep their order.
+    // values follow one another.
     function say(phrase) : string {
         if (phrase === undefined || typeof phrase === "string") return phrase ?? ""
         const values = phrase.values.map(value => say(value))
         if (phrase.key === "") return values.join("")
-        return text(phrase.key).replace(/%([1-9])/g, (place, number) => values[number - 1] === undefined ? place
-            : mirrored ? "\u2068" + values[number - 1] + "\u2069" : values[number - 1])
+        return fill(phrase.key, ...values)
     }
 
     // What the run mode or the status of a session is called; a word that is not known stays as it is.
@@ -59,23 +64,23 @@ QtObject {
         if (backup.state === "ahead")
             return text("backup_ahead")
         if (backup.state === "old")
-            return text("backup_old").arg(Math.floor(backup.hours / 24))
+            return fill("backup_old", Math.floor(backup.hours / 24))
         if (backup.hours < 48)
-            return text("backup_hours").arg(backup.hours)
-        return text("backup_days").arg(Math.floor(backup.hours / 24))
+            return fill("backup_hours", backup.hours)
+        return fill("backup_days", Math.floor(backup.hours / 24))
     }
 
     // `session` is {participant, protocol, trials, ageS}, or empty
     function interrupted(session) {
         if (session.participant === undefined) return ""
-        return text("operator.interrupted").arg(session.participant).arg(session.protocol).arg(session.trials).arg(ago(session.ageS))
+        return fill("operator.interrupted", session.participant, session.protocol, session.trials, ago(session.ageS))
     }
     function ago(seconds: real) : string {
         if (seconds < 0) return text("operator.ago_ahead")
         if (seconds < 120) return text("operator.ago_now")
-        if (seconds < 7200) return text("operator.ago_minutes").arg(Math.floor(seconds / 60))
-        if (seconds < 172800) return text("operator.ago_hours").arg(Math.floor(seconds / 3600))
-        return text("operator.ago_days").arg(Math.floor(seconds / 86400))
+        if (seconds < 7200) return fill("operator.ago_minutes", Math.floor(seconds / 60))
+        if (seconds < 172800) return fill("operator.ago_hours", Math.floor(seconds / 3600))
+        return fill("operator.ago_days", Math.floor(seconds / 86400))
     }
 
     // A day such as 2026-11-24 in words. Chinese and Japanese have no spaces, so word joiners keep the day on one
@@ -88,8 +93,7 @@ QtObject {
     // `early` is {participant, session, from, last, lastDay, minDays}, or empty
     function tooEarly(early) {
         if (early.session === undefined) return ""
-        return text("operator.too_early").arg(early.session).arg(early.participant).arg(day(early.from))
-            .arg(early.last).arg(day(early.lastDay)).arg(early.minDays)
+        return fill("operator.too_early", early.session, early.participant, day(early.from), early.last, day(early.lastDay), early.minDays)
     }
 
     readonly property string proceed: text("proceed")
@@ -130,7 +134,6 @@ QtObject {
     readonly property string forOperator: text("for_operator")
     readonly property string close: text("close")
     readonly property string consentTitle: text("consent_title")
-    readonly property string consentText: text("consent_text")
     readonly property string declinedTitle: text("declined_title")
     readonly property string declinedText: text("declined_text")
     readonly property string consentYes: text("consent_yes")
