@@ -73,11 +73,6 @@ void StationRoom::reopenLocked(const QString& code) {
 
 void StationRoom::reopenBuiltIn() { start(desk::OperatorCode(), Begins::locked); }
 
-void StationRoom::damageDatabase() {
-  std::fstream file(path("lab.sqlite"), std::ios::in | std::ios::out | std::ios::binary);
-  file << std::string(4096, 'Z');
-}
-
 void StationRoom::reopenEmpty(const QString& code) {
   QFile::remove(folder_->filePath("protocols/short.toml"));
   reopen(code);

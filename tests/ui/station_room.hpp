@@ -63,8 +63,6 @@ class StationRoom : public QObject {
   /// Presses or releases a key of a keyboard.
   Q_INVOKABLE void pressKey(int key);
   Q_INVOKABLE void releaseKey(int key);
-  /// Overwrites the beginning of the database.
-  Q_INVOKABLE void damageDatabase();
   /// Ends the program and starts it again as a locked station with the built-in code, which a new code
   /// replaces in the folder.
   Q_INVOKABLE void reopenBuiltIn();

@@ -178,20 +178,6 @@ Item {
             compare(again.kept, "")
         }
 
-        function test_a_damaged_database_is_told_to_the_operator_and_no_session_begins() {
-            interrupt()
-            room.damageDatabase()
-            tap("bar-run")
-            operating.refresh()
-            tryVerify(() => says(room.screen, "Database: damaged"), 20000)
-            verify(!operating.mayBegin)
-            verify(says(find(room.screen, "operatorPage"), "damaged"))
-            tap("bar-sessions")
-            tryVerify(() => says(room.screen, "The sessions cannot be read."), 20000)
-            verify(!says(room.screen, "No session has been recorded yet"))
-            verify(says(room.screen, "Database: damaged"))
-        }
-
         function test_the_rig_is_examined_and_tested_and_other_pages_wait_meanwhile() {
             room.calibrate()
             goTo("rig")

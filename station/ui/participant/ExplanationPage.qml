@@ -45,7 +45,7 @@ Item {
         visible: root.feels
         anchors { horizontalCenter: parent.horizontalCenter; bottom: go.top; bottomMargin: root.theme.targetGap }
         spacing: root.theme.targetGap
-        readonly property real share: (root.width - (root.page.answers.length - 1) * spacing) / Math.max(1, root.page.answers.length)
+        readonly property real share: Math.floor((root.width - (root.page.answers.length - 1) * spacing) / Math.max(1, root.page.answers.length))
         Repeater {
             model: root.page.answers.length
             ActionButton {
