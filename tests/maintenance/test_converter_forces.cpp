@@ -36,13 +36,14 @@ struct Load {
   double normal_N = 0, lateral_N = 0, position_mm = 0;
 };
 
-/// What the cells read under a load, in an invented unit.
-std::array<double, 3> converter_readings(const Load& load) {
+/// What the cells read under a load, in an invented unit. The last digits change from sample to sample.
+std::array<double, 3> converter_readings(const Load& load, std::int64_t time_ns) {
   constexpr double per_N = 2.5, height_mm = 8;
   const double turn_N = load.lateral_N * height_mm / converter_length_mm;
   const double share = load.position_mm / converter_length_mm;
-  return {0.4 + per_N * (load.normal_N * (1 - share) - turn_N),
-          0.3 + per_N * (load.normal_N * share + turn_N), -0.2 + per_N * load.lateral_N};
+  const double noise = 1e-12 * static_cast<double>(time_ns / converter_step_ns * 7919 % 13);
+  return {0.4 + per_N * (load.normal_N * (1 - share) - turn_N) + noise,
+          0.3 + per_N * (load.normal_N * share + turn_N) + noise, -0.2 + per_N * load.lateral_N + noise};
 }
 
 rig::CellConverter converter_in_rig() { return {"iio:cells", {"voltage0", "voltage1", "voltage2"}}; }
@@ -52,7 +53,7 @@ struct WeighedConverter : iio::Converter {
   const Load& load;
   std::int64_t time_ns = system::monotonic_ns();
   int until_gap = -1;  ///< number of samples until five are left out
-  bool wire_off = false;
+  bool wire_off = false, dead = false;
   std::int64_t step_ns = converter_step_ns;
 
   explicit WeighedConverter(const Load& weights) : load(weights) {}
@@ -60,7 +61,7 @@ struct WeighedConverter : iio::Converter {
     std::vector<iio::Sample> samples;
     for (int k = 0; k < 20; ++k) {
       time_ns += step_ns * (until_gap-- == 0 ? 6 : 1);
-      samples.push_back({time_ns, converter_readings(load), {false, wire_off, false}});
+      samples.push_back({time_ns, converter_readings(load, dead ? 0 : time_ns), {false, wire_off, false}});
     }
     return samples;
   }
@@ -134,7 +135,7 @@ struct BoardConverter : iio::Converter {
     std::vector<iio::Sample> samples;
     for (; next_ns + 20 * converter_step_ns <= board.now_ns;) {
       next_ns += converter_step_ns * (1 + board.leave_out.exchange(0));
-      samples.push_back({next_ns, converter_readings(board.finger.at(next_ns)), {}});
+      samples.push_back({next_ns, converter_readings(board.finger.at(next_ns), next_ns), {}});
     }
     if (samples.empty())
       std::this_thread::yield();
@@ -239,6 +240,10 @@ TEST_CASE("the calibration of cells on a converter names a wire that is off and 
     room.converter->wire_off = true;
     CHECK_THROWS_WITH(reader.read(weight),
                       "cell b on channel voltage1: a wire is off, or the cell is overloaded");
+  }
+  SECTION("samples without any noise") {
+    room.converter->dead = true;
+    CHECK_THROWS_WITH(reader.read(weight), Catch::Contains("cell a on channel voltage0: the samples do not change at all"));
   }
   SECTION("lost samples, which do not matter for the next reading") {
     room.converter->until_gap = 100;
