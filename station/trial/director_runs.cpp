@@ -70,7 +70,7 @@ bool Director::State::can_follow(const std::map<std::string, int>& left, const s
 
 /// True if the rest of the orders of intervals, and of the lists of the procedures that may come next, can still
 /// be presented without too long runs if `spec` comes next.
-bool Director::State::leaves_order(const TrialSpec& spec, int spare) const {
+bool Director::State::leaves_order(const TrialSpec& spec, int spare) {
   const auto orders = orders_of(protocol.task);
   return std::ranges::all_of(runs, [&](const auto& rule) {
     const auto& key = rule.first;
@@ -84,28 +84,43 @@ bool Director::State::leaves_order(const TrialSpec& spec, int spare) const {
   });
 }
 
-bool Director::State::leaves_lists(const TrialSpec& spec, const std::string& key, int spare) const {
-  std::map<std::string, int> soon, left;  // in the present repeats of the lists, and in all of their rest
+/// Counts the values in the lists of the procedures that may come next: those of their present repeats, and all. Only
+/// procedures whose lists set the factor with this key count.
+const Director::State::Left& Director::State::lists_left(const TrialSpec& spec, const std::string& key) {
   const bool mixed = now()->interleave != protocol::Interleave::none;
-  for (std::size_t i = 0; i < procedures.size(); ++i) {
+  const auto [found, is_new] = left_of_lists.try_emplace({mixed ? no_procedure : current_procedure, key});
+  auto& [soon, all] = found->second;
+  for (std::size_t i = 0; is_new && i < procedures.size(); ++i) {
     const auto& from = *specs[i];
-    const bool is_current = static_cast<int>(i) == current_procedure;
-    if ((!mixed && current_procedure != no_procedure && !is_current) || (!mixed && left.size() > 0)) continue;
-    if (key != procedure::kRightAnswer && key != from.level &&
-        std::ranges::find(from.balance, key) == from.balance.end())
-      continue;
+    if (!mixed && current_procedure != no_procedure && static_cast<int>(i) != current_procedure) continue;
+    if (!mixed && !all.empty()) break;
+    if (!lists(from, key)) continue;
     for (const auto& candidate : procedures[i]->candidates()) {
       TrialSpec other;
       other.factors = spec.factors;
       set_proposal(candidate.proposal, from, other.factors);
       other.correct = correct_choice(protocol.task, other.factors);
       const auto value = value_of(key, other);
-      const int taken = is_current && candidate.place == deviation.place ? 1 : 0;
-      left[value] += candidate.in_all - taken;
-      if (candidate.in_repeat > 0) soon[value] += candidate.in_repeat - taken;
+      all[value] += candidate.in_all;
+      if (candidate.in_repeat > 0) soon[value] += candidate.in_repeat;
     }
   }
-  return can_follow(left, key, spec, spare) &&
+  return found->second;
+}
+
+bool Director::State::lists(const procedure::Spec& from, const std::string& key) {
+  return key == procedure::kRightAnswer || key == from.level ||
+         std::ranges::find(from.balance, key) != from.balance.end();
+}
+
+bool Director::State::leaves_lists(const TrialSpec& spec, const std::string& key, int spare) {
+  auto [soon, all] = lists_left(spec, key);
+  if (current_procedure != no_procedure && lists(*specs[static_cast<std::size_t>(current_procedure)], key)) {
+    const auto value = value_of(key, spec);
+    for (auto* counts : {&soon, &all})
+      if (auto& count = (*counts)[value]; count > 0) --count;
+  }
+  return can_follow(all, key, spec, spare) &&
          (key != procedure::kRightAnswer || can_follow(soon, key, spec, spare));
 }
 

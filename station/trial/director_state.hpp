@@ -59,6 +59,11 @@ struct Director::State {
     int catches = 0;              ///< 1: it comes instead of a catch trial, -1: it is such a catch trial
   };
   Deviation deviation;
+  /// How often values come in the present repeats of lists, and in all of their rest.
+  struct Left {
+    std::map<std::string, int> soon, all;
+  };
+  std::map<std::pair<int, std::string>, Left> left_of_lists;  ///< kept while one trial is made
   int catches_owed = 0;  ///< number of catch trials that have been put off
 
   State(const protocol::Protocol& p, const protocol::Visit& visit, std::uint64_t s,
@@ -113,8 +118,10 @@ struct Director::State {
   int too_long(const TrialSpec& spec) const;
   bool can_follow(const std::map<std::string, int>& left, const std::string& key, const TrialSpec& spec,
                   int spare) const;
-  bool leaves_order(const TrialSpec& spec, int spare) const;
-  bool leaves_lists(const TrialSpec& spec, const std::string& key, int spare) const;
+  bool leaves_order(const TrialSpec& spec, int spare);
+  static bool lists(const procedure::Spec& from, const std::string& key);
+  const Left& lists_left(const TrialSpec& spec, const std::string& key);
+  bool leaves_lists(const TrialSpec& spec, const std::string& key, int spare);
   bool draws_factors(const TrialSpec& spec) const;
   std::optional<TrialSpec> with_short_runs(const TrialSpec& first);
   void apply_deviation();

@@ -259,6 +259,7 @@ TrialSpec Director::State::procedure_trial(int index) const {
 
 std::optional<TrialSpec> Director::State::make() {
   deviation = {};
+  left_of_lists.clear();
   if (now() == nullptr) return std::nullopt;
   current_procedure = no_procedure;
   if (now()->kind != protocol::BlockKind::trials) return strokes_trial();
