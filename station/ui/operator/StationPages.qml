@@ -99,7 +99,7 @@ Rectangle {
                 objectName: "chooseCode"
                 theme: look
                 text: texts.text("operator.code_choose")
-                onActivated: choosing.wanted = true
+                onActivated: codeChooser.wanted = true
             }
             ActionButton {
                 objectName: "codeLater"
@@ -188,7 +188,7 @@ Rectangle {
         }
     }
     Loader {
-        id: choosing
+        id: codeChooser
         property bool wanted: false
         anchors.fill: parent
         active: wanted
@@ -199,8 +199,8 @@ Rectangle {
             pixelsPerMm: root.pixelsPerMm
             lock: root.lock
             choosing: true
-            onAbandoned: choosing.wanted = false
-            onPassed: choosing.wanted = false
+            onAbandoned: codeChooser.wanted = false
+            onPassed: codeChooser.wanted = false
         }
     }
 }
