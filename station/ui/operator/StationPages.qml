@@ -193,7 +193,7 @@ Rectangle {
         anchors.fill: parent
         active: wanted
         focus: wanted
-        onLoaded: item.forceActiveFocus()
+        onLoaded: (item as Item).forceActiveFocus()
         sourceComponent: OperatorGate {
             objectName: "codeChoice"
             pixelsPerMm: root.pixelsPerMm

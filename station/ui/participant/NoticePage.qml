@@ -136,7 +136,7 @@ Item {
                 small = implicitHeight > parent.height - root.theme.unit
                 signsOnly = small && implicitHeight > parent.height - root.theme.unit
             }
-            readonly property string told: [root.armable, root.page.text, root.page.safe, root.page.toDo, root.texts.language, root.width, parent.height].join()
+            readonly property string told: `${root.armable} ${root.page.text} ${root.page.safe} ${root.page.toDo} ${root.texts.language} ${root.width} ${parent.height}`
             onToldChanged: settle()
             Component.onCompleted: settle()
             readonly property real headingWidth: signsOnly ? 0 : Math.max(happened.needed, safe.needed, toDo.needed) + Math.round(0.8 * root.theme.unit)
