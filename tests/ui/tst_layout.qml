@@ -72,8 +72,6 @@ Item {
         // Nine answers of several long words have no room across 5 inches, nor, in Arabic, across 7 inches below the band of a
         // run that is not live. `check` limits labels to what fits 7 inches.
         readonly property var needSevenInches: ["choices-9-long"]
-        // The longest explanation of a fault has no room across 5 inches below the band of a run that is not live.
-        readonly property var longFaults: ["fault-program"]
         // On these pages the text scrolls, and a symbol shows that.
         readonly property var scrolling: ["consent-form-long"]
 
@@ -134,7 +132,6 @@ Item {
             const faults = []
             for (const name of script.pages) {
                 if (row.panel.width === 800 && (inches(row.panel) < 6 || row.language === "ar" && row.mode !== "") && needSevenInches.includes(name)) continue
-                if (inches(row.panel) < 6 && row.mode !== "" && longFaults.includes(name)) continue
                 show(name + row.mode, row.language)
                 for (const pair of inspector.overlaps(view)) faults.push(name + ": " + pair)
                 for (const text of inspector.smallTexts(view, capitalsMm(row.panel) * row.panel.mm)) faults.push(name + ": " + text)

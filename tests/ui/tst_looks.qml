@@ -74,7 +74,7 @@ Item {
         }
 
         function test_answers_on_one_page_have_the_same_font_size_however_long_they_are_data() {
-            return [{ tag: "long", page: "explore-speed", language: "de", panel: { width: 1280, height: 800, mm: 5.9 } },
+            return [{ tag: "long", page: "explore-speed", language: "de", panel: { width: 800, height: 480, mm: 5.2 } },
                     { tag: "short", page: "explore", language: "en", panel: { width: 800, height: 480, mm: 5.2 } }]
         }
         function test_answers_on_one_page_have_the_same_font_size_however_long_they_are(row) {

@@ -129,7 +129,7 @@ Item {
             tryVerify(() => texts(room.screen).some(text => text.includes("zurückgelesen und geprüft")), 20000)
             tap("withdraw")
             tryVerify(() => find(room.screen, "withdrawing") !== null, 20000)
-            tryVerify(() => find(room.screen, "withdrawing").text.includes("Notizen würden gelöscht."), 5000)
+            tryVerify(() => find(room.screen, "withdrawing").text.includes("Das würde von T1 gelöscht:"), 5000)
         }
         function test_the_end_of_a_session_in_numbers_is_in_the_language_of_the_operator() {
             const words = ["Durchgänge", "Zu spät", "Richtig", "main, Schwelle", "Die Sitzung in Zahlen", "Schließen"]

@@ -14,6 +14,7 @@ Item {
     readonly property PageModel page: bridge.page
     /// The height of the buttons: as large as a finger needs, if the question and the surface keep their room.
     readonly property real target: Math.max(root.theme.targetLeast, Math.min(root.theme.targetMin, Math.round(0.3 * height)))
+    readonly property real stepWidth: Math.min(target, Math.floor((width - 2 * root.theme.targetGap) / 3))
     readonly property real span: page.sliderMax - page.sliderMin
     /// True if the tones have ended, so that a setting made now could not be felt.
     readonly property bool silent: page.answersOpen
@@ -122,7 +123,7 @@ Item {
                 objectName: "stepDown"
                 label: root.texts.text("step_down")
                 height: root.target
-                width: root.target
+                width: root.stepWidth
                 enabled: !root.silent
                 theme: root.theme
                 primary: false
@@ -134,7 +135,7 @@ Item {
                 objectName: "stepUp"
                 label: root.texts.text("step_up")
                 height: root.target
-                width: root.target
+                width: root.stepWidth
                 enabled: !root.silent
                 theme: root.theme
                 primary: false
@@ -146,7 +147,7 @@ Item {
         ActionButton {
             objectName: "proceed"
             height: root.target
-            width: Math.min(Math.max(implicitWidth, 22 * root.theme.unit), root.width - 2 * (root.target + root.theme.targetGap))
+            width: Math.min(Math.max(implicitWidth, 22 * root.theme.unit), root.width - 2 * (root.stepWidth + root.theme.targetGap))
             theme: root.theme
             enabled: root.touched || root.silent
             armed: root.armed

@@ -19,24 +19,33 @@ Item {
     /// True if the captions do not fit on the buttons. They are then listed below them.
     readonly property bool listed: captioned && plan.listed
     /// How the answers are arranged: {columns, rows, gap, target (the least height of a button), listed}. Large targets
-    /// come first, then few rows.
+    /// come first, and then few rows.
     readonly property var plan: {
-        const room = most
-        const captionHeight = captioned ? legend.implicitHeight + theme.unit : 0
-        for (const listed of captioned ? [false, true] : [false])
-            for (const target of [theme.targetMin, Math.round(0.8 * theme.targetMin), theme.targetLeast])
-                for (const gap of captioned ? [theme.unit, 2] : [theme.targetGap, Math.min(theme.targetGap, Math.round(2 * theme.pixelsPerMm)), 2])
-                    for (let columns = Math.min(count, Math.floor((width + gap) / (target + gap))); columns > 0; --columns) {
-                        const rows = Math.ceil(count / columns)
-                        if (columns > Math.ceil(count / rows)) continue
-                        const buttonWidth = Math.floor((width - (columns - 1) * gap) / columns)
-                        if (rows * (target + gap) - gap + (listed ? captionHeight : 0) > room) break
-                        if (fitting(buttonWidth - 2 * insetOf(columns), target, rows, listed)) return { columns: columns, rows: rows, gap: gap, target: target, listed: listed }
-                    }
+        const targets = [theme.targetMin, Math.round(0.8 * theme.targetMin), theme.targetLeast]
+        const gaps = captioned ? [theme.unit, 2] : [theme.targetGap, Math.min(theme.targetGap, Math.round(2 * theme.pixelsPerMm)), 2]
+        // The points of a scale stand in one row if they can, because its order is seen at a glance. Other answers stand in
+        // several rows before they become smaller.
+        const sizes = captioned ? [targets.slice(0, 2), targets.slice(2)] : targets.map(target => [target])
+        for (const some of sizes)
+            for (let rows = 1; rows <= count; ++rows)
+                for (const target of some)
+                    for (const gap of gaps)
+                        for (const listed of captioned ? [false, true] : [false]) {
+                            const made = arranged(rows, target, gap, listed)
+                            if (made) return made
+                        }
         // nothing fits: the widest buttons that are still high enough
         let columns = 1
-        while (columns < count && Math.ceil(count / columns) * (theme.targetLeast + 2) > room) ++columns
+        while (columns < count && Math.ceil(count / columns) * (theme.targetLeast + 2) > most) ++columns
         return { columns: columns, rows: Math.ceil(count / columns), gap: 2, target: theme.targetLeast, listed: captioned }
+    }
+    function arranged(rows: int, target: real, gap: real, listed: bool) : var {
+        const columns = Math.ceil(count / rows)
+        if (Math.ceil(count / columns) !== rows) return null
+        const buttonWidth = Math.floor((width - (columns - 1) * gap) / columns)
+        const high = rows * (target + gap) - gap + (listed ? legend.implicitHeight + theme.unit : 0)
+        if (buttonWidth < target || high > most || !fitting(buttonWidth - 2 * insetOf(columns), target, rows, listed)) return null
+        return { columns: columns, rows: rows, gap: gap, target: target, listed: listed }
     }
     readonly property int rows: Math.max(1, plan.rows)
     readonly property int columns: Math.max(1, plan.columns)
@@ -160,7 +169,7 @@ Item {
                     height: root.labelHeight
                     text: root.captions[button.index] ?? ""
                     color: button.down ? root.theme.action : root.theme.actionText
-                    font { pixelSize: root.theme.textBody; weight: Font.Medium }
+                    font { pixelSize: Math.max(root.theme.textLeast, Math.min(root.theme.textBody, Math.floor(root.labelHeight / 1.7))); weight: Font.Medium }
                     fontSizeMode: Text.Fit
                     minimumPixelSize: root.theme.textLeast
                     wrapMode: Text.WordWrap

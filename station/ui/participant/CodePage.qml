@@ -173,7 +173,7 @@ Item {
         // beside the characters or, on a tall screen, opposite the Back button
         anchors.right: parent.right
         y: root.tall ? 0 : Math.round(cells.y + (cells.height - height) / 2)
-        implicitHeight: root.tall ? Math.round(Math.max(back.height, 2.8 * root.theme.textSmall)) : Math.round(6.6 * root.theme.unit)
+        implicitHeight: root.tall ? Math.round(Math.max(back.height, 3.2 * root.theme.textSmall)) : Math.round(6.6 * root.theme.unit)
         implicitWidth: root.tall ? Math.round(0.34 * root.width) : Math.round(Math.min(16 * root.theme.unit, (parent.width - cells.width) / 2 - root.theme.unit))
         theme: root.theme
         primary: false

@@ -133,8 +133,12 @@ Item {
             function settle() {
                 small = false
                 signsOnly = false
-                small = implicitHeight > parent.height - root.theme.unit
-                signsOnly = small && implicitHeight > parent.height - root.theme.unit
+                small = wanted() > parent.height - root.theme.unit
+                signsOnly = small && wanted() > parent.height - root.theme.unit
+            }
+            // The column's own height is known only in the next frame.
+            function wanted() : real {
+                return happened.implicitHeight + safe.implicitHeight + toDo.implicitHeight + 2 * spacing + (detail.visible ? detail.height + spacing : 0)
             }
             readonly property string told: `${root.armable} ${root.page.text} ${root.page.safe} ${root.page.toDo} ${root.texts.language} ${root.width} ${parent.height}`
             onToldChanged: settle()
@@ -163,6 +167,7 @@ Item {
             }
             // What a device or the system reports is for the operator, who has typed the code (or reads it in the live view).
             PlainText {
+                id: detail
                 objectName: "detail"
                 visible: root.armable && root.page.detail !== ""
                 width: parent.width
