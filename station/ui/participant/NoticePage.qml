@@ -184,6 +184,7 @@ Item {
         room: root.width
         anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom }
         ActionButton {
+            id: endButton
             objectName: "end"
             visible: !root.failed
             theme: root.theme
@@ -221,6 +222,7 @@ Item {
     ConfirmDialog {
         id: ending
         anchors.fill: parent
+        opener: endButton
         theme: root.theme
         texts: root.texts
         title: root.texts.reallyEnd

@@ -14,10 +14,23 @@ Rectangle {
     property string confirmText
     /// If above 0, the button that confirms must be held for this number of milliseconds.
     property int holdMs: 0
+    /// The button that opens this. The one that confirms is never at its place.
+    property Item opener: null
+    property real raisedBy: 0
     signal confirmed()
     signal kept()
 
-    function open() { visible = true }
+    function open() {
+        raisedBy = 0
+        visible = true
+    }
+    function clearOpener() {
+        if (!visible || opener === null) return
+        const taken = opener.mapToItem(root, 0, 0, opener.width, opener.height)
+        const place = confirm.mapToItem(root, 0, 0, confirm.width, confirm.height)
+        const apart = place.right <= taken.left || taken.right <= place.left || place.bottom <= taken.top || taken.bottom <= place.top
+        if (!apart) raisedBy += Math.round(place.bottom - taken.top + theme.targetGap / 2)
+    }
     function keep() {
         visible = false
         kept()
@@ -28,6 +41,7 @@ Rectangle {
     onVisibleChanged: {
         if (!visible) return
         arming.restart()
+        placing.restart()
         if (theme.dense) keepButton.forceActiveFocus()
     }
     Keys.onEscapePressed: keep()
@@ -35,6 +49,11 @@ Rectangle {
     Timer {
         id: arming
         interval: 350
+    }
+    Timer {
+        id: placing
+        interval: 0
+        onTriggered: root.clearOpener()
     }
     Shield {}
     Statement {
@@ -45,12 +64,15 @@ Rectangle {
         text: root.text
         armed: !arming.running
     }
-    // The buttons are higher than a row of buttons on the page below, so that a second tap there confirms nothing.
+    // The buttons are higher than a row of buttons on the page below, so that a second tap there confirms nothing. Where
+    // that is not enough, they are raised further.
     ButtonGroup {
         id: buttons
         theme: root.theme
         room: parent.width
-        anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom; bottomMargin: root.theme.controlHeight + root.theme.targetGap / 2 }
+        anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom; bottomMargin: root.theme.controlHeight + root.theme.targetGap / 2 + root.raisedBy }
+        onHeightChanged: placing.restart()
+        onWidthChanged: placing.restart()
         ActionButton {
             id: keepButton
             objectName: "keep"
