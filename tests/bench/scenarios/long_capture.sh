@@ -1,4 +1,4 @@
-# proves: for a minute at 192 kHz (TURNPOINT_CAPTURE_MINUTES: for longer), a session that plays eight tones and captures six channels, among them a pick-up and three force cells, loses no frame of playback and of capture, and proves every stimulus
+# proves: for a minute at 192 kHz (TURNPOINT_CAPTURE_MINUTES: for longer), a session that plays eight tones and captures six channels, among them a pick-up and three force cells, loses no frame of playback and of capture, and proves every stimulus; the cells, on whose channels nothing is played, are named as faulty by the self-test and in every trial
 # needs: fast
 # suite: long
 # timeout: 7200
@@ -27,16 +27,20 @@ trials=$((minutes * 60 / 5))
 } >long.toml
 session_begins long.toml
 began=$SECONDS
-fault_page() { tail -20 console.txt; fail "the session stopped at a fault"; }
+faults=0
+fault_page() {
+  [ $((faults += 1)) = 1 ] && has console.txt "self-test found a fault (zero of cell a" || { tail -20 console.txt; fail "the session stopped at a fault"; }
+  echo "note nothing is connected to the cells" >&8
+}
 stimulus_begins() { :; }
 answer_is_open() { echo left >&8; }
 conduct
 session_ends
 rows() { sqlite3 lab.sqlite "$1"; }
-[ "$(rows "SELECT count(*) FROM event WHERE kind IN ('xrun', 'fault', 'frames_lost')")" = 0 ] || fail "$(rows "SELECT * FROM event")"
+[ "$(rows "SELECT count(*) FROM event WHERE kind IN ('xrun', 'frames_lost')")/$faults" = 0/1 ] || fail "$(rows "SELECT * FROM event")"
 [ "$(rows "SELECT count(*) FROM event WHERE kind = 'notice' AND value LIKE 'the capture has lost%'")" = 0 ] ||
   fail "frames of the capture were lost"
-[ "$(rows "SELECT count(*), sum(proof = 'ok'), sum(sensing NOT IN ('', 'lost', 'wire', 'tare')) FROM trial")" = "$trials|$trials|$trials" ] ||
+[ "$(rows "SELECT count(*), sum(proof = 'ok'), sum(sensing = 'wire') FROM trial")" = "$trials|$trials|$trials" ] ||
   fail "not every stimulus is proven: $(rows "SELECT proof, proof_cause, sensing, count(*) FROM trial GROUP BY 1, 2, 3")"
 say "$trials stimuli of eight tones in $((SECONDS - began)) s"
 [ $((SECONDS - began)) -ge $((minutes * 60 - 30)) ] || fail "the session took less than $minutes minutes"
