@@ -152,6 +152,7 @@ void add_field(CommandLine& app, Context& context) {
   command->add_option("--at", options->at, "Positions in mm, separated by commas");
   command
       ->add_option("--model", options->model, "Physical model: auto | mode | modes")
+      ->check(one_of({"auto", "mode", "modes"}))
       ->capture_default_str();
   command->add_option("--tolerance", options->tolerance, "Allowed relative error of the amplitude")
       ->check(positive());

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -67,11 +66,10 @@ class ConverterBridges : public BridgeReader {
         reading.ratio[cell] += sample.value[cell] / count;
       }
     }
-    for (std::size_t cell = 0; cell < cells.size(); ++cell)
-      if (std::ranges::all_of(samples, [&](const auto& one) { return one.value[cell] == samples[0].value[cell]; }))
-        throw std::runtime_error(fmt::format(
-            "cell {} on channel {}: the samples do not change at all; its amplifier or the converter is dead",
-            cells[cell], rig_.channels[cell]));
+    if (const auto silent = clock.silent_cell())
+      throw std::runtime_error(
+          fmt::format("cell {} on channel {}: the samples do not change at all; its amplifier or the converter is dead",
+                      cells[*silent], rig_.channels[*silent]));
     if (clock.counters().lost + clock.counters().disorder > 0)
       throw std::runtime_error(fmt::format("{}: {} samples were lost", rig_.uri, clock.counters().lost));
     if (const auto rate_Hz = clock.rate_Hz())

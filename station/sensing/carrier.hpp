@@ -52,11 +52,9 @@ enum class WireFault {
 class Unchanged {
  public:
   /// Returns how many values in a row, including this one, are equal.
-  template <typename Value>
-  std::int64_t add(Value value) noexcept {
-    const auto now = static_cast<double>(value);
-    count_ = count_ > 0 && now == last_ ? count_ + 1 : 1;
-    last_ = now;
+  std::int64_t add(double value) noexcept {
+    count_ = count_ > 0 && value == last_ ? count_ + 1 : 1;
+    last_ = value;
     return count_;
   }
   void reset() noexcept { count_ = 0; }

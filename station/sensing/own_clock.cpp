@@ -28,6 +28,12 @@ std::optional<double> OwnClock::rate_Hz() const {
   return line_.rate_Hz();
 }
 
+std::optional<std::size_t> OwnClock::silent_cell() const {
+  const auto found = std::find(silent_.begin(), silent_.end(), true);
+  if (found == silent_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - silent_.begin());
+}
+
 void OwnClock::add(const Sample& sample) {
   const std::int64_t time_ns = sample.time_ns - options_.delay_ns;
   std::int64_t steps = 1;

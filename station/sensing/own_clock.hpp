@@ -53,6 +53,8 @@ class OwnClock {
   const Counters& counters() const { return counters_; }
   /// The measured rate of the samples; empty until there are enough stamps since the last disorder.
   std::optional<double> rate_Hz() const;
+  /// The first cell whose newest samples do not change at all (WireFault::silent); empty if there is none.
+  std::optional<std::size_t> silent_cell() const;
 
  private:
   void add(const Sample& sample);

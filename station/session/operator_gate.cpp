@@ -61,7 +61,7 @@ void OperatorGate::note(const Input& input) {
   switch (input.kind) {
     case InputKind::stop:
       stop_asked_ = true;
-      program_ends_ = program_ends_ || !input.text.empty();
+      quitting_ = quitting_ || !input.text.empty();
       stop_reason_ = input.text.empty() ? records::kStoppedReason : input.text;
       break;
     case InputKind::failure:
@@ -92,7 +92,7 @@ void OperatorGate::keep(const std::function<void()>& write) {
       if (error.kind() != store::ErrorKind::disk_full || !setup_.observer.empty()) throw;
       detail = error.what();
     }
-    if (program_ends_ || !space_again(detail))
+    if (quitting_ || !space_again(detail))
       throw store::StoreError(
           store::ErrorKind::disk_full,
           fmt::format("{}; the session ended before there was space: {} trials are stored, and later "

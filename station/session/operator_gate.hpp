@@ -40,8 +40,8 @@ class OperatorGate {
 
   /// Calls `write` until its rows are on the disk; only then does the session continue. If the disk is full,
   /// the screen says so and the surface stays silent. The same rows are written again when somebody has freed
-  /// space. Operator inputs are kept in memory meanwhile. If the program is told to end, nobody can free
-  /// space any more: then this throws StoreError (disk_full), which says what is stored.
+  /// space. Operator inputs are kept in memory meanwhile. Once the program has been asked to quit,
+  /// it does not wait for anybody to free space: it throws StoreError (disk_full), which says what is stored.
   void keep(const std::function<void()>& write);
 
   /// Waits until the operator has armed the amplifier. Until then the surface stays silent.
@@ -85,7 +85,7 @@ class OperatorGate {
   Display* display_;
   int shows_ = 0;  ///< number of pages shown
   bool stop_asked_ = false, pause_asked_ = false;
-  bool program_ends_ = false;  ///< the program was told to stop, so no page waits any more
+  bool quitting_ = false;  ///< the program has been asked to quit, so no page waits for an answer
   std::string stop_reason_;
   std::optional<Fault> fault_;
 };

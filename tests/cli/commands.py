@@ -61,6 +61,7 @@ OUT_OF_RANGE = [
     (["check", "demo", "--sessions", "1001"], "0 to 1000"),
     (["export", "--db", "good.sqlite", "--out", "export", "--format", "bid"], "did you mean bids?"),
     (["field", "--tone", "30000", "--points", "1"], "2 to 1000000"),
+    (["field", "--tone", "30000", "--points", "3", "--model", "edge"], "auto | mode | modes"),
     (["field", "--tone", "30000", "--points", "3", "--tolerance", "0"], "above 0"),
     (["map", "--boundary", "150", "--tolerance-mm", "nan"], "above 0"),
     (["map", "--boundary", "nan"], "a number of mm is needed"),

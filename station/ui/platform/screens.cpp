@@ -94,7 +94,7 @@ void run_station(const setup::StationRequest& request) {
   try {
     window.run();
   } catch (const store::StoreError& error) {
-    // The program was told to stop, so nobody may have read the screen.
+    // The program has been asked to quit: the screen is gone before anybody could have read it.
     std::cerr << "turnpoint: " << error.what() << "\n";
   } catch (const std::exception&) {
     // The screen has already shown why the session failed, so do not report the failure again.
