@@ -5,7 +5,8 @@ the study from trials.csv, and this program compares them.
 
     tests/report/corpus.py TURNPOINT [--each NUMBER] [--first SEED] [KIND...]
 
-NUMBER protocols of each kind (default 2). Figures that are not computed again are counted and named at the end. As a
+NUMBER protocols of each kind (default 2). With more than two, the posterior of the diffusion model is sampled as well,
+which takes longer. Figures that are not computed again are counted and named at the end. As a
 negative control, the CSV of one session is changed in one answer, which must be noticed.
 """
 import collections
@@ -24,6 +25,7 @@ from scipy import optimize, special, stats
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 RIG = ROOT / "deploy/rigs/simulated.toml"
+SCRIPT = ROOT / "station/report/scripts/study.py"
 Z95 = 1.959963984540054
 
 # ---------------------------------------------------------------------------------------------------- protocols
@@ -141,7 +143,7 @@ class Kind:
 
     def same_different(self):
         self.people(threshold=(0.1, 0.3), criterion=(0.3, 1.0))
-        self.positive, self.detection = "different", "each"
+        self.positive = "different"
         self.fit = {"function": "weibull", "guess": "false alarms"}
         return TWO_SCENES + '[task]\nkind = "same-different"\nstandard = "reference"\ntarget = "comparison"\nduration_s = 0.6\n' + \
             "gap_s = 0.4\n" + QUESTION + choices(["same", "different"]) + TIMES.replace("ZERO", "interval_off") + \
@@ -396,8 +398,11 @@ class Function:
         for share in (0.35, 0.5, 0.65):
             for log_rate in (math.log(2 / self.range), math.log(6 / self.range), math.log(20 / self.range)):
                 starts.append([self.low + share * self.range, log_rate, 0.01, 0.2][:len(self.bounds)])
-        found = [optimize.minimize(lambda part: self.nll(whole(part)), numpy.array(start)[free], method="L-BFGS-B",
-                                   bounds=[self.bounds[i] for i in free]) for start in starts]
+        if 1 in fixed:  # a steep function has a maximum between each pair of levels
+            starts = [[u, fixed[1], 0.01, 0.2][:len(self.bounds)] for u in numpy.linspace(self.low, self.low + self.range, 25)]
+            starts = sorted(starts, key=lambda start: self.nll(whole(numpy.array(start)[free])))[:5]
+        found = [optimize.minimize(lambda part: self.nll(whole(part)), numpy.array(start)[free], method=method,
+                                   bounds=[self.bounds[i] for i in free]) for start in starts for method in ("L-BFGS-B", "Nelder-Mead")]
         best = min(found, key=lambda result: result.fun)
         return best.fun, whole(best.x)
 
@@ -707,7 +712,7 @@ def compare_trade(report, session, deep):
     found = measured(groups)
     draw = numpy.random.default_rng(7)
     again = numpy.array([measured([kept_again([c[draw.integers(len(c), size=len(c))] for c in g]) for g in raw])
-                         for _ in range(600)])
+                         for _ in range(400)])
     names = {1: "median_response_time_s", 2: "lisas_s", 3: "inverse_efficiency_s"}
     for at in range(len(groups)):
         for which, name in names.items():
@@ -733,8 +738,51 @@ def compare_trade(report, session, deep):
         else:
             ends = numpy.nanquantile(again[:, b, which] - again[:, a, which], [0.025, 0.975])
             report.same(path + ".interval", {"low": ends[0], "high": ends[1]}, 0.2, ends[1] - ends[0])
+    for at, condition in enumerate(session.conditions):
+        compare_predicted(report, session, at, condition, 0.150 if session.kind.name == "diffusion" else 0.0)
     if deep:
         compare_diffusion(report, session)
+
+
+def compare_predicted(report, session, at, condition, anticipation):
+    """What the diffusion with the reported medians predicts of each difficulty, and what was observed."""
+    entry = report.document["instructions"][at]
+    if not entry["predicted"]:
+        return
+    rows = [r for r in session.of(condition, session.rows) if r["outcome"] in ("answered", "timeout", "anticipation")]
+    deadline = float(rows[0]["deadline"])
+    a, ter, c = (entry[name]["value"] for name in ("boundary", "nondecision_s", "contaminants"))
+    end = min(deadline, ter + 8 * deadline)
+    t = numpy.linspace(0, end, 6001)
+    names = sorted({difficulty(r) for r in session.of(condition) if r["correct"] != "n/a"})
+    for i, name in enumerate(names):
+        v = next(d["drift"]["value"] for d in entry["difficulties"] if d["difficulty"] == name)
+        up = 1 / (1 + math.exp(-v * a / 0.01))
+        for key, sign, score in (("right", 1, "1"), ("wrong", -1, "0")):
+            path = f"instructions[{at}].predicted[{i}].{key}"
+            times = numpy.sort([float(r["response_time"]) for r in session.of(condition) if difficulty(r) == name and r["correct"] == score])
+            n = len(times)
+            report.same(path, {"observed": n, "observed_mean_s": numpy.mean(times) if n else None})
+            if n >= 5:
+                quantiles = []
+                for p in (0.1, 0.3, 0.5, 0.7, 0.9):
+                    reach = Z95 * math.sqrt(n * p * (1 - p))
+                    ranks = [min(max(rank, 0), n - 1) for rank in (math.floor(n * p - reach), math.ceil(n * p + reach))]
+                    quantiles.append({"value": numpy.quantile(times, p), "interval": {"low": times[ranks[0]], "high": times[ranks[1]]}})
+                report.same(path + ".observed_quantiles_s", quantiles)
+            after = t - ter
+            density = numpy.zeros(len(t))
+            density[after > 0] = passage(after[after > 0], -sign * v, a)
+            share = up if sign > 0 else 1 - up
+            whole = (1 - c) * density + c * (0.25 + 0.5 * share) / (2 * deadline)
+            sums = numpy.concatenate([[0], numpy.cumsum(0.5 * (whole[1:] + whole[:-1]) * numpy.diff(t))])
+            first, total = numpy.interp(anticipation, t, sums), sums[-1]
+            kept = t >= anticipation
+            mean = numpy.trapz(numpy.where(kept, t * whole, 0), t) / (total - first)
+            wanted = [numpy.interp(first + p * (total - first), sums, t) for p in (0.1, 0.3, 0.5, 0.7, 0.9)]
+            report.same(path + ".predicted_proportion", total - first, 2e-3)
+            report.same(path + ".predicted_mean_s", mean, 5e-3)
+            report.same(path + ".predicted_quantiles_s", wanted, 0.02)
 
 
 def compare_diffusion(report, session):
@@ -830,7 +878,7 @@ def compare_maximum(report, path, fit, function, theirs):
                 continue
             value = function.axis(interval[end]) if index == 0 else math.log(function.rate(interval[end]))
             drops.append(2 * (function.best({index: value})[0] - reported))
-            report.check(f"{path}.{name}_interval.{end}", 2.0 <= drops[-1] <= 9.0, f"the likelihood ratio there is {drops[-1]:.3f}")
+            report.check(f"{path}.{name}_interval.{end}", 3.8 <= drops[-1] <= 9.0, f"the likelihood ratio there is {drops[-1]:.3f}")
         if len(drops) == 2:
             report.check(f"{path}.{name}_interval.low", abs(drops[0] - drops[1]) < 0.05 * max(drops), f"likelihood ratios {drops}")
 
@@ -909,14 +957,12 @@ def compare_discrimination(report, session):
         mine = [r for r in rows if level is None or session.level(r) == level]
         k, n = sum(r["correct"] == "1" for r in mine), len(mine)
         path = f"discrimination[{at}]"
-        report.same(path, {"level": level, "correct": proportion(k, n)} if "correct" in entries[at] else {"level": level})
+        report.same(path, {"level": level, "correct": proportion(k, n)})
         ends = clopper_pearson(k, n)
         for i, (model, intervals) in enumerate(session.kind.models):
             value = {"value": d_prime_of(model, log_linear(k, n), intervals),
                      "interval": {key: d_prime_of(model, p, intervals) for key, p in ends.items()}}
-            for where in (f"{path}.d_primes[{i}]", f"{path}.d_primes[{i}].d_prime"):
-                if f"{where}.value" in report.numbers:
-                    report.same(where, value, 1e-6)
+            report.same(f"{path}.d_prime[{i}]", value)
 
 
 def compare_confusion(report, session):
@@ -951,7 +997,7 @@ def rating_fit(noise, signal, equal):
     found = optimize.minimize(nll, best.x, method="BFGS")
     best = found if found.fun < best.fun else best
     sd = 1 if equal else math.exp(best.x[1])
-    return best.fun, best.x[0], sd
+    return best.fun, best.x[0], sd, best.x[2] + numpy.concatenate([[0], numpy.cumsum(numpy.exp(best.x[3:]))])
 
 
 def compare_ratings(report, session):
@@ -980,12 +1026,12 @@ def compare_ratings(report, session):
             fit = entries[at].get(name)
             if not fit:
                 continue
-            best, mean, sd = rating_fit(noise, signal, equal)
+            best, mean, sd, criteria = rating_fit(noise, signal, equal)
             report.check(f"{path}.{name}.log_likelihood", fit["log_likelihood"] >= -best - 1e-3, f"SciPy finds {-best:.6f}")
             report.same(f"{path}.{name}.log_likelihood", -best, 2e-4)
             d = mean / math.sqrt((1 + sd * sd) / 2)
             report.same(f"{path}.{name}", {"mean": mean, "sd": {"value": sd}, "sensitivity": {"value": d},
-                                          "area": {"value": stats.norm.cdf(d / math.sqrt(2))}}, 1e-2)
+                                          "area": {"value": stats.norm.cdf(d / math.sqrt(2))}, "criteria": criteria}, 1e-2)
 
 
 def compare_judgements(report, session):
@@ -1088,28 +1134,46 @@ def compare_curve(report, session):
                        **{k: found[k] for k in ("hits", "misses", "false_alarms", "correct_rejections", "d_prime")}})
     report.same("response_signal[0].lags", points)
     longest = max(p["response_time_s"] for p in points)
+    d, c = numpy.linspace(0, 8, 801)[:, None], numpy.linspace(-4, 4, 801)[None, :]
+    tables = [numpy.max(p["hits"] * stats.norm.logcdf(d / 2 - c) + p["misses"] * stats.norm.logcdf(c - d / 2) +
+                        p["false_alarms"] * stats.norm.logcdf(-d / 2 - c) + p["correct_rejections"] * stats.norm.logcdf(d / 2 + c), axis=1)
+              for p in points]
 
     def height(p):
-        asymptote, log_rate, intercept = p[:3]
+        asymptote, log_rate, intercept = p
         if not (0 <= asymptote <= 8 and math.log(0.3) <= log_rate <= math.log(40) and 0 <= intercept <= longest):
             return 1e9
         total = 0.5 * ((log_rate - math.log(3)) / 1.5) ** 2 + 0.5 * (asymptote / 1.8) ** 2
-        for point, c in zip(points, p[3:]):
+        for point, table in zip(points, tables):
             t = point["response_time_s"] - intercept
-            d = asymptote * -math.expm1(-math.exp(log_rate) * t) if t > 0 else 0
-            total -= point["hits"] * stats.norm.logcdf(d / 2 - c) + point["misses"] * stats.norm.logcdf(c - d / 2)
-            total -= point["false_alarms"] * stats.norm.logcdf(-d / 2 - c) + point["correct_rejections"] * stats.norm.logcdf(d / 2 + c)
+            total -= numpy.interp(asymptote * -math.expm1(-math.exp(log_rate) * t) if t > 0 else 0, d[:, 0], table)
         return total
-    best = None
-    for start in ([1.5, math.log(3), 0.1], [2.5, math.log(6), 0.3], [1, math.log(1.5), 0.0]):
-        found = optimize.minimize(height, start + [0.0] * len(points), method="Nelder-Mead", options={"maxiter": 9000, "maxfev": 9000})
-        best = found if best is None or found.fun < best.fun else best
+    def best(fixed=None):
+        """The lowest height; `fixed` is the index of a parameter and its value."""
+        free = [i for i in range(3) if not fixed or i != fixed[0]]
+
+        def whole(part):
+            p = numpy.empty(3)
+            p[free] = part
+            if fixed:
+                p[fixed[0]] = fixed[1]
+            return p
+        starts = [[1.5, math.log(3), 0.1], [2.5, math.log(6), 0.3], [1, math.log(1.5), 0.02], [3, math.log(1), 0.05]]
+        found = [optimize.minimize(lambda part: height(whole(part)), numpy.array(start)[free], method="Nelder-Mead",
+                                   options={"maxiter": 900}) for start in starts]
+        return min(found, key=lambda result: result.fun).fun
+    lowest = best()
     entry = report.document["response_signal"][0]
-    for name, value in (("asymptote", best.x[0]), ("rate_per_s", math.exp(best.x[1])), ("intercept_s", best.x[2])):
-        if entry[name]:
-            ends = entry[name]["interval"]
-            width = (ends["high"] or 2 * value) - (ends["low"] or 0)
-            report.same(f"response_signal[0].{name}.value", value, 0.1, width)
+    for index, (name, to) in enumerate((("asymptote", float), ("rate_per_s", math.log), ("intercept_s", float))):
+        if not entry[name]:
+            continue
+        path = f"response_signal[0].{name}"
+        above = best((index, to(entry[name]["value"]))) - lowest
+        report.check(path + ".value", above < 0.05, f"a better curve has a height lower by {above:.3f}")
+        for end, value in entry[name]["interval"].items():
+            if value:  # the profile falls by 2.1 from the best curve to either end; the report finds it on a grid
+                drop = best((index, to(value))) - lowest
+                report.check(f"{path}.interval.{end}", 1.6 < drop < 2.8, f"the height there is lower by {drop:.3f}")
 
 
 def compare_session(report, session, deep):
@@ -1124,7 +1188,9 @@ def compare_session(report, session, deep):
         compare_detection(report, session)
     if kind.models:
         compare_discrimination(report, session)
-    for design, compare in (("confusion", compare_confusion), ("ratings", compare_ratings), ("numbers", compare_judgements),
+    if kind.design == "binary" and report.document["confusion"]:
+        compare_confusion(report, session)
+    for design, compare in (("confusion", compare_confusion), ("ratings", compare_ratings), ("ratings", compare_judgements), ("numbers", compare_judgements),
                             ("line", compare_judgements), ("settings", compare_settings)):
         if kind.design == design:
             compare(report, session)
@@ -1138,6 +1204,8 @@ def compare_study(study, sessions, reports):
     document = study.document
     study.same("sessions.found", len(sessions))
     study.same("sessions.counted", len(sessions))
+    study.same("sessions.superseded", 0)
+    study.same("sessions.incomplete", 0)
     values = collections.defaultdict(dict)
     for at, (code, session) in enumerate(sessions.items()):
         path = f"participants[{at}]"
@@ -1157,7 +1225,7 @@ def compare_study(study, sessions, reports):
                 if entry[name] and mine[name]:  # a study makes fewer bootstrap replicates than a session
                     exact = own["fits"][i]["prior"] is not None
                     width = mine[name]["high"] - mine[name]["low"]
-                    study.same(f"{path}.fits[{i}].{name}", {k: mine[name][k] for k in ("low", "high")}, 1e-9 if exact else 0.25, width)
+                    study.same(f"{path}.fits[{i}].{name}", {k: mine[name][k] for k in ("low", "high")}, 1e-9 if exact else 0.4, width)
         for i, entry in enumerate(document["participants"][at]["estimates"]):
             study.same(f"{path}.estimates[{i}]", {k: own["estimates"][i][k] for k in ("mean", "sd")}, 1e-9)
         for i, entry in enumerate(document["participants"][at]["measures"]):
@@ -1183,6 +1251,102 @@ def compare_study(study, sessions, reports):
             study.same(f"effects[{i}].standardised", numpy.mean(gaps) / numpy.std(gaps, ddof=1))
 
 
+class Mixed:
+    """The group's model: intercept and rate differ between people; the likelihood by Laplace's approximation."""
+
+    def __init__(self, spec, people, lapse):
+        self.name, self.people = spec["function"], people
+        self.lapse, self.guess = lapse, lapse if spec["guess"] == "tied" else spec["guess"]
+
+    def probability(self, z):
+        return numpy.clip(self.guess + (1 - self.guess - self.lapse) * core(self.name, z), 1e-12, 1 - 1e-12)
+
+    def log_likelihood(self, intercept, rate, intercept_sd, rate_sd, correlation):
+        root = numpy.array([[intercept_sd, 0], [correlation * rate_sd, rate_sd * math.sqrt(max(0, 1 - correlation ** 2))]])
+        total, self.modes = 0.0, []
+        for u, n, k in self.people:
+            design = numpy.column_stack([numpy.ones(len(u)), u])
+
+            def minus(b):
+                p = self.probability(design @ (numpy.array([intercept, rate]) + root @ b))
+                return -numpy.sum(k * numpy.log(p) + (n - k) * numpy.log1p(-p)) + 0.5 * b @ b
+            found = optimize.minimize(minus, numpy.zeros(2), method="BFGS", options={"gtol": 1e-8})
+            effects = numpy.array([intercept, rate]) + root @ found.x
+            z = design @ effects
+            p, step = self.probability(z), 1e-5
+            slope_ = (self.probability(z + step) - self.probability(z - step)) / (2 * step)
+            information = (design.T * (n * slope_ ** 2 / (p * (1 - p)))) @ design
+            total -= found.fun + 0.5 * math.log(numpy.linalg.det(root.T @ information @ root + numpy.eye(2)))
+            self.modes.append(effects)
+        return total
+
+
+def compare_groups(study, sessions):
+    document = study.document
+    kind = next(iter(sessions.values())).kind
+    if not kind.fit or kind.fit["guess"] == "false alarms" or kind.fit.get("posterior"):
+        return
+    log_scale = kind.fit["function"] == "weibull"
+    for i, group in enumerate(document["groups"]):
+        fit = group["fit"]
+        if not fit:
+            continue
+        path, people = f"groups[{i}].fit", []
+        for session in sessions.values():
+            condition = group["condition"] or session.conditions[0]
+            levels, trials, positive = counted(session, condition, log_scale)
+            function = Function(kind.fit, levels, trials, positive, log_scale)
+            people.append((function.u, function.n, function.k))
+        model = Mixed(kind.fit, people, fit["lapse"])
+        names = ("intercept", "rate", "intercept_sd", "rate_sd", "correlation")
+        at = [fit[name] for name in names]
+        reported = model.log_likelihood(*at)
+        study.same(path + ".log_likelihood", reported, 2e-4)
+        modes = model.modes
+        for j, (effects, person) in enumerate(zip(modes, people)):
+            u = -effects[0] / effects[1]
+            study.same(f"{path}.participants[{j}].trials", person[1].sum())
+            study.same(f"{path}.participants[{j}].threshold.value", 10 ** (u / 20) if function.log else u, 1e-3)
+            study.same(f"{path}.participants[{j}].slope", math.exp(math.log(effects[1])) / (math.log(10) / 20) if log_scale else 1 / effects[1], 2e-3)
+        u = -fit["intercept"] / fit["rate"]
+        study.same(path + ".threshold.value", 10 ** (u / 20) if function.log else u, 1e-6)
+        study.same(path + ".slope.value", fit["rate"] / (math.log(10) / 20) if log_scale else 1 / fit["rate"], 1e-6)
+        # no parameters nearby are more likely
+        for j, name in enumerate(names):
+            best = reported
+            for share in (0.97, 1.03):
+                moved = list(at)
+                moved[j] = max(-1, min(1, moved[j] * share)) if name == "correlation" else moved[j] * share
+                best = max(best, model.log_likelihood(*moved))
+            study.check(f"{path}.{name}", best <= reported + 2e-3, f"{name} times 0.97 or 1.03 is more likely by {best - reported:.5f}")
+
+
+def compare_tables(study, folder):
+    """Labels, signs and counts are the same in the JSON, in the tables, and in what study.py makes of them."""
+    document = study.document
+    with open(folder / "measures.csv", newline="") as file:
+        listed = {(r["participant"], r["measure"], r["condition"]): r for r in csv.DictReader(file)}
+    mine = {(p["participant"], m["measure"], m["condition"]): m for p in document["participants"] for m in p["measures"]}
+    study.check("measures.csv", listed.keys() == mine.keys(), f"rows differ: {sorted(listed.keys() ^ mine.keys())[:3]}")
+    for key in listed.keys() & mine.keys():
+        study.check("measures.csv", math.isclose(float(listed[key]["value"]), mine[key]["value"], rel_tol=1e-9, abs_tol=1e-12)
+                    and listed[key].get("unit", mine[key]["unit"]) == mine[key]["unit"], f"{key}: {listed[key]}, {mine[key]}")
+    try:
+        import pandas  # noqa: F401
+    except ImportError:
+        return
+    printed = subprocess.run([sys.executable, SCRIPT, folder], capture_output=True, text=True, check=True).stdout
+    lines = {tuple(row[:3]): row[3:] for row in csv.reader(printed.splitlines()) if row[0] != "accuracy" or row[1]}
+    effects = {(e["measure"], e["first"], e["second"]): e for e in document["effects"] if e["participants"] > 0}
+    study.check("study.py", lines.keys() == effects.keys(), f"rows differ: {sorted(lines.keys() ^ effects.keys())[:3]}")
+    for key in lines.keys() & effects.keys():
+        difference, _, participants = lines[key]
+        study.check("study.py", int(participants) == effects[key]["participants"], f"{key}: {participants} participants")
+        if effects[key]["difference"]:
+            study.check("study.py", math.isclose(float(difference), effects[key]["difference"]["value"], rel_tol=2e-5, abs_tol=1e-9),
+                        f"{key}: {difference}, {effects[key]['difference']}")
+
+
 def measure_of(entry, own, session):
     """The same number in the report of the session, which was compared with the trials; none if it has no such number."""
     name = entry["measure"]
@@ -1196,6 +1360,31 @@ def measure_of(entry, own, session):
     keys = {"proportion correct": "proportion_correct", "median response time": "median_response_time_s", "LISAS": "lisas_s",
             "inverse efficiency": "inverse_efficiency_s", "boundary": "boundary", "time outside the decision": "nondecision_s",
             "drift": "drift"}
+    if name.startswith("mean rating at ") or name.startswith("geometric mean at ") or name.startswith("mean at "):
+        level = float(re.search(r"at (\S+)", name).group(1).replace("\u2212", "-"))
+        found = min(own["judgements"][0]["levels"], key=lambda entry: abs(entry["level"] - level))
+        return found["mean"]["value"] if found["mean"] else None
+    tables = {"area under the ROC": ("roc", "area"), "d' of ratings": ("roc", "equal_variances", "sensitivity"),
+              "d_a of ratings": ("roc", "unequal_variances", "sensitivity"), "SD with a signal": ("roc", "unequal_variances", "sd"),
+              "d'": ("detection", "d_prime"), "criterion c": ("detection", "criterion"), "mean setting": ("settings", "mean"),
+              "scatter of settings": ("settings", "sd"), "settings from below minus from above": ("settings", "side_difference"),
+              "asymptote of d'": ("response_signal", "asymptote"), "rate of d'": ("response_signal", "rate_per_s"),
+              "intercept of d'": ("response_signal", "intercept_s"), "exponent": ("judgements", "exponent")}
+    if name in tables:
+        found = own[tables[name][0]][-1]
+        for key in tables[name][1:]:
+            found = found[key]
+        return found["value"]
+    if name.startswith("d' ("):
+        return next(d["value"] for d in own["discrimination"][-1]["d_prime"] if f"d' ({d['model']})" == name)
+    if name == "mean time of right answers":
+        mad, below = (3.5, 0.15) if session.kind.name == "diffusion" else (None, 0.0)
+        rows = [r for r in session.of(session.conditions[at]) if r["correct"] != "n/a"]
+        times = numpy.array([float(r["response_time"]) for r in rows])
+        return numpy.mean(times[keep(times, below, mad) & numpy.array([r["correct"] == "1" for r in rows])])
+    if name == "post-error slowing":
+        found = own["instructions"][at]["post_error_slowing_s"]
+        return found["value"] if found else None
     if name in keys and at < len(own["instructions"]):
         found = own["instructions"][at][keys[name]]
         return found["value"] if found else None
@@ -1237,9 +1426,11 @@ def one(turnpoint, name, seed, deep, spoil=False):
         if kind.fit and kind.design == "confusion":
             kind.fit = None
         compare_session(reports[codes[0]], sessions[codes[0]], deep)
-        document = json.loads(call(turnpoint, "report", "--study", "--mode", "simulated", "--db", database, "--json"))
+        document = json.loads(call(turnpoint, "report", "--study", "--mode", "simulated", "--db", database, "--json", "--tables", folder / "tables"))
         study = Compared(document, f"{name} {seed} study")
         compare_study(study, sessions, reports)
+        compare_tables(study, folder / "tables")
+        compare_groups(study, sessions)
         return reports[codes[0]], study
 
 
@@ -1258,7 +1449,7 @@ def main():
     wrong, left, numbers, compared = [], collections.Counter(), 0, 0
     for name in kinds or KINDS:
         for seed in range(first, first + each):
-            for part in one(turnpoint, name, seed, deep=True):
+            for part in one(turnpoint, name, seed, deep=each > 2):
                 wrong += part.wrong
                 numbers += len(part.numbers)
                 compared += len(part.seen & set(part.numbers))

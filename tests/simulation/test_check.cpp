@@ -246,7 +246,7 @@ choices = [ { id = "done", label = { en = "Done" } } ]
                  .blocks)
           for (const auto& row : block.trials) {
             CHECK(row.outcome == terms::Outcome::answered);
-            settings.push_back(row.value.value());
+            settings.push_back(std::stod(row.response.value()));
           }
         double sum = 0;
         for (const double setting : settings) sum += setting;

@@ -151,9 +151,9 @@ def call(turnpoint, *arguments):
 def exported(turnpoint, folder, path, seed):
     database = folder / "lab.sqlite"
     run = call(turnpoint, "run", path, "--rig", RIG, "--participant", "P01", "--db", database, "--headless",
-               "--observer", f"{OBSERVER},seed={seed}")
+               "--observer", f"{OBSERVER},seed={seed},limit_s=120")
     if run.returncode != 0:
-        raise RuntimeError(f"run: status {run.returncode}: {run.stderr.strip()[-300:]}")
+        raise RuntimeError(f"seed {seed}: run: status {run.returncode}: {run.stderr.strip()[-300:]} {run.stdout.strip()[-300:]}")
     call(turnpoint, "export", "--db", database, "--out", folder / "csv")
     with open(next((folder / "csv").rglob("trials.csv")), newline="") as file:
         return presented(list(csv.DictReader(file)))
