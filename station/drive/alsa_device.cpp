@@ -200,17 +200,11 @@ void check_kernel(snd_pcm_t* pcm, const OutputConfig& config, const std::string&
 
 void say_nothing(const char*, int, const char*, int, const char*, va_list) {}
 
-// alsa-lib also prints its errors to standard error. This object silences it on this thread, because our own
-// messages report the errors.
-struct QuietAlsa {
-  snd_local_error_handler_t before = snd_lib_error_set_local(say_nothing);
-  QuietAlsa() = default;
-  QuietAlsa(const QuietAlsa&) = delete;
-  QuietAlsa& operator=(const QuietAlsa&) = delete;
-  ~QuietAlsa() { snd_lib_error_set_local(before); }
-};
-
 }  // namespace
+
+QuietAlsa::QuietAlsa() : before_(snd_lib_error_set_local(say_nothing)) {}
+
+QuietAlsa::~QuietAlsa() { snd_lib_error_set_local(before_); }
 
 AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name, Direction direction) {
   const QuietAlsa quiet;

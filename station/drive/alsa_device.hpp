@@ -11,6 +11,19 @@ extern "C" {  // alsa-lib's header declares its per-thread error handler outside
 
 namespace turnpoint::drive {
 
+/// alsa-lib also prints its errors to standard error. This object silences it on this thread, because our own
+/// messages report the errors.
+class QuietAlsa {
+ public:
+  QuietAlsa();
+  ~QuietAlsa();
+  QuietAlsa(const QuietAlsa&) = delete;
+  QuietAlsa& operator=(const QuietAlsa&) = delete;
+
+ private:
+  snd_local_error_handler_t before_;
+};
+
 struct PcmCloser {
   void operator()(snd_pcm_t* pcm) const noexcept { snd_pcm_close(pcm); }
 };
