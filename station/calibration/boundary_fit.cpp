@@ -5,7 +5,7 @@
 #include "physics/boundary_budget.hpp"
 #include "physics/boundary_fit.hpp"
 #include "station/calibration/fits.hpp"
-#include "station/scene/planner.hpp"
+#include "station/rig/physical.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
 #include "station/texts/refusal.hpp"
@@ -46,7 +46,7 @@ BoundaryFit fit_boundaries(const rig::Rig& rig, const std::string& edge, std::ve
       throw texts::Refusal(texts::phrase("fitted.edge", {texts::plain(edge)}));
     std::vector<physics::MeasuredBoundary> measured;
     for (const auto& point : points) measured.push_back({point.frequency_Hz, point.boundary_m, point.sd_m});
-    const auto fit = physics::fit_boundaries(scene::surface_of(rig), options, measured);
+    const auto fit = physics::fit_boundaries(rig::surface_of(rig), options, measured);
     require_agreement(fit, points);
     for (std::size_t i = 0; i < points.size(); ++i) {
       points[i].residual_m = fit.residuals_m[i];
@@ -56,7 +56,7 @@ BoundaryFit fit_boundaries(const rig::Rig& rig, const std::string& edge, std::ve
     }
     return {physics::format(options.edge), std::move(points), surface_fit(fit)};
   } catch (const physics::Refused& refused) {
-    throw texts::Refusal(scene::phrase_of(refused));
+    throw texts::Refusal(rig::phrase_of(refused));
   } catch (const std::invalid_argument& error) {
     throw terms::UsageError(error.what());
   }

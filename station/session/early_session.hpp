@@ -2,7 +2,7 @@
 #include <string>
 #include <utility>
 
-#include "station/terms/usage_error.hpp"
+#include "station/text/problem.hpp"
 
 namespace turnpoint::session {
 
@@ -20,10 +20,11 @@ struct EarlySession {
 /// Describes it in English, for the command line and the log.
 std::string describe(const EarlySession& early);
 
-/// A session that does not begin because it would be too early.
-class TooEarly : public terms::UsageError {
+/// A session that is possible, except that it would begin too early.
+class TooEarly : public text::BadInput {
  public:
-  TooEarly(const std::string& what, EarlySession early) : UsageError(what), early_(std::move(early)) {}
+  TooEarly(text::Problem problem, EarlySession early)
+      : BadInput({std::move(problem)}), early_(std::move(early)) {}
   const EarlySession& early() const { return early_; }
 
  private:

@@ -74,7 +74,7 @@ Page Pages::blank(PageKind kind, const protocol::Block* block, const trial::Dire
   page.language = setup_.language;
   page.run_mode = store::name(setup_.run_mode);
   const auto& surface = setup_.rig.surface;
-  const auto shape = scene::surface_of(setup_.rig);
+  const auto shape = rig::surface_of(setup_.rig);
   page.length_mm = 1e3 * surface.length_m;
   page.wide_half_width_mm = 1e3 * physics::half_width_m(shape, 0);
   page.narrow_half_width_mm = 1e3 * physics::half_width_m(shape, surface.length_m);

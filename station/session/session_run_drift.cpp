@@ -76,7 +76,7 @@ void SessionRun::correct_drift() {
   if (!newest_drift_) return;
   const auto drift = *std::exchange(newest_drift_, std::nullopt);
   double largest_m = 0;
-  const auto surface = scene::surface_of(setup_.rig);
+  const auto surface = rig::surface_of(setup_.rig);
   for (const auto& transducer : setup_.rig.transducers)
     for (const double f :
          {transducer.low_Hz, std::sqrt(transducer.low_Hz * transducer.high_Hz), transducer.high_Hz})

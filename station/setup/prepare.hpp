@@ -38,23 +38,12 @@ struct RunRequest {
   std::string cleaned;  ///< whether the surface was cleaned just before: yes or no; "" if not stated
 };
 
-/// Thrown by prepare() if a session is possible, except that too few days have passed since the participant's
-/// last one. RunRequest::early overrules that.
-class TooEarly : public text::BadInput {
- public:
-  TooEarly(text::Problem problem, session::EarlySession early)
-      : BadInput({std::move(problem)}), early_(std::move(early)) {}
-  const session::EarlySession& early() const { return early_; }
-
- private:
-  session::EarlySession early_;
-};
-
 /// Loads and checks everything that a session needs, and applies the calibration to the rig. Throws
 /// text::BadInput with all problems of the two files, of their combination, and of participant code, language
-/// and mode. A calibration that has expired or belongs to another rig is an error if the request names it or
-/// if the session is live; otherwise it is ignored. Throws protocol::Abandoned soon after `stop` is
-/// requested.
+/// and mode; session::TooEarly if only too few days have passed since the participant's last session, which
+/// RunRequest::early overrules. A calibration that has expired or belongs to another rig is an error if the
+/// request names it or if the session is live; otherwise it is ignored. Throws protocol::Abandoned soon after
+/// `stop` is requested.
 session::Setup prepare(const RunRequest& request, const std::stop_token& stop = {});
 
 /// Returns the reasons why the live session of this request cannot run; empty if it can. The reasons name no
