@@ -6,11 +6,28 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <memory>
+#include <string_view>
 #include <system_error>
 
 #include "station/terms/letters.hpp"
 
 namespace turnpoint::drive {
+
+void pack(std::span<const std::int32_t> samples, int channels, const FrameLayout& layout,
+          std::span<unsigned char> out) noexcept {
+  const auto used = static_cast<std::size_t>(channels);
+  const int first_bit = 32 - layout.bits();
+  auto* at = out.data();
+  for (std::size_t frame = 0; frame < samples.size() / used; ++frame) {
+    for (std::size_t channel = 0; channel < used; ++channel) {
+      const auto sample = static_cast<std::uint32_t>(samples[frame * used + channel]);
+      for (int bit = first_bit; bit < 32; bit += 8) *at++ = static_cast<unsigned char>(sample >> bit);
+    }
+    at = std::fill_n(at, layout.bytes() - used * static_cast<std::size_t>(layout.bits() / 8), '\0');
+  }
+}
+
 namespace {
 
 bool captures(snd_pcm_t* pcm) { return snd_pcm_stream(pcm) == SND_PCM_STREAM_CAPTURE; }
@@ -219,9 +236,10 @@ AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name,
   const auto stream = direction == Direction::capture ? SND_PCM_STREAM_CAPTURE : SND_PCM_STREAM_PLAYBACK;
   const int opened = snd_pcm_open(&pcm, name.c_str(), stream, no_conversion | SND_PCM_NONBLOCK);
   check(opened, name,
-        opened == -EBUSY                        ? "the device is in use by another program"
-        : opened == -EACCES || opened == -EPERM ? "this user may not use sound devices; add the user to the group audio"
-                                                : "the device cannot be opened");
+        opened == -EBUSY ? "the device is in use by another program"
+        : opened == -EACCES || opened == -EPERM
+            ? "this user may not use sound devices; add the user to the group audio"
+            : "the device cannot be opened");
   device.pcm.reset(pcm);
   check_type(pcm, config, name);
   set_hardware(device, config, name);
@@ -230,6 +248,41 @@ AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name,
   check_chain(device, config, name);
   check_kernel(pcm, config, name);
   return device;
+}
+
+namespace {
+
+struct Free {
+  void operator()(snd_ctl_t* card) const noexcept { snd_ctl_close(card); }
+  void operator()(snd_ctl_elem_info_t* info) const noexcept { snd_ctl_elem_info_free(info); }
+  void operator()(snd_ctl_elem_value_t* value) const noexcept { snd_ctl_elem_value_free(value); }
+};
+
+}  // namespace
+
+std::optional<bool> card_switch(const std::string& output_uri, const std::string& name) {
+  constexpr std::string_view scheme = "alsa:";
+  if (!output_uri.starts_with("alsa:hw:")) return std::nullopt;
+  // Remove the device part of the name: the card of hw:CARD=NAME,DEV=0 is hw:CARD=NAME.
+  const std::string card_name = output_uri.substr(scheme.size(), output_uri.find(',') - scheme.size());
+  snd_ctl_t* opened = nullptr;
+  if (snd_ctl_open(&opened, card_name.c_str(), SND_CTL_READONLY) < 0) return std::nullopt;
+  const std::unique_ptr<snd_ctl_t, Free> card(opened);
+  snd_ctl_elem_info_t* new_info = nullptr;
+  snd_ctl_elem_value_t* new_value = nullptr;
+  if (snd_ctl_elem_info_malloc(&new_info) < 0) return std::nullopt;
+  const std::unique_ptr<snd_ctl_elem_info_t, Free> info(new_info);
+  if (snd_ctl_elem_value_malloc(&new_value) < 0) return std::nullopt;
+  const std::unique_ptr<snd_ctl_elem_value_t, Free> value(new_value);
+  snd_ctl_elem_info_set_interface(info.get(), SND_CTL_ELEM_IFACE_MIXER);
+  snd_ctl_elem_info_set_name(info.get(), name.c_str());
+  snd_ctl_elem_value_set_interface(value.get(), SND_CTL_ELEM_IFACE_MIXER);
+  snd_ctl_elem_value_set_name(value.get(), name.c_str());
+  if (snd_ctl_elem_info(card.get(), info.get()) < 0 || snd_ctl_elem_read(card.get(), value.get()) < 0)
+    return std::nullopt;
+  for (unsigned channel = 0; channel < snd_ctl_elem_info_get_count(info.get()); ++channel)
+    if (snd_ctl_elem_value_get_boolean(value.get(), channel) != 0) return true;
+  return false;
 }
 
 }  // namespace turnpoint::drive

@@ -16,7 +16,7 @@
 #include "station/rig/rig.hpp"
 #include "station/scene/cues.hpp"
 #include "station/scene/scene.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::scene {
 

@@ -5,11 +5,19 @@
 #include "station/protocol/answers.hpp"
 #include "station/protocol/interludes.hpp"
 #include "station/scene/planner.hpp"
-#include "station/session/parameter_name.hpp"
 #include "station/text/number.hpp"
 #include "station/texts/texts.hpp"
 
 namespace turnpoint::session {
+
+texts::Phrase parameter_name(const std::string& parameter) {
+  static const std::map<std::string, const char*> known{
+      {"threshold", "report.threshold"}, {"pse", "report.pse"},     {"slope", "report.slope"},
+      {"spread", "report.spread"},       {"lapse", "report.lapse"}, {"criterion", "report.criterion"},
+      {"gradient", "report.gradient"},   {"floor", "report.floor"}};
+  const auto found = known.find(parameter);
+  return found == known.end() ? texts::plain(parameter) : texts::Phrase{found->second, "", {}};
+}
 
 namespace {
 

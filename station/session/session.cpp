@@ -22,9 +22,9 @@
 #include "station/session/stage.hpp"
 #include "station/store/station.hpp"
 #include "station/system/clocks.hpp"
-#include "station/terms/force_carrier.hpp"
+#include "station/terms/limits.hpp"
 #include "station/text/canonical.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::session {
 

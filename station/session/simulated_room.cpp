@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "station/scene/planner.hpp"
-#include "station/terms/force_carrier.hpp"
+#include "station/terms/limits.hpp"
 
 namespace turnpoint::session {
 

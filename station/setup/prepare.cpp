@@ -17,10 +17,9 @@
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
 #include "station/text/toml.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::setup {
-
 namespace {
 
 using text::Problem;
@@ -209,7 +208,8 @@ session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
     problems.push_back({{}, texts::phrase_of(refused), phrase("refusal.same_version")});
   }
   if (problems.empty()) problems = programs::problems_of(setup.protocol);
-  if (problems.empty() && next.too_early) throw session::TooEarly({{}, next.problem, next.allowed}, *next.too_early);
+  if (problems.empty() && next.too_early)
+    throw session::TooEarly({{}, next.problem, next.allowed}, *next.too_early);
   if (next.too_early) problems.push_back({{}, next.problem, next.allowed});
   if (!problems.empty()) throw text::BadInput(std::move(problems));
   return setup;

@@ -15,7 +15,7 @@
 #include "station/store/open.hpp"
 #include "station/store/signal_code.hpp"
 #include "station/store/stored_signals.hpp"
-#include "station/terms/force_carrier.hpp"
+#include "station/terms/limits.hpp"
 #include "tests/session/library_card.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"

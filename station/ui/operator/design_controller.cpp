@@ -13,7 +13,7 @@
 #include "station/setup/prepare.hpp"
 #include "station/system/read_file.hpp"
 #include "station/text/toml.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 #include "station/ui/operator/design_lists.hpp"
 #include "station/ui/operator/facts.hpp"
 #include "station/ui/operator/figure_view.hpp"
