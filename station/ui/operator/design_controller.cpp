@@ -94,7 +94,7 @@ bool DesignController::open(const QString& path) try {
   old_version_.clear();
   if (draft_->document() != nullptr)
     if (const auto* version = draft_->document()->find({"protocol", "version"}); version != nullptr)
-      old_version_ = draft_->document()->value(*version).string;
+      old_version_ = version->scalar.string;
   return true;
 } catch (const std::exception& error) {
   return refuse(phrases_of(error).front());
