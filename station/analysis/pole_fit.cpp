@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::analysis {
 

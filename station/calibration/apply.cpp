@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "station/text/number.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::calibration {
 

@@ -10,7 +10,7 @@
 #include "station/rig/csv.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::calibration {
 namespace {

@@ -6,7 +6,7 @@
 #include "station/analysis/least_squares.hpp"
 #include "station/analysis/pole_fit.hpp"
 #include "station/text/number.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::calibration {
 

@@ -1,4 +1,4 @@
-#include "station/store/annotate.hpp"
+#include "station/store/session_log.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>

@@ -1,23 +1,253 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <string>
 
 #include "physics/boundary_budget.hpp"
 #include "station/calibration/apply.hpp"
-#include "station/cli/calibrate_sensors.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/run.hpp"
 #include "station/cli/screens.hpp"
 #include "station/cli/shared_options.hpp"
 #include "station/maintenance/calibrate.hpp"
+#include "station/maintenance/force_weights.hpp"
+#include "station/maintenance/pick_up_sweep.hpp"
+#include "station/rig/rig.hpp"
+#include "station/session/session.hpp"
+#include "station/session/stage.hpp"
 #include "station/system/write_file.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::cli {
+
+/// Options of `turnpoint calibrate` for the sensors of a rig. The last five members are copies of options
+/// that all kinds of `turnpoint calibrate` share.
+struct SensorOptions {
+  bool pick_up = false, forces = false;
+  std::string sensor = "patch", vibrometer, accelerometer;
+  double instrument_percent = 5;
+  double full_scale = 0.1, table_full_scale = 1;
+  bool arm = false;
+  std::string rig_path, out;
+};
+
+void add_sensor_options(Command& command, SensorOptions& options);
+
+/// Carries out `turnpoint calibrate --pickup`: plays a sweep, fits the responses of the pick-ups, and writes
+/// the calibration file.
+void calibrate_pick_ups(const SensorOptions& options, const rig::Rig& rig, Context& context);
+
+/// Carries out `turnpoint calibrate --forces`: asks for dead weights on the terminal, and writes the
+/// calibration file.
+void calibrate_forces(const SensorOptions& options, const rig::Rig& rig, Context& context);
+
+namespace calibrate_sensors_command {
+
+using text::number;
+
+Json to_json(const calibration::PickUp& pick_up) {
+  Json json{{"channel", pick_up.response.channel},
+            {"drive_channel", pick_up.response.drive_channel},
+            {"response_sd", json_number(pick_up.response_sd)},
+            {"resonances", Json::array()},
+            {"scale", nullptr}};
+  for (const auto& r : pick_up.resonances)
+    json["resonances"].push_back({{"frequency_Hz", json_number(r.frequency_Hz)},
+                                  {"frequency_sd_Hz", json_number(r.frequency_sd_Hz)},
+                                  {"quality_factor", json_number(r.quality_factor)},
+                                  {"quality_sd", json_number(r.quality_sd)}});
+  if (const auto& scale = pick_up.scale)
+    json["scale"] = {{"sensor", std::string(name(scale->sensor))},
+                     {"um_per_full_scale", json_number(scale->um_per_full_scale)},
+                     {"at_Hz", json_number(scale->at_Hz)},
+                     {"exponent", json_number(scale->exponent)},
+                     {"sd", json_number(scale->sd)}};
+  return json;
+}
+
+void print(std::ostream& out, const calibration::PickUp& pick_up) {
+  const auto& points = pick_up.response.points;
+  fmt::print(
+      out,
+      "pick-up on channel {}, output channel {}: {} to {} kHz, uncertainty {} % of the largest response\n",
+      pick_up.response.channel, pick_up.response.drive_channel, number(1e-3 * points.front().frequency_Hz, 4),
+      number(1e-3 * points.back().frequency_Hz, 4), number(100 * pick_up.response_sd, 2));
+  for (const auto& r : pick_up.resonances)
+    fmt::print(out, "  resonance {} +- {} Hz, quality factor {} +- {}\n", number(r.frequency_Hz, 6),
+               number(r.frequency_sd_Hz, 2), number(r.quality_factor, 4), number(r.quality_sd, 2));
+  if (const auto& scale = pick_up.scale)
+    fmt::print(out,
+               "  scale: {} um for full scale at {} kHz, proportional to frequency to the power {}; "
+               "uncertainty {} % (one standard deviation)\n",
+               number(scale->um_per_full_scale, 4), number(1e-3 * scale->at_Hz, 4),
+               number(-scale->exponent, 3), number(100 * scale->sd, 2));
+  else
+    fmt::print(out, "  scale: not measured here; levels are relative\n");
+}
+
+}  // namespace calibrate_sensors_command
+
+void add_sensor_options(Command& command, SensorOptions& options) {
+  command.add_flag("--pickup", options.pick_up,
+                   "Sweep each transducer, and fit the response of the pick-ups to what they capture");
+  command.add_flag("--forces", options.forces,
+                   "Calibrate the force cells with dead weights; asks for each weight and waits for Enter");
+  command
+      .add_option("--sensor", options.sensor,
+                  "With --pickup: patch (a piezo patch; its table needs 5 frequencies) | accelerometer (one "
+                  "frequency is enough)")
+      ->capture_default_str()
+      ->check(one_of({"patch", "accelerometer"}));
+  command
+      .add_option(
+          "--vibrometer", options.vibrometer,
+          "With --pickup: CHANNEL=FILE, a table of the displacement at the pick-up on this captured channel "
+          "(columns frequency_Hz,displacement_um), measured while driving at --full-scale")
+      ->value("CHANNEL=FILE");
+  command
+      .add_option("--accelerometer", options.accelerometer,
+                  "Like --vibrometer, with columns frequency_Hz,acceleration_m_s2")
+      ->value("CHANNEL=FILE");
+  command
+      .add_option("--instrument-sd", options.instrument_percent,
+                  "Standard deviation of the instrument that measured the table, in percent")
+      ->capture_default_str()
+      ->check(range(0, 100));
+}
+
+void calibrate_pick_ups(const SensorOptions& options, const rig::Rig& rig, Context& context) {
+  using namespace calibrate_sensors_command;
+  if (rig.capture && !session::simulates_capture(rig) && !options.arm)
+    throw UsageError(
+        "calibrate: --pickup plays a sweep through the amplifier; make sure that nobody touches the surface, "
+        "and add --arm");
+  maintenance::PickUpOptions plan;
+  plan.full_scale = options.full_scale, plan.table_full_scale = options.table_full_scale;
+  plan.sensor = calibration::find_sensor(options.sensor).value();
+  plan.vibrometer = options.vibrometer, plan.accelerometer = options.accelerometer;
+  plan.instrument_sd = 1e-2 * options.instrument_percent;
+  const auto made = maintenance::with_pick_ups(rig, maintenance::calibrate_pick_ups(rig, plan), options.out);
+  const auto out =
+      options.out.empty() ? calibration::file_for(options.rig_path, calibration::today()) : options.out;
+  maintenance::write_calibration(made, rig, out);
+  if (context.json) {
+    Json json{{"file", out}, {"pick_ups", Json::array()}};
+    for (const auto& pick_up : made.pick_ups) json["pick_ups"].push_back(to_json(pick_up));
+    context.out << json.dump(2, ' ', false, kInvalidBytes) << "\n";
+    return;
+  }
+  for (const auto& pick_up : made.pick_ups) print(context.out, pick_up);
+  fmt::print(context.out, "wrote {}\n", out);
+}
+
+namespace calibrate_forces_command {
+
+using maintenance::ForceResult;
+using text::number;
+
+/// Asks the operator to place a weight. The operator types an empty line when the weight stands, or "s" to
+/// leave this step out. Returns false for "s".
+bool stands(std::istream& in, std::ostream& out, const maintenance::WeightStep& step) {
+  if (!step.remark.empty() && step.tare) fmt::print(out, "{}\n", texts::say(step.remark, "en"));
+  fmt::print(out, "{} {} (s: leave this step out) ", texts::say(step.text(), "en"),
+             step.tap == maintenance::Tap::none ? "Then press Enter" : "Enter begins the reading");
+  out.flush();
+  std::string line;
+  if (!std::getline(in, line))
+    throw UsageError("calibrate: --forces asks for weights; the input ended before the last one");
+  if (line != "" && line != "s")
+    throw UsageError("calibrate: --forces understands an empty line and \"s\", not \"" + line + "\"");
+  return line.empty();
+}
+
+bool again(std::istream& in, std::ostream& out, const std::string& why) {
+  fmt::print(out, "{}\nRepair it and press Enter to read again (q: give up) ", why);
+  out.flush();
+  std::string line;
+  return std::getline(in, line) && line != "q";
+}
+
+void print(std::ostream& out, const ForceResult& result) {
+  fmt::print(out, "\n  mass   at       pull     residual: normal   lateral   position\n");
+  for (std::size_t k = 0; k < result.steps.size(); ++k) {
+    const auto& step = result.steps[k];
+    const auto& rest = result.residuals[k];
+    fmt::print(out, "{:5.0f} g {:4.0f} mm {:7.0f} g {:15.2f} mN {:6.2f} mN {:7.2f} mm\n", step.mass_g,
+               step.position_mm, step.pull_g, 1e3 * rest.normal_N, 1e3 * rest.lateral_N, rest.position_mm);
+  }
+  for (const auto& step : result.repeated)
+    fmt::print(out, "weighed again: {}\n", texts::say(step.name(), "en"));
+  const auto share = [](double misfit) { return number(misfit, 2); };
+  fmt::print(
+      out,
+      "residuals divided by the errors expected from weights, places and pulley: normal {}, lateral {}, "
+      "moment {}{}\n",
+      share(result.misfit[0]), share(result.misfit[1]), share(result.misfit[2]),
+      *std::max_element(result.misfit.begin(), result.misfit.end()) > 3
+          ? "; that is much: the weights or their places are not known well, and the uncertainty is larger"
+          : "");
+  fmt::print(out, "largest change of the zero reading: {} mN\n", number(result.zero_moved_mN, 2));
+  if (result.resonance_Hz)
+    fmt::print(out,
+               "lowest resonance of the plate on its cells: {} Hz; usable_Hz = {}: faster changes of force "
+               "are not measured correctly\n",
+               number(*result.resonance_Hz, 3), number(result.cells.usable_Hz.value(), 3));
+  else
+    fmt::print(out, "usable_Hz is not known, because a tap was left out or the plate did not ring\n");
+  fmt::print(out,
+             "uncertainty (one standard deviation, for a finger in the middle with 0.5 N normal and 0.25 N "
+             "lateral force): "
+             "normal force {} mN, "
+             "lateral force {} mN, position {} mm, friction {}\n",
+             number(1e3 * result.sd.normal_N, 2), number(1e3 * result.sd.lateral_N, 2),
+             number(result.sd.position_mm, 2), number(result.sd.friction, 2));
+}
+
+Json to_json(const ForceResult& result, const std::string& out) {
+  Json json{{"file", out},
+            {"zero_moved_mN", json_number(result.zero_moved_mN)},
+            {"resonance_Hz", result.resonance_Hz ? Json(json_number(*result.resonance_Hz)) : Json()},
+            {"usable_Hz", result.cells.usable_Hz ? Json(json_number(*result.cells.usable_Hz)) : Json()},
+            {"misfit", {result.misfit[0], result.misfit[1], result.misfit[2]}},
+            {"uncertainty",
+             {{"normal_N", json_number(result.sd.normal_N)},
+              {"lateral_N", json_number(result.sd.lateral_N)},
+              {"position_mm", json_number(result.sd.position_mm)},
+              {"friction", json_number(result.sd.friction)}}},
+            {"repeated", Json::array()},
+            {"weights", Json::array()}};
+  for (const auto& step : result.repeated) json["repeated"].push_back(texts::say(step.name(), "en"));
+  for (std::size_t k = 0; k < result.steps.size(); ++k)
+    json["weights"].push_back({{"mass_g", result.steps[k].mass_g},
+                               {"pull_g", result.steps[k].pull_g},
+                               {"position_mm", json_number(result.steps[k].position_mm)},
+                               {"residual_normal_N", json_number(result.residuals[k].normal_N)},
+                               {"residual_lateral_N", json_number(result.residuals[k].lateral_N)},
+                               {"residual_position_mm", json_number(result.residuals[k].position_mm)}});
+  return json;
+}
+
+}  // namespace calibrate_forces_command
+
+void calibrate_forces(const SensorOptions& options, const rig::Rig& rig, Context& context) {
+  using namespace calibrate_forces_command;
+  const auto bridges = maintenance::open_bridges(rig);
+  const auto result = maintenance::weigh(
+      rig, *bridges, [&](const auto& step) { return stands(std::cin, context.err, step); },
+      [&](const auto& why) { return again(std::cin, context.err, texts::say(why, "en")); });
+  const auto out = maintenance::write_forces(rig, result.cells, options.out);
+  if (context.json) {
+    context.out << to_json(result, out).dump(2, ' ', false, kInvalidBytes) << "\n";
+    return;
+  }
+  print(context.out, result);
+  fmt::print(context.out, "wrote {}\n", out);
+}
 
 namespace calibrate_command {
 

@@ -10,7 +10,6 @@
 #include "station/cli/long_work.hpp"
 #include "station/cli/shared_options.hpp"
 #include "station/cli/sound.hpp"
-#include "station/cli/uncertainty.hpp"
 #include "station/programs/programs.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/protocol/triggers.hpp"

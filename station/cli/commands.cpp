@@ -7,7 +7,6 @@
 #include <system_error>
 
 #include "station/cli/command.hpp"
-#include "station/cli/completion.hpp"
 #include "station/cli/escaped_output.hpp"
 #include "station/cli/manual.hpp"
 #include "station/system/write_file.hpp"

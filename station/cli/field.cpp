@@ -109,7 +109,7 @@ void field(const Options& options, Context& context) {
   if ((options.points > 0) == !options.at.empty()) throw UsageError("field: give either --points or --at");
   const auto rig = setup::calibrated_rig(setup::rig_or_default(options.rig, context.err), options.calibration,
                                          context.err);
-  const auto surface = scene::surface_of(rig);
+  const auto surface = rig::surface_of(rig);
   const auto tones = parse_tones(options.tones);
   std::vector<double> x_m;
   if (options.points > 0) x_m = physics::linspace_points(surface, options.points);
@@ -121,7 +121,7 @@ void field(const Options& options, Context& context) {
   // The friction model needs amplitudes in metres, so compute them again without the normalisation that the
   // user chose.
   const auto metres = physics::amplitude_profile(surface, tones, x_m, choice.model);
-  const auto map = scene::friction_of(rig);
+  const auto map = rig::friction_of(rig);
   std::vector<double> friction;
   for (const double a : metres) friction.push_back(map.relative_friction(a));
   const auto notes = physics::describe(surface, tones, result);

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "station/cli/command.hpp"
-#include "station/system/on_stop_signal.hpp"
 #include "station/system/progress.hpp"
+#include "station/system/stop_signals.hpp"
 
 namespace turnpoint::cli {
 

@@ -183,8 +183,8 @@ void map(const Options& options, Context& context) {
   if (!options.model.empty()) wanted.model = physics::parse_model(options.model);
   if (options.tolerance_mm > 0) wanted.tolerance_m = options.tolerance_mm * 1e-3;
   if (wanted.edge.kind == physics::Edge::Kind::friction)
-    wanted.friction = physics::FrictionContext{scene::friction_of(rig), 1e-6, rig.friction.fingertip_m};
-  const auto surface = scene::surface_of(rig);
+    wanted.friction = physics::FrictionContext{rig::friction_of(rig), 1e-6, rig.friction.fingertip_m};
+  const auto surface = rig::surface_of(rig);
   const physics::BoundaryMap boundary_map(surface, wanted);
   std::vector<physics::MapAnswer> answers;
   for (const double mm : options.boundaries_mm) answers.push_back(boundary_map.at_boundary(mm * 1e-3));

@@ -2,16 +2,18 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <optional>
 #include <ostream>
 #include <utility>
 
+#include "station/cli/run.hpp"
 #include "station/system/clocks.hpp"
+#include "station/system/stop_signals.hpp"
 
 namespace turnpoint::cli {
-
 namespace {
 
 using session::InputKind;
@@ -141,6 +143,29 @@ void OperatorConsole::take(const std::string& line) {
     return say("\"" + line + "\" is not a command; type arm, disarm, next, pause, repeat, stop or note TEXT");
   }
   inputs_.push(std::move(input));
+}
+
+namespace {
+
+void stop(session::Inputs& inputs, const std::string& signal) {
+  session::Input input;
+  input.time_ns = system::monotonic_ns();
+  input.kind = session::InputKind::stop;
+  input.text = "the program was stopped by a signal (" + signal + ")";
+  inputs.push(std::move(input));
+}
+
+}  // namespace
+
+void run_without_screen(Context& context, const session::Setup& setup) {
+  // Ctrl-C also ends the program that reads our messages through a pipe. If SIGPIPE were not ignored, our
+  // next message would then end the session.
+  ::signal(SIGPIPE, SIG_IGN);
+  session::Inputs inputs;
+  const system::OnStopSignal on_signal([&inputs](const std::string& signal) { stop(inputs, signal); });
+  if (!setup.observer.empty()) return show_summary(context, session::run(setup, nullptr, inputs));
+  OperatorConsole console(setup.rig, inputs, context.err);
+  show_summary(context, session::run(setup, &console, inputs), " --headless");
 }
 
 }  // namespace turnpoint::cli

@@ -4,9 +4,11 @@
 #include <string>
 #include <thread>
 
+#include "station/cli/command.hpp"
 #include "station/rig/rig.hpp"
 #include "station/session/inputs.hpp"
 #include "station/session/page.hpp"
+#include "station/session/session.hpp"
 
 namespace turnpoint::cli {
 
@@ -34,5 +36,10 @@ class OperatorConsole : public session::Display {
   // The last member, so that the thread is joined before the objects that it uses are destroyed.
   std::jthread reader_;
 };
+
+/// Runs a session without a screen, with a person or a simulated observer, to its end and prints its summary.
+/// The first SIGTERM, SIGINT or SIGHUP ends the session like the operator's stop (a simulated session at its
+/// next trial). A second signal of the same kind ends the process at once.
+void run_without_screen(Context& context, const session::Setup& setup);
 
 }  // namespace turnpoint::cli

@@ -7,7 +7,6 @@
 #include "station/cli/json.hpp"
 #include "station/cli/shared_options.hpp"
 #include "station/cli/sound.hpp"
-#include "station/cli/uncertainty.hpp"
 #include "station/desk/preview.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/protocol/resolve.hpp"

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "station/cli/command.hpp"
-#include "station/cli/console_session.hpp"
+#include "station/cli/operator_console.hpp"
 #include "station/cli/run.hpp"
 #include "station/cli/screens.hpp"
 #include "station/cli/shared_options.hpp"

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <system_error>
 
-#include "station/cli/console_session.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/operator_console.hpp"
 #include "station/cli/screens.hpp"
 #include "station/cli/shared_options.hpp"
 #include "station/setup/places.hpp"

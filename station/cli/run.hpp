@@ -5,7 +5,6 @@
 #include "station/cli/command.hpp"
 #include "station/cli/screens.hpp"
 #include "station/setup/prepare.hpp"
-#include "station/setup/station_request.hpp"
 
 namespace turnpoint::cli {
 

@@ -6,7 +6,6 @@
 #include "station/desk/preview.hpp"
 #include "station/maintenance/panel_latency.hpp"
 #include "station/setup/prepare.hpp"
-#include "station/setup/station_request.hpp"
 #include "station/terms/usage_error.hpp"
 
 namespace turnpoint::cli {

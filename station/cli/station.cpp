@@ -6,7 +6,7 @@
 #include "station/cli/shared_options.hpp"
 #include "station/desk/operator_code.hpp"
 #include "station/setup/places.hpp"
-#include "station/setup/station_request.hpp"
+#include "station/setup/prepare.hpp"
 
 namespace turnpoint::cli {
 

@@ -78,8 +78,7 @@ std::string key_of(const std::string& name) {
 }
 
 Document::Document(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {
-  text::parse_toml(text_, file_);
-  root_ = parts_of(text_);
+  root_ = text::parts_of(text_, file_);
   const auto first = text_.find('\n');
   if (first != std::string::npos && first > 0 && text_[first - 1] == '\r') line_break_ = "\r\n";
 }
@@ -94,11 +93,6 @@ const Part* Document::find(const Path& path) const {
 std::string Document::written(const Path& path) const {
   const auto* part = find(path);
   return part == nullptr ? "" : text_.substr(part->value.begin, part->value.end - part->value.begin);
-}
-
-text::Value Document::value(const Part& part) const {
-  const auto written = text_.substr(part.value.begin, part.value.end - part.value.begin);
-  return text::parse_toml("v = " + written, file_).entries.front().value;
 }
 
 Path Document::at(int line, int column) const {
@@ -195,7 +189,7 @@ std::string Document::inserted(const Path& path, const std::string& value) const
   if (table->kind == Part::Kind::dotted) {
     std::vector<Span> lines;
     collect_entries(*table, lines);
-    at = line_end(text_, lines.back().end);
+    at = text::line_end(text_, lines.back().end);
   }
   return new_line_at(at, names(below_header) + " = " + value);
 }

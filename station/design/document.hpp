@@ -3,10 +3,11 @@
 #include <string_view>
 #include <vector>
 
-#include "station/design/parts.hpp"
 #include "station/text/toml.hpp"
 
 namespace turnpoint::design {
+
+using text::Part, text::Span;
 
 /// The path to a key, with indices for the items of lists: {"block", "0", "levels"}.
 using Path = std::vector<std::string>;
@@ -27,8 +28,6 @@ class Document {
   const Part* find(const Path& path) const;
   /// Returns the value as it is written, without comments; "" if there is none.
   std::string written(const Path& path) const;
-  /// Returns the value of a scalar, array or inline table.
-  text::Value value(const Part& part) const;
   /// Returns the path of the innermost part at this place. Lines and columns (characters) count from 1;
   /// without a column, the beginning of the line counts. Empty if no key is there.
   Path at(int line, int column = 0) const;

@@ -21,10 +21,10 @@ std::string section_of(const std::string& table) {
   return found == sections.end() ? "other" : found->second;
 }
 
-std::string name_in(const Document& document, const Part& table) {
+std::string name_in(const Part& table) {
   const auto* name = table.find("name");
   if (name == nullptr || name->kind != Part::Kind::scalar) return "";
-  return document.value(*name).string;
+  return name->scalar.string;
 }
 
 std::vector<std::string> names_of(const Document& document, const std::string& table) {
@@ -32,14 +32,14 @@ std::vector<std::string> names_of(const Document& document, const std::string& t
   const auto* part = document.find({table});
   if (part == nullptr) return names;
   for (const auto& below : part->parts)
-    names.push_back(part->kind == Part::Kind::table_array ? name_in(document, below) : below.name);
+    names.push_back(part->kind == Part::Kind::table_array ? name_in(below) : below.name);
   return names;
 }
 
 std::vector<std::string> languages_of(const Document& document) {
   std::vector<std::string> languages;
   if (const auto* part = document.find({"protocol", "languages"}); part != nullptr)
-    for (const auto& item : document.value(*part).items) languages.push_back(item.string);
+    for (const auto& item : text::value_of(*part).items) languages.push_back(item.string);
   return languages;
 }
 
@@ -52,7 +52,7 @@ std::string shown(const Document& document, const Part& part) {
   }
   const auto written = document.text().substr(part.value.begin, part.value.end - part.value.begin);
   const bool text = written.starts_with('"') || written.starts_with('\'');
-  return text ? document.value(part).string : written;
+  return text ? part.scalar.string : written;
 }
 
 bool is_flat(const Part& part) {
@@ -91,7 +91,7 @@ class Maker {
     for (const auto& table : list->parts) {
       if (!table.is_table()) continue;
       auto made = group({name, table.name}, of_list ? rule : schema_.rule(*rule.keys.back().schema), &table);
-      made.name = of_list ? name_in(document_, table) : table.name;
+      made.name = of_list ? name_in(table) : table.name;
       made.copied = table.kind == Part::Kind::table;
       made.removable = made.copied && list->parts.size() > 1;
       groups.push_back(std::move(made));
@@ -168,7 +168,7 @@ class Maker {
   std::optional<text::Value> value_of(const Part& part) const {
     if (part.kind == Part::Kind::scalar || part.kind == Part::Kind::array ||
         part.kind == Part::Kind::inline_table)
-      return document_.value(part);
+      return text::value_of(part);
     text::Value value;
     if (part.kind == Part::Kind::table_array) value.kind = text::Value::Kind::array;
     for (const auto& below : part.parts) value.entries.push_back({below.name, {}, {}});

@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "station/desk/finger_gauges.hpp"
 #include "station/desk/live_facts.hpp"
 #include "station/desk/preview.hpp"
 #include "station/desk/scene_figures.hpp"

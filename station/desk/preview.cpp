@@ -98,7 +98,7 @@ void describe_plan(SceneLook& look) {
   for (const auto& product : plan.audible_products)
     add("preview.product",
         phrase("preview.product_order", {shown(product.frequency_Hz, 5), plain(product.order)}));
-  for (const auto& warning : plan.warnings) add("preview.warning", scene::phrase_of(warning));
+  for (const auto& warning : plan.warnings) add("preview.warning", rig::phrase_of(warning));
 }
 
 void describe_cues(SceneLook& look) {
@@ -158,7 +158,7 @@ SceneLook Preview::look(const std::string& scene, const protocol::Factors& facto
 }
 
 Outline outline_of(const rig::Rig& rig) {
-  const auto shape = scene::surface_of(rig);
+  const auto shape = rig::surface_of(rig);
   const double length_m = rig.surface.length_m;
   return {1e3 * length_m, 1e3 * physics::half_width_m(shape, 0), 1e3 * physics::half_width_m(shape, length_m),
           rig.surface.wide_end == rig::WideEnd::left};

@@ -9,7 +9,7 @@
 #include "station/desk/report_data.hpp"
 #include "station/report/figures.hpp"
 #include "station/report/words.hpp"
-#include "station/session/parameter_name.hpp"
+#include "station/session/pages.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::desk {

@@ -71,7 +71,7 @@ Place place_on(const rig::Rig& rig, double width_px, double height_px) {
            1,
            rig.surface.length_m,
            rig.surface.wide_end == rig::WideEnd::left,
-           scene::surface_of(rig)};
+           rig::surface_of(rig)};
   double widest = 0;
   for (int i = 0; i <= 20; ++i)
     widest = std::max(widest, physics::half_width_m(at.surface, at.length_m * i / 20));

@@ -87,4 +87,13 @@ class OutputRefused : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Opens an ALSA device by its alsa-lib name (`hw:CARD=DAC,DEV=0`) in such a way that no sample is altered.
+/// Throws OutputRefused with what was asked and what the device offers.
+std::unique_ptr<Output> open_alsa(const OutputConfig& config, const std::string& name);
+
+/// Opens a RIFF/WAVE file of 32-bit PCM for writing (WAVE_FORMAT_EXTENSIBLE, with the converter's depth as
+/// valid bits). Writing fails with an error before the file reaches 4 GiB, the limit of the format. Throws
+/// std::system_error if the file cannot be created.
+std::unique_ptr<Output> open_wav(const OutputConfig& config, const std::string& path);
+
 }  // namespace turnpoint::drive

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "station/drive/noise.hpp"
 #include "station/drive/voice.hpp"
 #include "station/system/rights.hpp"
 #include "station/terms/usage_error.hpp"

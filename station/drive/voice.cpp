@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "station/drive/noise.hpp"
-#include "station/drive/ramp.hpp"
+#include "station/drive/burst.hpp"
 #include "station/drive/trigger_code.hpp"
 
 namespace turnpoint::drive {

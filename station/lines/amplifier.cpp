@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "station/lines/guarded_amplifier.hpp"
-#include "station/lines/simulated_amplifier.hpp"
+#include "station/lines/simulated_lines.hpp"
 #include "station/lines/uri.hpp"
 #include "station/terms/usage_error.hpp"
 

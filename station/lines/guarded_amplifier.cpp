@@ -5,17 +5,160 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <exception>
+#include <functional>
 #include <mutex>
+#include <optional>
 #include <thread>
+#include <type_traits>
 
-#include "station/lines/guard_orders.hpp"
-#include "station/lines/published.hpp"
+#include "station/lines/guard.hpp"
 #include "station/system/clocks.hpp"
 #include "station/system/rights.hpp"
+#include "station/system/wake_up.hpp"
 
 namespace turnpoint::lines {
+
+/// A value that one thread publishes and any thread can read consistently. The writer never waits. A reader
+/// that overlaps with a write starts again (a sequence lock whose words are atomics).
+template <typename T>
+class Published {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  void store(const T& value) noexcept {
+    std::array<std::uint64_t, words> raw{};
+    std::memcpy(raw.data(), &value, sizeof value);
+    const auto version = version_.load(std::memory_order_relaxed);
+    version_.store(version + 1, std::memory_order_relaxed);
+    // A reader that sees one of these words also sees the odd version number, so it knows that a write is in
+    // progress and reads again.
+    for (std::size_t k = 0; k < words; ++k) words_[k].store(raw[k], std::memory_order_release);
+    version_.store(version + 2, std::memory_order_release);
+  }
+
+  T load() const noexcept {
+    std::array<std::uint64_t, words> raw{};
+    for (;;) {
+      const auto before = version_.load(std::memory_order_acquire);
+      for (std::size_t k = 0; k < words; ++k) raw[k] = words_[k].load(std::memory_order_acquire);
+      if (before % 2 == 0 && version_.load(std::memory_order_relaxed) == before) break;
+    }
+    T value;
+    std::memcpy(static_cast<void*>(&value), raw.data(), sizeof value);
+    return value;
+  }
+
+ private:
+  static constexpr std::size_t words = (sizeof(T) + 7) / 8;
+  std::atomic<std::uint32_t> version_{0};
+  std::array<std::atomic<std::uint64_t>, words> words_{};
+};
+
+/// Commands from ordinary threads to the guard's thread, and its answers. An ordinary thread waits until its
+/// command has been carried out; the guard waits for nobody. A command that only switches off takes effect
+/// once it is posted, even if its caller never runs again.
+class GuardOrders {
+ public:
+  /// Commands of an operator or the session that may be refused.
+  enum class Ask : std::uint32_t { nothing, arm, enable, clear };
+
+  /// What the guard finds when it looks for commands. Commands that switch off take precedence over the
+  /// others.
+  struct Taken {
+    std::uint32_t ticket = 0;
+    Ask ask = Ask::nothing;
+    bool disable = false, disarm = false;
+    std::uint32_t trips = 0;  ///< faults that switch the amplifier off; bit k is for terms::FaultKind k
+  };
+
+  /// `scheduler_point` (may be empty) is called on the caller's thread between the steps of a command. A test
+  /// can stall the thread there.
+  explicit GuardOrders(std::function<void()> scheduler_point)
+      : scheduler_point_(std::move(scheduler_point)) {}
+
+  // Gives a command and waits for the answer. For ordinary threads. If several threads call it, they take
+  // turns.
+  std::optional<Guard::Refusal> ask(Ask what);
+  void disable() noexcept { post(off_, disable_bit); }
+  void disarm() noexcept { post(off_, disarm_bit); }
+  void trip(terms::FaultKind kind) noexcept { post(trips_, 1u << static_cast<unsigned>(kind)); }
+
+  // Takes the waiting commands, if any. For the guard's thread.
+  std::optional<Taken> take() noexcept;
+  void done(const Taken& taken, std::optional<Guard::Refusal> refusal) noexcept;
+
+  /// Wakes the guard's thread without giving it a command.
+  void wake() noexcept { wake_.ring(); }
+  int descriptor() const noexcept { return wake_.descriptor(); }
+
+ private:
+  static constexpr std::uint32_t disable_bit = 1, disarm_bit = 2;
+
+  void post(std::atomic<std::uint32_t>& order, std::uint32_t bits) noexcept;
+  void await(std::uint32_t ticket) noexcept;
+  void scheduler_point() const noexcept;
+
+  std::function<void()> scheduler_point_;
+  std::mutex asking_;  ///< held by the thread that waits in ask(); the guard never locks it
+  std::atomic<Ask> ask_{Ask::nothing};
+  std::atomic<std::uint32_t> off_{0}, trips_{0};
+  std::atomic<std::uint32_t> posted_{0}, handled_{0};
+  /// answer to the latest ask(); written before handled_ reaches the ticket of that call
+  std::optional<Guard::Refusal> refusal_;
+  system::WakeUp wake_;
+};
+
+std::optional<Guard::Refusal> GuardOrders::ask(Ask what) {
+  const std::lock_guard lock(asking_);
+  ask_.store(what);
+  scheduler_point();
+  const auto ticket = posted_.fetch_add(1) + 1;
+  wake_.ring();
+  await(ticket);
+  return refusal_;
+}
+
+void GuardOrders::post(std::atomic<std::uint32_t>& order, std::uint32_t bits) noexcept {
+  // From here on the guard will carry out the command, at its next tick at the latest, even if this thread
+  // stops.
+  order.fetch_or(bits);
+  scheduler_point();
+  const auto ticket = posted_.fetch_add(1) + 1;
+  wake_.ring();
+  await(ticket);
+}
+
+void GuardOrders::await(std::uint32_t ticket) noexcept {
+  scheduler_point();
+  for (auto handled = handled_.load(); static_cast<std::int32_t>(handled - ticket) < 0;
+       handled = handled_.load())
+    handled_.wait(handled);
+  scheduler_point();
+}
+
+void GuardOrders::scheduler_point() const noexcept {
+  if (scheduler_point_) scheduler_point_();
+}
+
+std::optional<GuardOrders::Taken> GuardOrders::take() noexcept {
+  wake_.clear();
+  const auto ticket = posted_.load();
+  const auto ask = ask_.exchange(Ask::nothing);
+  const auto off = off_.exchange(0), trips = trips_.exchange(0);
+  if (ticket == handled_.load() && ask == Ask::nothing && off == 0 && trips == 0) return std::nullopt;
+  return Taken{ticket, ask, (off & disable_bit) != 0, (off & disarm_bit) != 0, trips};
+}
+
+void GuardOrders::done(const Taken& taken, std::optional<Guard::Refusal> refusal) noexcept {
+  if (taken.ask != Ask::nothing) refusal_ = refusal;
+  handled_.store(taken.ticket);
+  handled_.notify_all();
+}
+
 namespace {
 
 using terms::FaultKind;

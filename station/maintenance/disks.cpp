@@ -19,7 +19,7 @@
 #include <system_error>
 
 #include "station/system/file_descriptor.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::maintenance {
 

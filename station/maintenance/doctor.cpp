@@ -13,16 +13,15 @@
 #include <initializer_list>
 #include <regex>
 #include <string_view>
-#include <utility>
 #include <system_error>
+#include <utility>
 
 #include "station/drive/alsa_capture.hpp"
-#include "station/drive/alsa_mixer.hpp"
+#include "station/drive/alsa_device.hpp"
 #include "station/drive/engine.hpp"
 #include "station/iio/converter.hpp"
 #include "station/sensing/own_clock.hpp"
 #include "station/session/cell_feed.hpp"
-#include "station/session/mixer.hpp"
 #include "station/session/self_test.hpp"
 #include "station/session/stage.hpp"
 #include "station/setup/places.hpp"

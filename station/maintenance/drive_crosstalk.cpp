@@ -14,7 +14,6 @@
 #include "station/session/self_test.hpp"
 #include "station/session/stage.hpp"
 #include "station/session/vibration_watch.hpp"
-#include "station/terms/force_carrier.hpp"
 #include "station/terms/limits.hpp"
 #include "station/terms/usage_error.hpp"
 

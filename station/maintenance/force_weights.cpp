@@ -11,10 +11,10 @@
 #include "station/maintenance/calibrate.hpp"
 #include "station/maintenance/panel_latency.hpp"
 #include "station/sensing/tap.hpp"
-#include "station/terms/force_carrier.hpp"
+#include "station/terms/limits.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::maintenance {
 

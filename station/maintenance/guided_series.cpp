@@ -17,7 +17,7 @@
 #include "station/system/write_file.hpp"
 #include "station/terms/limits.hpp"
 #include "station/terms/usage_error.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::maintenance {
 

@@ -7,7 +7,7 @@
 #include "station/lines/buttons.hpp"
 #include "station/maintenance/calibrate.hpp"
 #include "station/setup/open_touch.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 #include "station/touch/touch_reader.hpp"
 
 namespace turnpoint::maintenance {

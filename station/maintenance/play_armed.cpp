@@ -7,11 +7,12 @@
 
 #include "station/drive/prepared_burst.hpp"
 #include "station/lines/amplifier.hpp"
+#include "station/session/burst.hpp"
 #include "station/session/stage.hpp"
 #include "station/system/clocks.hpp"
 #include "station/system/stop_signals.hpp"
 #include "station/text/number.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::maintenance {
 
@@ -151,6 +152,24 @@ drive::PlayReport play_on_rig(const rig::Rig& rig, const drive::Burst& burst, co
   auto config = session::stream_of(rig);
   config.output.uri = "null:";
   return drive::play(config, burst);
+}
+
+namespace {
+
+constexpr double kLongest_s = 5, kUsual_s = 2, kShortestRest_s = 0.5;
+
+}  // namespace
+
+FeltScene feel_scene(const rig::Rig& rig, const protocol::Protocol& protocol, const std::string& scene,
+                     const protocol::Factors& factors, const std::stop_token& stop) {
+  FeltScene felt;
+  felt.length_s = std::min({protocol.task.duration_s.value_or(protocol.timing.explore_s.value_or(kUsual_s)),
+                            kLongest_s, rig.limits.continuous_s});
+  felt.rest_s = std::max(kShortestRest_s, felt.length_s * (1 / rig.limits.duty - 1));
+  const auto burst = session::scene_burst(rig, protocol, scene, factors, felt.length_s);
+  felt.tones = burst.tones.count;
+  felt.peak = play_on_rig(rig, burst, stop).peak;
+  return felt;
 }
 
 }  // namespace turnpoint::maintenance

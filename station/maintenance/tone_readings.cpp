@@ -10,7 +10,7 @@
 #include "station/drive/engine.hpp"
 #include "station/drive/prepared_burst.hpp"
 #include "station/drive/sine.hpp"
-#include "station/maintenance/capture_thread.hpp"
+#include "station/maintenance/captured_sweep.hpp"
 #include "station/maintenance/panel_latency.hpp"
 #include "station/maintenance/play_armed.hpp"
 #include "station/sensing/lock_in.hpp"

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "station/random/elementary.hpp"
 
 namespace turnpoint::observer {
+
+using std::numbers::pi;
 
 namespace {
 
@@ -26,7 +29,6 @@ double kept_share(double time) {
     }
     return sum;
   }
-  constexpr double pi = 3.14159265358979323846;
   for (int n = 0; term > 1e-17; ++n) {
     const double m = n + 0.5;
     term = m * random::exp(0.5 / time - 0.5 * m * m * pi * pi * time);
@@ -69,7 +71,6 @@ double upper_probability(double drift, double bound) {
 }
 
 double upper_by(double drift, double bound, double time_s) {
-  constexpr double pi = 3.14159265358979323846;
   const double pull = std::clamp(drift * bound, -kSurest, kSurest), time = time_s / (bound * bound);
   if (time <= 0) return 0.5;
   // With pull = drift bound and time in units of bound^2, this is P(upper) - pull times the sum over odd n of

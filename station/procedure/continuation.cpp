@@ -1,7 +1,7 @@
 #include "station/procedure/continuation.hpp"
 
 #include "station/text/number.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::procedure {
 

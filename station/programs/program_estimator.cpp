@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "station/programs/program_choice.hpp"
+#include "station/programs/conversation.hpp"
 
 namespace turnpoint::programs {
 

@@ -4,7 +4,6 @@
 
 #include "station/observer/observer.hpp"
 #include "station/programs/conversation.hpp"
-#include "station/programs/program_choice.hpp"
 
 namespace turnpoint::programs {
 

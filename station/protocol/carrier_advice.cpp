@@ -7,7 +7,7 @@
 
 #include "station/protocol/combinations.hpp"
 #include "station/scene/force_carrier.hpp"
-#include "station/terms/force_carrier.hpp"
+#include "station/terms/limits.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::protocol {

@@ -251,7 +251,7 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
     if (!plan.inside_tolerance && inexact[combination.scene].cases++ == 0)
       inexact[combination.scene].first = in_case(combination, plan.beyond_tolerance);
     for (const auto& warning : plan.warnings)
-      told.emplace(warning.code, in_case(combination, scene::phrase_of(warning)));
+      told.emplace(warning.code, in_case(combination, rig::phrase_of(warning)));
   }
   for (const auto& [name, trouble] : unreachable)
     survey.problems.push_back({trouble.place, counted(trouble.first, trouble.cases), trouble.allowed});

@@ -187,7 +187,7 @@ struct SignalRow {
   Bytes data;
 };
 
-/// What force sensors say about the finger in one trial (station/sensing/trial_summary.hpp). `sensing` is ""
+/// What force sensors say about the finger in one trial (station/sensing/trial_finger.hpp). `sensing` is ""
 /// if the rig has no force sensors; otherwise "ok", or why the forces are not known. A value that could not
 /// be measured is empty.
 struct FingerRow {

@@ -236,17 +236,6 @@ double Planner::State::drive_under_finger_m(const Scene& scene, double frequency
   return wanted_m / found->second;
 }
 
-texts::Phrase phrase_of(const physics::Statement& statement, const std::string& table) {
-  std::vector<texts::Phrase> values;
-  for (const auto& value : statement.values) values.push_back(plain(value));
-  return phrase(table + "." + statement.code, std::move(values));
-}
-
-texts::Phrase phrase_of(const physics::Warning& warning) { return phrase_of(warning, "physics_warning"); }
-texts::Phrase phrase_of(const physics::Refused& refused) {
-  return phrase_of(refused.why(), "physics_refusal");
-}
-
 /// Says which error bounds of the chosen model are beyond the tolerance.
 texts::Phrase beyond_tolerance(const physics::PlanChoice& choice, const physics::Tolerance& tolerance) {
   texts::Phrase all = plain("");
@@ -303,7 +292,7 @@ DrivePlan Planner::plan(const Scene& scene) {
   try {
     return plans.emplace(key, make(scene)).first->second;
   } catch (const physics::Refused& refused) {
-    throw Unreachable(phrase_of(refused));
+    throw Unreachable(rig::phrase_of(refused));
   } catch (const std::domain_error& error) {  // a model does not apply
     throw Unreachable(plain(error.what()));
   } catch (const std::invalid_argument& error) {  // a number of the scene has no meaning on this surface

@@ -12,10 +12,11 @@
 #include "physics/planner.hpp"
 #include "physics/surface.hpp"
 #include "physics/warning.hpp"
+#include "station/rig/physical.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/cues.hpp"
 #include "station/scene/scene.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::scene {
 
@@ -24,10 +25,6 @@ class Unreachable : public texts::Refusal {
  public:
   using Refusal::Refusal;
 };
-
-/// Says a warning or a refusal of the physics library in a language that is chosen later.
-texts::Phrase phrase_of(const physics::Warning& warning);
-texts::Phrase phrase_of(const physics::Refused& refused);
 
 /// One tone as the drive will play it.
 struct DrivenTone {
@@ -137,10 +134,5 @@ class Planner {
   Planner& by_theory(physics::PlateTheory theory);
   std::unique_ptr<State> state_;
 };
-
-/// Converts the rig's surface and friction map to the types of the physics library. Throws
-/// std::invalid_argument for values that the library does not accept.
-physics::Surface surface_of(const rig::Rig& rig);
-physics::FrictionMap friction_of(const rig::Rig& rig);
 
 }  // namespace turnpoint::scene

@@ -6,7 +6,10 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <numbers>
+#include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "station/drive/sine.hpp"
 #include "station/terms/usage_error.hpp"
@@ -14,11 +17,130 @@
 namespace turnpoint::sensing {
 namespace {
 
+// number of outputs after which the kept frames are moved to the front of their buffer
+constexpr std::size_t kSpareOutputs = 16;
+
+}  // namespace
+
+CarrierFilter::CarrierFilter(const std::vector<double>& taps, int factor, std::uint64_t increment,
+                             const std::array<int, inputs>& channels, int stride)
+    : half_(static_cast<std::int64_t>(taps.size() / 2)),
+      factor_(factor),
+      increment_(increment),
+      channels_(channels),
+      stride_(stride),
+      kept_(taps.size() + kSpareOutputs * static_cast<std::size_t>(factor)),
+      filled_(taps.size()),
+      loops_(&best_loops()) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  std::fill(kept_.begin(), kept_.end(), Quad{{nan, nan, nan, nan}});
+  const double scale = 0x1p-30;  // 2 / 2^31: the factor 2 of the filter, and the full scale of a sample
+  for (std::int64_t n = 0; n <= half_; ++n) {
+    const double tap = scale * taps[static_cast<std::size_t>(half_ + n)] * (n == 0 ? 0.5 : 1);
+    const std::uint64_t phase = increment * static_cast<std::uint64_t>(n);
+    const auto even = static_cast<float>(tap * drive::sine_of_phase(phase + drive::quarter_cycle));
+    const auto odd = static_cast<float>(tap * drive::sine_of_phase(phase));
+    even_.push_back({{even, even, even, even}});
+    odd_.push_back({{odd, odd, odd, odd}});
+  }
+}
+
+std::int64_t CarrierFilter::take(std::int64_t first, const std::int32_t* frames,
+                                 std::int64_t count) noexcept {
+  // Output m is complete once it has the frame m * factor + half.
+  const std::int64_t since = ((first - half_) % factor_ + factor_) % factor_;
+  const std::int64_t needed = since == 0 ? 1 : factor_ - since + 1;
+  const std::int64_t taken = std::min(count, needed);
+  append(frames, taken);
+  ready_ = taken == needed;
+  if (ready_) finish(first + taken - 1 - half_);
+  return taken;
+}
+
+void CarrierFilter::append(const std::int32_t* frames, std::int64_t count) noexcept {
+  if (filled_ + static_cast<std::size_t>(count) > kept_.size()) {
+    const auto kept = static_cast<std::size_t>(2 * half_);
+    std::copy_n(kept_.data() + filled_ - kept, kept, kept_.data());
+    filled_ = kept;
+  }
+  Quad* to = kept_.data() + filled_;
+  filled_ += static_cast<std::size_t>(count);
+  if (frames == nullptr) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    std::fill_n(to, count, Quad{{nan, nan, nan, nan}});
+    return;
+  }
+  loops_->pick_four(frames, count, channels_.data(), stride_, to->value);
+}
+
+void CarrierFilter::finish(std::int64_t centre) noexcept {
+  // The processor works on the sines, each a long chain of operations, while it begins with the filter.
+  const std::uint64_t phase = increment_ * static_cast<std::uint64_t>(centre);
+  const double c = drive::sine_of_phase(phase + drive::quarter_cycle), s = drive::sine_of_phase(phase);
+  const Quad* middle = kept_.data() + filled_ - 1 - half_;
+  Quad re, im;
+  loops_->carrier(middle->value, half_, even_.front().value, odd_.front().value, re.value, im.value);
+  for (std::size_t i = 0; i < inputs; ++i) {
+    const double real = re.value[i], imaginary = -im.value[i];
+    output_[i] = {real * c + imaginary * s, imaginary * c - real * s};
+  }
+  output_index_ = centre / factor_;
+}
+
+namespace {
+// number of samples after which the kept ones are moved to the front of their buffer
+constexpr std::size_t kSpareSamples = 128;
+}  // namespace
+
+std::vector<double> low_pass(double pass_Hz, double stop_Hz, double rate_Hz, double attenuation_dB) {
+  const double transition = 2 * std::numbers::pi * (stop_Hz - pass_Hz) / rate_Hz;
+  const double beta = 0.1102 * (attenuation_dB - 8.7);
+  const int half = static_cast<int>(std::ceil((attenuation_dB - 7.95) / (2.285 * transition) / 2));
+  const double cut_off = (pass_Hz + stop_Hz) / rate_Hz;  // as a fraction of half the sampling rate
+  std::vector<double> taps;
+  for (int k = -half; k <= half; ++k) {
+    const double x = std::numbers::pi * cut_off * k, place = static_cast<double>(k) / (half + 1);
+    taps.push_back((k == 0 ? 1 : std::sin(x) / x) *
+                   std::cyl_bessel_i(0.0, beta * std::sqrt(1 - place * place)));
+  }
+  const double sum = std::accumulate(taps.begin(), taps.end(), 0.0);
+  for (double& tap : taps) tap /= sum;
+  return taps;
+}
+
+Decimator::Decimator(const std::vector<double>& taps, int factor)
+    : half_taps_(taps.begin() + static_cast<std::ptrdiff_t>(taps.size() / 2), taps.end()),
+      kept_(taps.size() + kSpareSamples),
+      filled_(taps.size()),
+      half_(static_cast<std::int64_t>(taps.size() / 2)),
+      factor_(factor),
+      loops_(&best_loops()) {
+  half_taps_.front() /= 2;  // the loop adds the sample in the middle twice
+  for (Lanes& sample : kept_) sample.fill(std::numeric_limits<double>::quiet_NaN());
+}
+
+bool Decimator::push(std::int64_t index, const Lanes& sample) noexcept {
+  if (filled_ == kept_.size()) {
+    const auto kept = static_cast<std::size_t>(2 * half_);
+    std::copy_n(kept_.end() - static_cast<std::ptrdiff_t>(kept), kept, kept_.begin());
+    filled_ = kept;
+  }
+  kept_[filled_++] = sample;
+  const std::int64_t centre = index - half_;
+  if (centre % factor_ != 0) return false;
+  output_index_ = centre / factor_;
+  const Lanes& middle = kept_[filled_ - 1 - static_cast<std::size_t>(half_)];
+  loops_->eight(middle.data(), half_, half_taps_.data(), output_.data());
+  return true;
+}
+
+namespace {
+
 constexpr int middle_rate_Hz = 8000;
 constexpr double attenuation_dB = 100;
 constexpr double reference_tolerance = 0.03, quadrature_share = 0.05;
-/// A bridge whose samples are equal for this long is silent. Its carrier is never exactly balanced, and even the
-/// noise of a converter with 16 bits changes the last digit more often.
+/// A bridge whose samples are equal for this long is silent. Its carrier is never exactly balanced, and even
+/// the noise of a converter with 16 bits changes the last digit more often.
 constexpr double silent_s = 0.002;
 
 double pass_Hz(Band band) { return band == Band::force ? 400 : 1000; }

@@ -1,14 +1,93 @@
 #pragma once
 #include <array>
+#include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "station/sensing/capture_block.hpp"
-#include "station/sensing/carrier_filter.hpp"
-#include "station/sensing/decimator.hpp"
-#include "station/terms/force_carrier.hpp"
+#include "station/sensing/sample_loops.hpp"
+#include "station/terms/limits.hpp"
 
 namespace turnpoint::sensing {
+
+/// Mixes four captured channels s down from a carrier, filters them with the taps h, and keeps every
+/// `factor`-th result: z = 2 sum h(n) s e^(-i phase), where full scale is 1 and phase is the carrier's phase
+/// at the frame's absolute number. The taps include the carrier; their symmetry saves half of the
+/// multiplications. Output m is centred on frame m * factor, so the filter causes no delay. An output is NaN
+/// if a frame that contributes to it is missing or came before the first frame. Allocates only in the
+/// constructor.
+class CarrierFilter {
+ public:
+  static constexpr std::size_t inputs = 4;
+
+  /// `taps` belong to a low-pass filter of odd length. `channels` are the channels to use; a captured frame
+  /// has `stride` channels. `increment` is the carrier's phase per frame in 2^-64 cycles.
+  CarrierFilter(const std::vector<double>& taps, int factor, std::uint64_t increment,
+                const std::array<int, inputs>& channels, int stride);
+
+  /// Takes frames, of which the first has the number `first`, until an output is complete or all are taken. A
+  /// null `frames` means that these frames are missing. Returns how many were taken. Frame numbers must
+  /// continue from the previous call.
+  std::int64_t take(std::int64_t first, const std::int32_t* frames, std::int64_t count) noexcept;
+
+  bool ready() const noexcept { return ready_; }  ///< true if the last take() completed an output
+  std::int64_t output_index() const noexcept { return output_index_; }
+  const std::array<std::complex<double>, inputs>& output() const noexcept { return output_; }
+
+ private:
+  /// The four inputs of a frame, or one filter tap (coefficient) for each of them. Single precision holds the
+  /// 24 bits of a converter, and adds noise of -138 dB (rms).
+  struct alignas(16) Quad {
+    float value[inputs];
+  };
+
+  void append(const std::int32_t* frames, std::int64_t count) noexcept;
+  void finish(std::int64_t centre) noexcept;
+
+  std::int64_t half_, factor_;
+  std::uint64_t increment_;
+  std::array<int, inputs> channels_;
+  std::int64_t stride_;
+  std::vector<Quad> even_, odd_;  ///< filter taps times cosine (even_) or sine (odd_) of the carrier
+  std::vector<Quad> kept_;        ///< the most recent frames, the newest last
+  std::size_t filled_ = 0;
+  const SampleLoops* loops_;
+  bool ready_ = false;
+  std::int64_t output_index_ = 0;
+  std::array<std::complex<double>, inputs> output_{};
+};
+
+/// Designs a linear-phase low-pass filter of odd length by the window method: an ideal low-pass with its edge
+/// in the middle between pass_Hz and stop_Hz, times a Kaiser window (Kaiser 1974). The gain at 0 Hz is
+/// exactly 1. Ripple and stop band are `attenuation_dB` below this gain (60 dB or more).
+std::vector<double> low_pass(double pass_Hz, double stop_Hz, double rate_Hz, double attenuation_dB);
+
+/// Filters eight signals at once and keeps every `factor`-th result. Each sample has an index, and output m
+/// is centred on the index m * factor, so the filter causes no delay. An output is NaN if a sample that
+/// contributes to it is NaN or came before the first sample. Allocates only in the constructor.
+class Decimator {
+ public:
+  static constexpr std::size_t lanes = 8;
+  using Lanes = std::array<double, lanes>;
+
+  /// `taps` must be symmetric, and their number odd.
+  Decimator(const std::vector<double>& taps, int factor);
+
+  /// Takes the sample with this index, which must be one more than that of the previous sample. Returns true
+  /// if it completes an output.
+  bool push(std::int64_t index, const Lanes& sample) noexcept;
+  const Lanes& output() const noexcept { return output_; }
+  std::int64_t output_index() const noexcept { return output_index_; }
+
+ private:
+  std::vector<double> half_taps_;  ///< the taps from the middle on; the first is halved
+  std::vector<Lanes> kept_;        ///< the most recent samples, the newest last
+  std::size_t filled_;
+  std::int64_t half_, factor_, output_index_ = 0;
+  const SampleLoops* loops_;
+  Lanes output_{};
+};
 
 /// Bandwidth of the force signal and rate of its points. `force` passes 0 to 400 Hz, stops 600 Hz and above,
 /// and gives 1000 points a second. `wide` passes 0 to 1 kHz, stops 2 kHz and above, and gives 4000 points a
@@ -45,7 +124,8 @@ enum class WireFault {
   reference,   ///< amplitude of the reference more than 3 % off; the ratios are then NaN
   quadrature,  ///< quadrature of a bridge above 5 % of full scale: a wire or a shield is off
   overload,    ///< a bridge above 1.5 times full scale: a wire is off, or the cell is overloaded
-  silent,      ///< samples of a bridge do not change at all, not even by noise: its amplifier or converter is dead
+  silent,      ///< samples of a bridge do not change at all, not even by noise: its amplifier or converter is
+               ///< dead
 };
 
 /// Counts how often a value has been the same in a row.

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "station/sensing/strokes.hpp"
+#include "station/sensing/finger_track.hpp"
 
 namespace turnpoint::sensing {
 

@@ -24,8 +24,8 @@ struct IntervalPlan {
 /// Proves that the surface vibrated as planned during one interval. Amplitude, phase and residual come from
 /// joint fits of all tones (JointFit) to windows of about 0.2 s, in the parts of the burst where nothing
 /// changes, and to windows of about 5 ms in glides between two tone sets (GlideProof). The onset comes from
-/// the envelope of a lock-in, and so does the offset (the ramp at the end). The capture may arrive in blocks of any size. For an ordinary thread; not
-/// thread-safe.
+/// the envelope of a lock-in, and so does the offset (the ramp at the end). The capture may arrive in blocks
+/// of any size. For an ordinary thread; not thread-safe.
 ///
 /// Not measured: the ramps, the residual in a glide, masking noise and markers. Tones of equal frequency on
 /// several output channels are measured as one. If tones are less than about 10 Hz apart, the interval stays

@@ -1,8 +1,79 @@
 #include "station/sensing/planned_lines.hpp"
 
+#include <algorithm>
+
 #include "station/sensing/aligned_blocks.hpp"
 
 namespace turnpoint::sensing {
+
+PlannedTones::Running PlannedTones::running(const drive::PreparedTone& tone) {
+  Running made;
+  made.partial.phase = tone.phase;
+  made.partial.increment = tone.increment;
+  made.partial.amplitude = tone.amplitude;
+  made.channel = tone.channel;
+  return made;
+}
+
+PlannedTones::PlannedTones(const drive::PreparedBurst& burst, int rate_Hz)
+    : start_frame_(burst.start_frame), rate_Hz_(rate_Hz) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(burst.tone_count); ++i)
+    tones_.push_back(running(burst.tones[i]));
+}
+
+// Applies a change as the synthesiser does: frequencies glide linearly, and the phase does not jump.
+Glide PlannedTones::change(const drive::PreparedChange& change) {
+  const auto since = static_cast<std::uint64_t>(change.at_frame - origin_);
+  const std::int64_t frames = std::max<std::int64_t>(1, change.frames);
+  for (std::size_t i = tones_.size(); i < static_cast<std::size_t>(change.count); ++i) {
+    Running added = running(change.to[i]);
+    added.partial.amplitude = 0;
+    added.partial.phase += added.partial.increment * static_cast<std::uint64_t>(origin_);
+    tones_.push_back(added);
+  }
+  Glide glide{++changes_, start_frame_ + change.at_frame, frames, {}};
+  for (std::size_t i = 0; i < tones_.size(); ++i) {
+    drive::Partial partial = drive::advanced(tones_[i].partial, since);
+    const auto& to = change.to[i];
+    partial.curvature =
+        static_cast<std::uint64_t>(static_cast<std::int64_t>(to.increment - partial.increment) / frames);
+    partial.amplitude_change = to.amplitude - partial.amplitude;
+    if (partial.amplitude != 0 || to.amplitude != 0)
+      glide.tones.push_back({static_cast<int>(i), tones_[i].channel, partial});
+    partial = drive::advanced(partial, static_cast<std::uint64_t>(frames));
+    tones_[i].partial = {partial.phase, to.increment, 0, to.amplitude, 0};
+  }
+  origin_ = change.at_frame + frames;
+  return glide;
+}
+
+Stretch PlannedTones::stretch(std::int64_t first_frame, std::int64_t end_frame) const {
+  Stretch stretch{changes_, origin_frame(), first_frame, end_frame, {}};
+  for (std::size_t i = 0; i < tones_.size(); ++i) {
+    const auto& [partial, channel] = tones_[i];
+    if (partial.amplitude == 0) continue;
+    stretch.tones.push_back({static_cast<int>(i), channel,
+                             static_cast<double>(partial.increment) * 0x1p-64 * rate_Hz_, partial.amplitude,
+                             partial.phase, partial.increment});
+  }
+  return stretch;
+}
+
+std::vector<Stretch> planned_stretches(const drive::PreparedBurst& burst, int rate_Hz) {
+  PlannedTones tones(burst, rate_Hz);
+  const std::int64_t start = burst.start_frame, risen = start + burst.ramp.frames,
+                     falls = start + burst.length_frames - burst.ramp.frames;
+  std::vector<Stretch> stretches;
+  for (int c = 0; c <= burst.change_count; ++c) {
+    const bool last = c == burst.change_count;
+    const drive::PreparedChange* next = last ? nullptr : &burst.changes[static_cast<std::size_t>(c)];
+    const std::int64_t first = std::max(tones.origin_frame(), risen),
+                       end = last ? falls : std::min(start + next->at_frame, falls);
+    if (first < end) stretches.push_back(tones.stretch(first, end));
+    if (!last) tones.change(*next);
+  }
+  return stretches;
+}
 
 std::vector<PlannedLine> planned_lines(const Stretch& stretch, const std::vector<PickUp>& pick_ups,
                                        int rate_Hz) {

@@ -5,10 +5,73 @@
 #include <cstdint>
 #include <vector>
 
+#include "station/drive/prepared_burst.hpp"
 #include "station/sensing/pick_up.hpp"
-#include "station/sensing/planned_stretches.hpp"
+#include "station/sensing/tone_sums.hpp"
 
 namespace turnpoint::sensing {
+
+/// One tone of a Stretch. (Within a Stretch, no tone begins, ends or changes.)
+struct PlannedTone {
+  int index = 0;    ///< index in the burst's tone set
+  int channel = 0;  ///< output channel on which it is played
+  double frequency_Hz = 0;
+  double amplitude = 0;     ///< amplitude as a fraction of full scale
+  std::uint64_t phase = 0;  ///< phase at origin_frame, in 2^-64 cycles
+  std::uint64_t increment = 0;
+};
+
+/// A stretch is a part of a burst, between ramps and changes, in which frequencies and amplitudes are
+/// constant.
+struct Stretch {
+  int changes = 0;                              ///< number of changes that come before it
+  std::int64_t origin_frame = 0;                ///< absolute frame at which the tones have their `phase`
+  std::int64_t first_frame = 0, end_frame = 0;  ///< absolute frames: the first, and the one after the last
+  std::vector<PlannedTone> tones;               ///< tones of amplitude 0 are left out
+};
+
+/// One tone of a Glide. Frame 0 of the partial is the glide's first frame.
+struct GlidingTone {
+  int index = 0, channel = 0;
+  drive::Partial partial;
+};
+
+/// A glide is a change of a burst, from the tones of one stretch to those of the next.
+struct Glide {
+  int changes = 0;               ///< number of this change, from 1
+  std::int64_t first_frame = 0;  ///< absolute frame
+  std::int64_t frames = 1;
+  std::vector<GlidingTone> tones;  ///< tones that are silent before and after are left out
+};
+
+/// Follows the tones of a burst from change to change, as the synthesiser plays them.
+class PlannedTones {
+ public:
+  PlannedTones(const drive::PreparedBurst& burst, int rate_Hz);
+
+  /// Applies a change, and returns it as a glide. The changes of a burst must be applied in order.
+  Glide change(const drive::PreparedChange& change);
+  /// The stretch from the last change on, limited to these absolute frames.
+  Stretch stretch(std::int64_t first_frame, std::int64_t end_frame) const;
+  /// The absolute frame at which the last change has ended, or at which the burst begins.
+  std::int64_t origin_frame() const { return start_frame_ + origin_; }
+
+ private:
+  // A tone while the burst plays. Its phase is counted from origin_.
+  struct Running {
+    drive::Partial partial;
+    int channel = 0;
+  };
+  static Running running(const drive::PreparedTone& tone);
+
+  std::vector<Running> tones_;
+  std::int64_t start_frame_, origin_ = 0;
+  int rate_Hz_, changes_ = 0;
+};
+
+/// Returns the stretches of a burst as the synthesiser plays it. Changes that are sent while the burst plays
+/// are not included.
+std::vector<Stretch> planned_stretches(const drive::PreparedBurst& burst, int rate_Hz);
 
 /// All tones with the same frequency in one steady part of a burst. Only their sum can be measured.
 struct PlannedLine {

@@ -6,7 +6,7 @@
 
 #include "station/sensing/lock_in.hpp"
 #include "station/sensing/planned_lines.hpp"
-#include "station/sensing/strongest_tone.hpp"
+#include "station/sensing/tone_sums.hpp"
 
 namespace turnpoint::sensing {
 

@@ -1,7 +1,9 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "station/sensing/capture_block.hpp"
@@ -9,9 +11,50 @@
 #include "station/sensing/finger_track.hpp"
 #include "station/sensing/force_calibration.hpp"
 #include "station/sensing/friction_profile.hpp"
-#include "station/sensing/trial_summary.hpp"
 
 namespace turnpoint::sensing {
+
+/// The movement that the participant is asked to make.
+struct MovementWindow {
+  static constexpr double any = std::numeric_limits<double>::infinity();
+
+  double least_normal_N = 0, most_normal_N = any;      ///< allowed normal force, ends included
+  double least_speed_mm_s = 0, most_speed_mm_s = any;  ///< allowed speed, ends included
+  double fraction = 0.8;  ///< required fraction of the strokes' time with force and speed in range
+  int strokes = 0;        ///< least number of strokes in a trial
+};
+
+/// Whether the participant moved as asked. If a movement has several faults, the first in this list is given.
+enum class Movement {
+  ok,
+  strokes,  ///< too few strokes
+  light,    ///< too little normal force
+  hard,     ///< too much normal force
+  slow,
+  fast,
+};
+const char* name(Movement movement);
+
+/// What the finger did during one trial. Quantities that could not be measured are NaN.
+struct TrialSummary {
+  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+  double contact_s = 0;
+  int strokes = 0;
+  /// Mean and standard deviation of normal force over all strokes.
+  double normal_N = none, normal_sd_N = none;
+  /// fraction of the strokes' time with normal force in the window; NaN if any force is allowed
+  double normal_in_window = none;
+  double speed_mm_s = none;  ///< mean absolute speed over all strokes
+  /// fraction of the strokes' time with speed in the window; NaN if any speed is allowed
+  double speed_in_window = none;
+};
+
+/// Summarises the forces and the movement of the finger in one trial.
+TrialSummary summarise(std::span<const FingerPoint> track, Band band, std::span<const Stroke> strokes,
+                       const MovementWindow& window);
+
+Movement judge(const TrialSummary& summary, const MovementWindow& window);
 
 /// The force cells of a rig, and how their readings are used.
 struct FingerSetup {
@@ -37,7 +80,8 @@ const char* name(ForcesState state);
 /// the last.
 struct TrialForces {
   ForcesState state = ForcesState::lost;
-  std::optional<std::size_t> faulty_bridge;  ///< which bridge has a wire fault; empty if none or if all have it
+  std::optional<std::size_t>
+      faulty_bridge;        ///< which bridge has a wire fault; empty if none or if all have it
   double tare_moved_N = 0;  ///< change of the force zero since the previous tare
   /// Reading of each cell (a, b, lateral) before the trial and its standard deviation, relative to the cell's
   /// full scale; empty if captured frames are missing.

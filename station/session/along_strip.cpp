@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "station/sensing/strokes.hpp"
+#include "station/sensing/finger_track.hpp"
 #include "station/store/signal_code.hpp"
 
 namespace turnpoint::session {

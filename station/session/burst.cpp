@@ -5,6 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "station/protocol/resolve.hpp"
+#include "station/scene/planner.hpp"
 #include "station/terms/limits.hpp"
 
 namespace turnpoint::session {
@@ -69,6 +71,13 @@ void signal(drive::Burst& burst, const rig::MaskingNoise& headphones, double at_
   const auto frames = [rate_Hz](double s) { return static_cast<std::int64_t>(std::llround(s * rate_Hz)); };
   burst.signal = {headphones.channel, headphones.signal->amplitude, headphones.signal->frequency_Hz,
                   frames(at_s),       frames(terms::kSignal_s),     {frames(0.1 * terms::kSignal_s)}};
+}
+
+drive::Burst scene_burst(const rig::Rig& rig, const protocol::Protocol& protocol, const std::string& scene,
+                         const protocol::Factors& factors, double length_s) {
+  scene::Planner planner(rig);
+  const auto plan = planner.plan(protocol::resolve(protocol, scene, factors, 0));
+  return burst_of({plan}, {}, {}, length_s, rig.output.rate_Hz);
 }
 
 }  // namespace turnpoint::session

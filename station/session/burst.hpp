@@ -1,8 +1,11 @@
 #pragma once
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "station/drive/burst.hpp"
+#include "station/protocol/protocol.hpp"
+#include "station/rig/rig.hpp"
 #include "station/scene/planner.hpp"
 
 namespace turnpoint::session {
@@ -33,5 +36,9 @@ void signal(drive::Burst& burst, const rig::MaskingNoise& headphones, double at_
 
 /// Adds the rig's masking noise. A different `seed` for each interval gives each interval different noise.
 void mask(drive::Burst& burst, const rig::MaskingNoise& noise, std::uint64_t seed);
+
+/// Plans one scene on its own, without a trial, a marker or a masking sound. Throws scene::Unreachable.
+drive::Burst scene_burst(const rig::Rig& rig, const protocol::Protocol& protocol, const std::string& scene,
+                         const protocol::Factors& factors, double length_s);
 
 }  // namespace turnpoint::session

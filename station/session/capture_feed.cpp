@@ -1,5 +1,5 @@
 #include "station/session/capture_feed.hpp"
-#include "station/terms/force_carrier.hpp"
+#include "station/terms/limits.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -11,7 +11,7 @@
 #include "station/lines/trigger_lines.hpp"
 #include "station/rig/rig.hpp"
 #include "station/session/inputs.hpp"
-#include "station/system/clock_watch.hpp"
+#include "station/system/clocks.hpp"
 
 namespace turnpoint::session {
 

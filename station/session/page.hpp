@@ -4,11 +4,21 @@
 #include <string>
 #include <vector>
 
-#include "station/session/early_session.hpp"
 #include "station/terms/fault.hpp"
 #include "station/texts/texts.hpp"
 
 namespace turnpoint::session {
+
+/// A planned session that would begin before the protocol's minimum number of days has passed. Dates look
+/// like 2026-11-24.
+struct EarlySession {
+  std::string participant;
+  int number = 0;            ///< the session that would begin
+  std::string allowed_from;  ///< the first day on which it may begin
+  int last_number = 0;       ///< the participant's last session
+  std::string last_day;
+  int min_days = 0;  ///< the protocol's minimum number of days between sessions
+};
 
 using terms::FaultKind;
 

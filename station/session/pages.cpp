@@ -5,11 +5,19 @@
 #include "station/protocol/answers.hpp"
 #include "station/protocol/interludes.hpp"
 #include "station/scene/planner.hpp"
-#include "station/session/parameter_name.hpp"
 #include "station/text/number.hpp"
 #include "station/texts/texts.hpp"
 
 namespace turnpoint::session {
+
+texts::Phrase parameter_name(const std::string& parameter) {
+  static const std::map<std::string, const char*> known{
+      {"threshold", "report.threshold"}, {"pse", "report.pse"},     {"slope", "report.slope"},
+      {"spread", "report.spread"},       {"lapse", "report.lapse"}, {"criterion", "report.criterion"},
+      {"gradient", "report.gradient"},   {"floor", "report.floor"}};
+  const auto found = known.find(parameter);
+  return found == known.end() ? texts::plain(parameter) : texts::Phrase{found->second, "", {}};
+}
 
 namespace {
 
@@ -74,7 +82,7 @@ Page Pages::blank(PageKind kind, const protocol::Block* block, const trial::Dire
   page.language = setup_.language;
   page.run_mode = store::name(setup_.run_mode);
   const auto& surface = setup_.rig.surface;
-  const auto shape = scene::surface_of(setup_.rig);
+  const auto shape = rig::surface_of(setup_.rig);
   page.length_mm = 1e3 * surface.length_m;
   page.wide_half_width_mm = 1e3 * physics::half_width_m(shape, 0);
   page.narrow_half_width_mm = 1e3 * physics::half_width_m(shape, surface.length_m);

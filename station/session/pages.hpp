@@ -4,10 +4,15 @@
 #include "station/protocol/protocol.hpp"
 #include "station/session/page.hpp"
 #include "station/session/session.hpp"
+#include "station/texts/texts.hpp"
 #include "station/trial/director.hpp"
 #include "station/trial/machine.hpp"
 
 namespace turnpoint::session {
+
+/// How pages call an estimated parameter, such as "threshold". A parameter of a separate program keeps the
+/// name that the program gives it.
+texts::Phrase parameter_name(const std::string& parameter);
 
 /// Makes the pages of one session. They contain texts in the session's language, the size of the surface for
 /// its drawing, and the progress.

@@ -17,9 +17,17 @@
 #include "station/store/people.hpp"
 #include "station/store/read.hpp"
 #include "station/store/station.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::session {
+
+std::string describe(const EarlySession& early) {
+  return fmt::format(
+      "participant {} had session {} on {}, and the protocol asks for at least {} day{} between sessions: "
+      "session {} is allowed from {}",
+      early.participant, early.last_number, early.last_day, early.min_days, early.min_days == 1 ? "" : "s",
+      early.number, early.allowed_from);
+}
 
 namespace {
 

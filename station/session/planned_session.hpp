@@ -1,16 +1,31 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "station/protocol/protocol.hpp"
-#include "station/session/early_session.hpp"
 #include "station/session/session.hpp"
 #include "station/store/session_log.hpp"
+#include "station/text/problem.hpp"
 #include "station/texts/texts.hpp"
 #include "station/trial/earlier_trials.hpp"
 
 namespace turnpoint::session {
+
+/// Describes in English why a session may not begin yet, for the command line and the log.
+std::string describe(const EarlySession& early);
+
+/// A session that is possible, except that it would begin too early.
+class TooEarly : public text::BadInput {
+ public:
+  TooEarly(text::Problem problem, EarlySession early)
+      : BadInput({std::move(problem)}), early_(std::move(early)) {}
+  const EarlySession& early() const { return early_; }
+
+ private:
+  EarlySession early_;
+};
 
 /// Returns the participant's place in the counterbalancing, and the number of the planned session, of a
 /// stored session.

@@ -9,7 +9,6 @@
 #include "station/drive/recovery.hpp"
 #include "station/session/presented.hpp"
 #include "station/session/trial_capture.hpp"
-#include "station/system/clock_watch.hpp"
 #include "station/system/clocks.hpp"
 
 namespace turnpoint::session {

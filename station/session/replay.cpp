@@ -7,7 +7,7 @@
 #include "station/protocol/sources.hpp"
 #include "station/session/planned_session.hpp"
 #include "station/text/number.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 #include "station/trial/question.hpp"
 #include "station/trial/rows.hpp"
 

@@ -1,10 +1,12 @@
 #pragma once
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "station/records/records.hpp"
+#include "station/rig/rig.hpp"
 #include "station/system/condition.hpp"
 #include "station/terms/proof.hpp"
 #include "station/texts/texts.hpp"
@@ -82,6 +84,14 @@ struct MixerReading {
   std::size_t controls = 0;             ///< number of controls whose levels the calibration holds; 0: none
   std::vector<texts::Phrase> changes;  ///< one sentence for each control that differs
 };
+
+/// Reads the mixers of the cards with which a rig plays and captures (drive::mixer_levels). Controls of
+/// another card that captures have "capture: " before their names. Empty if there is no card or it cannot be
+/// read.
+std::map<std::string, std::string> mixer_levels(const rig::Rig& rig);
+
+/// Compares the mixers with their levels during the calibration (`rig.mixer`).
+MixerReading read_mixer(const rig::Rig& rig);
 
 /// The wall clock, and by how much it was set (by a person or a time service) during the self-test.
 struct ClockReading {

@@ -9,8 +9,7 @@
 #include "station/lines/uri.hpp"
 #include "station/observer/observer.hpp"
 #include "station/sensing/pick_up.hpp"
-#include "station/session/mixer.hpp"
-#include "station/system/clock_watch.hpp"
+#include "station/system/clocks.hpp"
 #include "station/terms/limits.hpp"
 
 namespace turnpoint::session {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "station/drive/amplifier.hpp"
-#include "station/lines/simulated_amplifier.hpp"
+#include "station/lines/simulated_lines.hpp"
 #include "station/rig/rig.hpp"
 #include "station/session/self_test.hpp"
 #include "station/session/stage.hpp"

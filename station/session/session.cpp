@@ -22,9 +22,9 @@
 #include "station/session/stage.hpp"
 #include "station/store/station.hpp"
 #include "station/system/clocks.hpp"
-#include "station/terms/force_carrier.hpp"
+#include "station/terms/limits.hpp"
 #include "station/text/canonical.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::session {
 
@@ -162,9 +162,9 @@ struct Begun {
 
 Begun begin(const Setup& setup, Stage& stage, programs::Programs& programs) {
   const auto next = next_session(setup);
-  const texts::Phrase refused{"", "", {next.problem, texts::plain("; "), next.allowed}};
-  if (next.too_early) throw TooEarly(texts::say(refused, "en"), *next.too_early);
-  if (!next.problem.empty()) throw texts::Refusal(refused);
+  if (next.too_early) throw TooEarly({{}, next.problem, next.allowed}, *next.too_early);
+  if (!next.problem.empty())
+    throw texts::Refusal(texts::Phrase{"", "", {next.problem, texts::plain("; "), next.allowed}});
   auto earlier = earlier_trials(setup, next);
   // With one seed for all participants, the planned sessions still have different orders.
   const auto stated =

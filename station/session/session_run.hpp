@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -9,7 +8,7 @@
 #include "station/limits/finger_account.hpp"
 #include "station/programs/programs.hpp"
 #include "station/sensing/friction_table.hpp"
-#include "station/sensing/phase_drift.hpp"
+#include "station/session/drift.hpp"
 #include "station/session/guidance.hpp"
 #include "station/session/interludes.hpp"
 #include "station/session/operator_gate.hpp"
@@ -62,23 +61,23 @@ class SessionRun {
     std::int64_t on_ns = 0, off_ns = 0;
   };
 
-  // Blocks and pages (session_run.cpp).
+  // Blocks and pages.
   Flow run_parts();
   Flow run_block();
   Flow leave_block();
-  Flow play_example(const protocol::Example& example, Page page);  // in session_run_example.cpp
-  Flow pass_self_test();                                           // in session_run_self_test.cpp
+  Flow play_example(const protocol::Example& example, Page page);
+  Flow pass_self_test();
   Flow rest_if_due(int trials_in_block);
   int trial_index() const { return log_.session().trials; }
   void finish(records::SessionStatus status, const std::string& reason);
 
-  // Procedures and observers that are separate programs (session_run_programs.cpp).
+  // Procedures and observers that are separate programs.
   std::optional<trial::TrialSpec> next_trial();
   void plan_ahead();
   void log_programs();
   void log_estimates();
 
-  // One trial (session_run_trial.cpp).
+  // One trial.
   Flow run_trial(const trial::TrialSpec& spec);
   Flow prepare_trial(const trial::TrialSpec& spec);
   Flow keep_limits(const trial::TrialSpec& spec);
@@ -93,35 +92,29 @@ class SessionRun {
   void ask_observer(const Running& trial, std::int64_t onset_ns);
   void decide(Running& trial);
   void finish_row(Running& trial);
-  void keep_raw(Running& trial);  // in session_run_raw.cpp
+  void keep_raw(Running& trial);
   void leave_surface();
   void count(const trial::TrialSpec& spec, const records::TrialRow& row);
 
-  // Temperature and drift of resonances (session_run_drift.cpp).
-  void begin_drift();
-  void log_temperature();
-  void follow_drift(const sensing::IntervalResult& measured);
-  void correct_drift();
-
-  // Trigger codes (session_run_triggers.cpp).
+  // Trigger codes.
   void trigger(protocol::TriggerEvent event, const Running& trial);
   void trigger_intervals(const Running& trial);
   void log_triggers();
   void finish_triggers();
 
-  // Bars that guide the finger (session_run_guidance.cpp).
+  // Bars that guide the finger.
   bool is_finger_watched() const;
   void move_bars();
   void hold_bars(trial::Phase phase, const Running& trial);
 
-  // Blocks in which the finger strokes the surface and nothing is asked (session_run_strokes.cpp).
+  // Blocks in which the finger strokes the surface and nothing is asked.
   bool is_training() const;
   void judge_strokes(const Input& input, Running& trial);
   Flow finish_friction_table();
   void use_measured_friction();
   sensing::FrictionTable measured_friction(int block_index) const;
 
-  // Adjustments (session_run_adjustment.cpp).
+  // Adjustments.
   void show_phase(trial::Phase phase, const Running& trial);
   std::optional<trial::Event> event_in_trial(const Input& input, Running& trial, bool by_button);
   void glide(Running& trial);
@@ -146,22 +139,9 @@ class SessionRun {
   int voids_in_a_row_ = 0, refused_in_a_row_ = 0, repeats_in_a_row_ = 0, unanswered_in_a_row_ = 0;
   std::int64_t started_ns_ = 0;
   std::vector<OnSurface> surface_;
-  /// files of the two thermometers, on plate and frame; empty if the rig has none
-  std::vector<std::string> thermometers_;
-  std::array<std::optional<double>, 2> first_C_;
-  std::array<bool, 2> warm_{};
-  /// follows the drift of the resonances; empty without pick-ups
-  std::optional<sensing::DriftTracker> drift_;
-  /// the newest drift that was found in the running trial
-  std::optional<sensing::PhaseDrift> newest_drift_;
-  /// fraction by which the frequencies of tones are raised, to follow the resonances
-  double applied_drift_ = 0;
+  Drift drift_;
   Guide guide_;
   std::int64_t guide_due_ns_ = 0;
 };
-
-/// Returns how far the place where a tone's vibration ends moves (in m, towards the narrow edge) if all
-/// resonance frequencies of the surface rise by the fraction `share`.
-double boundary_shift_m(const physics::Surface& surface, double frequency_Hz, double share);
 
 }  // namespace turnpoint::session

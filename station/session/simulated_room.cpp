@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "station/scene/planner.hpp"
-#include "station/terms/force_carrier.hpp"
+#include "station/terms/limits.hpp"
 
 namespace turnpoint::session {
 
@@ -101,8 +101,8 @@ plant::Setup laboratory_of(const rig::Rig& rig) {
   room.pickups.clear();
   for (const int pick_up : rig.capture->pick_ups)
     room.pickups.push_back({pick_up, kFirst_m + kNext_m * static_cast<double>(room.pickups.size())});
-  room.surface = scene::surface_of(rig);
-  room.friction = scene::friction_of(rig);
+  room.surface = rig::surface_of(rig);
+  room.friction = rig::friction_of(rig);
   return room;
 }
 

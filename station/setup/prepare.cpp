@@ -13,15 +13,14 @@
 #include "station/protocol/sources.hpp"
 #include "station/protocol/survey.hpp"
 #include "station/scene/sound.hpp"
-#include "station/session/mixer.hpp"
+#include "station/session/self_test.hpp"
 #include "station/session/planned_session.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
 #include "station/text/toml.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::setup {
-
 namespace {
 
 using text::Problem;
@@ -211,7 +210,8 @@ session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
     problems.push_back({{}, texts::phrase_of(refused), phrase("refusal.same_version")});
   }
   if (problems.empty()) problems = programs::problems_of(setup.protocol);
-  if (problems.empty() && next.too_early) throw TooEarly({{}, next.problem, next.allowed}, *next.too_early);
+  if (problems.empty() && next.too_early)
+    throw session::TooEarly({{}, next.problem, next.allowed}, *next.too_early);
   if (next.too_early) problems.push_back({{}, next.problem, next.allowed});
   if (!problems.empty()) throw text::BadInput(std::move(problems));
   return setup;

@@ -13,6 +13,14 @@
 
 namespace turnpoint::setup {
 
+/// The options of `turnpoint station`, with defaults filled in.
+struct StationRequest {
+  std::string protocols;  ///< path of the folder with the protocols
+  std::string rig, database;
+  bool locked = false;      ///< true if the operator's code must be entered before the start page
+  bool fullscreen = false;  ///< fill the whole screen, also on a desktop
+};
+
 /// Placeholder for a participant's code that will be typed later. With it, all other settings can be checked
 /// before.
 inline constexpr const char* kCodeToCome = "keypad";
@@ -38,23 +46,12 @@ struct RunRequest {
   std::string cleaned;  ///< whether the surface was cleaned just before: yes or no; "" if not stated
 };
 
-/// Thrown by prepare() if a session is possible, except that too few days have passed since the participant's
-/// last one. RunRequest::early overrules that.
-class TooEarly : public text::BadInput {
- public:
-  TooEarly(text::Problem problem, session::EarlySession early)
-      : BadInput({std::move(problem)}), early_(std::move(early)) {}
-  const session::EarlySession& early() const { return early_; }
-
- private:
-  session::EarlySession early_;
-};
-
 /// Loads and checks everything that a session needs, and applies the calibration to the rig. Throws
 /// text::BadInput with all problems of the two files, of their combination, and of participant code, language
-/// and mode. A calibration that has expired or belongs to another rig is an error if the request names it or
-/// if the session is live; otherwise it is ignored. Throws protocol::Abandoned soon after `stop` is
-/// requested.
+/// and mode; session::TooEarly if only too few days have passed since the participant's last session, which
+/// RunRequest::early overrules. A calibration that has expired or belongs to another rig is an error if the
+/// request names it or if the session is live; otherwise it is ignored. Throws protocol::Abandoned soon after
+/// `stop` is requested.
 session::Setup prepare(const RunRequest& request, const std::stop_token& stop = {});
 
 /// Returns the reasons why the live session of this request cannot run; empty if it can. The reasons name no

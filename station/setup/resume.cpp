@@ -4,7 +4,7 @@
 
 #include <ostream>
 
-#include "station/session/mixer.hpp"
+#include "station/session/self_test.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/store/read.hpp"
 #include "station/text/number.hpp"

@@ -16,7 +16,7 @@
 #include "station/random/draws.hpp"
 #include "station/simulation/parallel.hpp"
 #include "station/simulation/rehearsal.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 #include "station/trial/earlier_trials.hpp"
 
 namespace turnpoint::simulation {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "station/procedure/program.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 #include "station/trial/machine.hpp"
 #include "station/trial/question.hpp"
 #include "station/trial/rows.hpp"

@@ -2,19 +2,243 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <string>
+#include <vector>
 
-#include "station/store/export_bids_texts.hpp"
 #include "station/store/export_files.hpp"
 #include "station/store/export_tables.hpp"
+#include "station/store/signal_code.hpp"
 #include "station/store/sqlite.hpp"
+#include "station/store/stored_signals.hpp"
 #include "station/terms/letters.hpp"
 #include "station/text/number.hpp"
+#include "station/text/toml.hpp"
 
 namespace turnpoint::store {
+
+// Texts that a BIDS data set contains in addition to its tables.
+
+std::string bids_description(const ProtocolSelection& selection);
+std::string bids_readme(const ProtocolSelection& selection);
+
+/// Returns the BIDS sidecar file (JSON) of a table. It describes the task, the participant's instructions and
+/// the program, as in the newest session, and then each column.
+std::string bids_sidecar(const SessionStart& start, const std::vector<Column>& columns);
+
+/// Returns the columns of trials.csv. Onset and duration are called stimulus_onset and stimulus_duration,
+/// because BIDS reserves the short names for tables of events.
+ExportColumns bids_trial_columns(const std::vector<std::string>& factors);
+std::vector<Column> bids_participant_columns();
+std::vector<Column> bids_event_columns();
+
+/// Returns the values of an event's row in the table. `origin_ns` is the time on the station's clock at which
+/// the event's run of the program (segment) began.
+std::vector<Cell> bids_event_cells(const EventRow& event, std::int64_t origin_ns);
+
+/// Returns only the letters and digits of a text. A BIDS label may contain no other characters.
+std::string bids_label(const std::string& text);
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Reads a text of the protocol, which is a string, or a table with one string per language.
+std::string text_of(const text::Value* value, const std::string& language) {
+  if (value == nullptr) return "";
+  if (value->kind == text::Value::Kind::string) return value->string;
+  if (value->kind != text::Value::Kind::table || value->entries.empty()) return "";
+  const auto* found = value->find(language) == nullptr ? &value->entries.front() : value->find(language);
+  return found->value.string;
+}
+
+const text::Value* at(const text::Value& table, const std::string& key) {
+  const auto* entry = table.find(key);
+  return entry == nullptr ? nullptr : &entry->value;
+}
+
+/// The texts of a protocol that were stored with its newest session.
+struct Texts {
+  std::string title, instructions;
+};
+
+Texts texts_of(const SessionStart& start) {
+  Texts texts;
+  try {
+    const auto document = text::parse_toml(start.protocol_text, start.protocol_path);
+    if (const auto* head = at(document, "protocol"))
+      texts.title = text_of(at(*head, "title"), start.language);
+    if (const auto* task = at(document, "task")) {
+      texts.instructions = text_of(at(*task, "instructions"), start.language);
+      const auto question = text_of(at(*task, "question"), start.language);
+      if (!question.empty()) texts.instructions += (texts.instructions.empty() ? "" : "\n") + question;
+    }
+  } catch (const text::BadInput&) {
+    // Leave out texts that this release can no longer read. The data are exported anyway.
+  }
+  if (texts.title.empty()) texts.title = start.protocol_id;
+  return texts;
+}
+
+}  // namespace
+
+std::string bids_label(const std::string& text) {
+  std::string letters;
+  for (const char c : text)
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) letters += c;
+  return letters;
+}
+
+std::string bids_description(const ProtocolSelection& selection) {
+  Json json;
+  json["Name"] = selection.protocol_id;
+  json["BIDSVersion"] = "1.9.0";
+  json["DatasetType"] = "raw";
+  json["License"] = "n/a";
+  json["Authors"] = {"n/a"};
+  json["GeneratedBy"] = {
+      {{"Name", "Turnpoint"}, {"Version", selection.sessions.back().start.software_version}}};
+  return json.dump(2) + "\n";
+}
+
+std::string bids_readme(const ProtocolSelection& selection) {
+  return fmt::format(
+      "Behavioural data of the protocol {}, exported by Turnpoint. Each start of the station program is one "
+      "run: a session that was resumed has several runs.\n",
+      selection.protocol_id);
+}
+
+std::string bids_sidecar(const SessionStart& start, const std::vector<Column>& columns) {
+  const auto texts = texts_of(start);
+  Json json;
+  json["TaskName"] = bids_label(start.protocol_id);
+  json["TaskDescription"] = texts.title;
+  if (!texts.instructions.empty()) json["Instructions"] = texts.instructions;
+  json["StimulusPresentation"] = {{"OperatingSystem", start.kernel},
+                                  {"SoftwareName", "Turnpoint"},
+                                  {"SoftwareVersion", start.software_version}};
+  const auto explained = Json::parse(columns_json(columns));
+  for (const auto& [name, column] : explained.items()) json[name] = column;
+  return json.dump(2) + "\n";
+}
+
+ExportColumns bids_trial_columns(const std::vector<std::string>& factors) {
+  auto columns = trial_columns(factors);
+  for (auto& [column, cell] : columns)
+    if (column.name == "onset" || column.name == "duration") column.name = "stimulus_" + column.name;
+  return columns;
+}
+
+std::vector<Column> bids_participant_columns() {
+  return {{"participant_id", "Label of the participant in this data set", "", ""},
+          {"code", "Codes that the stations gave to the participant", "", ""},
+          {"sessions", "Number of sessions in this data set", "", ""},
+          {"station", "Stations at which the sessions were run", "", ""}};
+}
+
+std::vector<Column> bids_event_columns() {
+  return {{"onset", "Time of the event, from the start of the run", "s", ""},
+          {"duration", "Length of a stimulus; 0 for all other events, which have no duration", "s", ""},
+          {"trial_type", "What happened", "", ""},
+          {"value", "Detail", "", ""},
+          {"trial_index", "Index of the trial in the session, from 0", "", ""}};
+}
+
+std::vector<Cell> bids_event_cells(const EventRow& event, std::int64_t origin_ns) {
+  return {cell(static_cast<double>(event.time_ns - origin_ns) * 1e-9), cell(event_length_s(event)),
+          cell(event.kind), cell(event.value), cell(event.trial_index)};
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Returns the label of a recording. The stream "finger" of the force cells is labelled "force", after what
+/// it measures.
+std::string recording_of(const std::string& stream) {
+  return stream == "finger" ? "force" : bids_label(stream);
+}
+
+/// Writes the signals of one run as one table. BIDS gives a recording one start and one rate, so the table
+/// has no gaps: each trial is placed by its time, to within half a point, and the rows between trials are
+/// filled.
+class Recording {
+ public:
+  Recording(const std::string& base, const SignalRow& first, std::vector<SignalChannel> channels)
+      : base_(base),
+        start_s_(first.start_s),
+        rate_Hz_(first.rate_Hz),
+        channels_(std::move(channels)),
+        table_(base + ".tsv.gz", {TableStyle::Kind::bids, '\t', '.'}, names_of(signal_columns(channels_)),
+               TableFile::Header::left_out) {}
+
+  void add(const SignalRow& signal) {
+    if (signal.rate_Hz != rate_Hz_)
+      throw StoreError(ErrorKind::corrupt,
+                       fmt::format("export bids: the signals \"{}\" of one run have {} and {} points per "
+                                   "second",
+                                   signal.stream, rate_Hz_, signal.rate_Hz));
+    const auto first = std::llround((signal.start_s - start_s_) * rate_Hz_);
+    for (const std::vector<Cell> missing(channels_.size()); next_ < first; ++next_) table_.row(missing);
+    const auto values = decode(signal);
+    const auto places = places_of(signal, channels_);
+    std::vector<Cell> cells(channels_.size());
+    for (auto point = next_ - first; point < signal.points; ++point, ++next_) {
+      for (std::size_t c = 0; c < values.size(); ++c) {
+        const double value = values[c][static_cast<std::size_t>(point)];
+        cells[places[c]] = std::isnan(value) ? Cell{} : cell(value);
+      }
+      table_.row(cells);
+    }
+  }
+
+  /// `start` is the session whose protocol describes the task in the sidecar file.
+  void finish(const SessionStart& start, std::vector<ExportedFile>& files) {
+    table_.finish(files);
+    const auto columns = signal_columns(channels_);
+    Json json{{"SamplingFrequency", rate_Hz_},
+              {"StartTime", start_s_},
+              {"Columns", names_of(columns)},
+              {"PhysioType", "generic"}};
+    const auto described = Json::parse(bids_sidecar(start, columns));
+    for (const auto& [name, value] : described.items()) json[name] = value;
+    write_file(base_ + ".json", json.dump(2) + "\n");
+    files.push_back({base_ + ".json", 0});
+  }
+
+ private:
+  std::string base_;
+  double start_s_, rate_Hz_;
+  std::vector<SignalChannel> channels_;
+  TableFile table_;
+  std::int64_t next_ = 0;  ///< number of rows that have been written
+};
+
+}  // namespace
+
+void export_bids_signals(Database& database, const BidsRun& run, const std::string& base,
+                         std::vector<ExportedFile>& files) {
+  const auto& session_id = run.session_id;
+  for (const auto& stream : signal_streams(database, session_id)) {
+    // A recording of BIDS has no gaps. Between two void trials, hours of samples would be missing.
+    if (stream == records::kRawStream) continue;
+    SignalReader reader(database, session_id, stream, run.segment);
+    std::optional<Recording> recording;
+    while (const auto stored = reader.next()) {
+      if (!recording)
+        recording.emplace(fmt::format("{}_recording-{}_physio", base, recording_of(stream)), stored->row,
+                          signal_channels(database, session_id, stream));
+      recording->add(stored->row);
+    }
+    if (recording) recording->finish(run.task, files);
+  }
+}
 
 namespace fs = std::filesystem;
 

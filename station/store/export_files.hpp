@@ -2,17 +2,38 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "station/store/export.hpp"
 #include "station/store/export_tables.hpp"
-#include "station/store/gzip.hpp"
 #include "station/store/read.hpp"
 #include "station/store/sqlite.hpp"
 #include "station/store/text_table.hpp"
 #include "station/system/write_file.hpp"
 
+struct z_stream_s;
+
 namespace turnpoint::store {
+
+/// Compresses a text piece by piece into the format of gzip files (RFC 1952). The file contains neither a
+/// name nor a time, so that the same text gives the same bytes.
+class Gzip {
+ public:
+  Gzip();
+  /// Returns the bytes that are ready to be written; often none.
+  std::string add(std::string_view text);
+  /// Returns the remaining bytes. Nothing can be added afterwards.
+  std::string finish();
+
+ private:
+  std::string compressed(std::string_view text, int flush);
+
+  struct End {
+    void operator()(z_stream_s* stream) const;
+  };
+  std::unique_ptr<z_stream_s, End> stream_;
+};
 
 /// The sessions of one protocol that are exported, and the columns of the protocol's factors.
 struct ProtocolSelection {

@@ -87,4 +87,12 @@ class SessionLog {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Adds a researcher's note to a session that is not running. The rows of its trials do not change. Throws
+/// StoreError, or terms::UsageError for an empty note.
+void annotate(const std::string& database, const std::string& session_id, const std::string& text);
+
+/// Marks an interrupted session as abandoned, because nobody will continue it, and stores the reason. Throws
+/// StoreError (refused) if the session is not interrupted.
+void abandon(const std::string& database, const std::string& session_id, const std::string& reason);
+
 }  // namespace turnpoint::store

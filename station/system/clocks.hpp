@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 
 namespace turnpoint::system {
 
@@ -23,5 +24,23 @@ Clocks read_clocks() noexcept;
 
 /// Sleeps until `time_ns` on CLOCK_MONOTONIC. Signals do not end the sleep.
 void sleep_until_ns(std::int64_t time_ns) noexcept;
+
+/// Detects that the machine was suspended, or that somebody set its clock. Reads no clock itself: it compares
+/// the readings that the caller passes.
+class ClockWatch {
+ public:
+  explicit ClockWatch(const Clocks& start) noexcept : last_(start) {}
+
+  struct News {
+    std::optional<double> suspended_s;  ///< how long the machine slept
+    std::optional<double> jump_s;       ///< how much the wall clock was changed, not counting time asleep
+  };
+  /// Returns what has happened since the previous call. Slow corrections by a time service (at most 500 ppm)
+  /// do not count as a jump.
+  News look(const Clocks& now) noexcept;
+
+ private:
+  Clocks last_;
+};
 
 }  // namespace turnpoint::system

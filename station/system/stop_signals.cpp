@@ -9,9 +9,9 @@
 #include <cerrno>
 #include <cstdint>
 #include <system_error>
+#include <utility>
 
 namespace turnpoint::system {
-
 namespace {
 
 constexpr int kSignals[] = {SIGTERM, SIGINT, SIGHUP};
@@ -87,5 +87,12 @@ int StopSignals::exit_status() {
 }
 
 void StopSignals::release() { wake(wake_.get()); }
+
+OnStopSignal::OnStopSignal(std::function<void(const std::string& signal)> act) {
+  signals_.take_over();
+  waiter_ = std::jthread([this, act = std::move(act)] {
+    if (const auto signal = signals_.wait(); !signal.empty()) act(signal);
+  });
+}
 
 }  // namespace turnpoint::system

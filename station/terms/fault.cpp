@@ -6,12 +6,12 @@ namespace turnpoint::terms {
 
 namespace {
 
-struct Entry {
+struct NamedKind {
   FaultKind kind;
   const char *name, *description;
 };
 
-constexpr Entry entries[] = {
+constexpr NamedKind all_kinds[] = {
     {FaultKind::other, "other", "a fault of the station"},
     {FaultKind::converter_gone, "converter_gone", "sound device disconnected"},
     {FaultKind::converter_rate, "converter_rate", "sound device running at a wrong rate"},
@@ -35,12 +35,12 @@ constexpr Entry entries[] = {
     {FaultKind::self_test, "self_test", "the self-test failed"},
     {FaultKind::program, "program", "the program of a procedure failed"},
 };
-static_assert(std::size(entries) == fault_kinds.size());
+static_assert(std::size(all_kinds) == fault_kinds.size());
 
-constexpr const Entry& entry(FaultKind kind) {
-  for (const Entry& candidate : entries)
+constexpr const NamedKind& entry(FaultKind kind) {
+  for (const NamedKind& candidate : all_kinds)
     if (candidate.kind == kind) return candidate;
-  return entries[0];
+  return all_kinds[0];
 }
 
 }  // namespace

@@ -39,7 +39,13 @@ inline constexpr double kSignalLate_s = 3 * kFrame_s;
 /// How long the surface takes to change to a buzz (a response signal on the surface), and back.
 inline constexpr double kBuzzRamp_s = 0.005;
 /// A part of a stimulus in which nothing changes is measured if it lasts this long; see
-/// sensing/interval_state.hpp.
+/// sensing/interval_proof.hpp.
 inline constexpr double kBetweenChanges_s = 0.02;
+
+/// Frequency of the carrier that excites the strain-gauge bridges of force cells. It is 25 Hz above a
+/// multiple of 300 Hz, and so at least 25 Hz away from every harmonic of 50 and 60 Hz mains. There is one for
+/// all rigs, because amplifier and filter treat each frequency differently, so each would need its own
+/// calibration.
+inline constexpr double kForceCarrier_Hz = 10525;
 
 }  // namespace turnpoint::terms

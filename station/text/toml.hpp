@@ -1,5 +1,7 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,8 +12,7 @@ namespace turnpoint::text {
 
 struct Entry;
 
-/// One value of a TOML document and its place in the file. The keys of a table are in the order of the file,
-/// although toml++ sorts them by name.
+/// One value of a TOML document and its place in the file. The keys of a table are in the order of the file.
 struct Value {
   enum class Kind { boolean, integer, number, string, date, array, table };
   Kind kind = Kind::table;
@@ -34,9 +35,58 @@ struct Entry {
   Value value;
 };
 
-/// Parses `source`. `path` is the file name that messages show. Throws BadInput with the place of a
-/// syntax error, of a list with more than 10 000 items, or of a key with more than 16 parts.
-Value parse_toml(const std::string& source, const std::string& path);
+/// A range of bytes in the text of a file.
+struct Span {
+  std::size_t begin = 0, end = 0;
+};
+
+/// One key of a TOML file as it is written, with its place in the text. Items of arrays are parts too, named
+/// "0", "1", ...
+struct Part {
+  enum class Kind {
+    scalar,
+    array,
+    inline_table,
+    table,  ///< has a header, such as [timing]
+    /// a table without its own header: it consists of dotted keys, or only contains tables that have headers
+    dotted,
+    table_array  ///< a list of tables, such as [[block]]; its parts are these tables
+  };
+  Kind kind = Kind::scalar;
+  std::string name;
+  /// The key as written, such as `grid.slope`. For an item of an array, the value. For a table, its header.
+  Span key;
+  /// The range of the value. For a table with a header: from the header to the end of the line of the last
+  /// key that belongs to the table itself.
+  Span value;
+  std::vector<Span> header_names;  ///< for a table with a header: where each name in the header is
+  /// for a dotted table, its name below the header, such as `grid`; "" if it only contains tables that have
+  /// headers
+  std::string prefix;
+  int line = 0;     ///< line of the key or header, from 1
+  int section = 0;  ///< for a dotted table: how many headers come before it
+  Place key_place;
+  Value scalar;           ///< the value of a scalar; of other parts, only the place
+  std::list<Part> parts;  ///< in the order of the file
+
+  bool is_table() const { return kind == Kind::table || kind == Kind::dotted || kind == Kind::inline_table; }
+  const Part* find(std::string_view name) const;
+  Part* find(std::string_view name);
+};
+
+/// Reads TOML 1.0. Returns the table of the whole file, as it is written. `path` is the file name that
+/// messages show. Throws BadInput with the place of the first mistake, of a list with more than 10 000 items,
+/// or of a key with more than 16 parts.
+Part parts_of(std::string_view source, const std::string& path);
+
+/// Returns what a part says, without how it is written.
+Value value_of(const Part& part);
+
+/// Returns what a file says; throws like parts_of().
+Value parse_toml(std::string_view source, const std::string& path);
+
+/// Returns the offset of the end of the line that contains `at`, before its line break.
+std::size_t line_end(std::string_view text, std::size_t at);
 
 /// Names the type of a value for messages: `a number`, `text`, `a table`, ...
 texts::Phrase describe(const Value& value);

@@ -9,7 +9,6 @@
 #include "catalogues.hpp"
 
 namespace turnpoint::texts {
-
 namespace {
 
 using Texts = std::map<std::string, std::string, std::less<>>;

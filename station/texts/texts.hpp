@@ -1,7 +1,9 @@
 #pragma once
 #include <concepts>
+#include <exception>
 #include <functional>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -9,6 +11,7 @@
 
 #include "station/terms/fault.hpp"
 #include "station/terms/proof.hpp"
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::texts {
 
@@ -60,5 +63,33 @@ FaultText fault_text(terms::FaultKind kind, const std::string& language);
 /// fault is the same in every language.
 Phrase phrase_of(const terms::Fault& fault);
 Phrase phrase_of(terms::ProofCause cause);
+
+/// A usage error that can be said in the language of the screen. what() says it in English, for the command
+/// line.
+class Refusal : public terms::UsageError {
+ public:
+  explicit Refusal(Phrase why) : UsageError(say(why, "en")), why_(std::move(why)) {}
+  const Phrase& why() const { return why_; }
+
+ private:
+  Phrase why_;
+};
+
+/// The same for a failure at run time, which is not the user's mistake.
+class Failure : public std::runtime_error {
+ public:
+  explicit Failure(Phrase why) : runtime_error(say(why, "en")), why_(std::move(why)) {}
+  const Phrase& why() const { return why_; }
+
+ private:
+  Phrase why_;
+};
+
+/// Returns what an error says, as a phrase: that of a Refusal or a Failure, or else its message.
+inline Phrase phrase_of(const std::exception& error) {
+  if (const auto* refusal = dynamic_cast<const Refusal*>(&error)) return refusal->why();
+  if (const auto* failure = dynamic_cast<const Failure*>(&error)) return failure->why();
+  return plain(error.what());
+}
 
 }  // namespace turnpoint::texts

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "station/plot/chart.hpp"
-#include "station/system/on_stop_signal.hpp"
 #include "station/system/progress.hpp"
+#include "station/system/stop_signals.hpp"
 #include "station/system/write_file.hpp"
 #include "tests/benchmark/intervals.hpp"
 #include "tests/benchmark/physics.hpp"

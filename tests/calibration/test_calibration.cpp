@@ -45,7 +45,7 @@ rig::Rig plate() { return rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/
 
 // Returns a plate that is held 0.25 mm behind the clamp's edge and is 2 % too thin.
 physics::Surface other_plate() {
-  const auto surface = scene::surface_of(plate());
+  const auto surface = rig::surface_of(plate());
   return physics::changed(physics::changed(surface, physics::Parameter::clamp_line, 0.25e-3),
                           physics::Parameter::thickness, -0.04e-3);
 }
@@ -105,10 +105,10 @@ TEST_CASE("measurements become a file that reads back as the same calibration", 
 
 TEST_CASE("the map of a rig with measured boundaries is that of the plate on which they were measured",
           "[calibration]") {
-  const auto truth = map_of(other_plate()), stated = map_of(scene::surface_of(plate()));
+  const auto truth = map_of(other_plate()), stated = map_of(rig::surface_of(plate()));
   Calibration calibration;
   calibration.boundary = fit_boundaries(plate(), "p50", points_on(truth));
-  const auto fitted = map_of(scene::surface_of(applied(calibration, plate())));
+  const auto fitted = map_of(rig::surface_of(applied(calibration, plate())));
   for (const double f : {25e3, 33e3, 42e3}) {
     const double x = truth.boundary_m(f).value();
     CHECK(std::abs(fitted.boundary_m(f).value() - x) < 0.3e-3);

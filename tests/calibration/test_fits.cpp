@@ -5,7 +5,7 @@
 #include <string>
 
 #include "station/calibration/fits.hpp"
-#include "station/scene/planner.hpp"
+#include "station/rig/physical.hpp"
 #include "station/terms/usage_error.hpp"
 #include "tests/support/catch.hpp"
 
@@ -121,7 +121,7 @@ TEST_CASE("whatever friction was measured, the fit is refused or gives a curve f
     }
     ++fitted;
     rig.friction.measured = true;
-    const auto curve = turnpoint::scene::friction_of(rig);
+    const auto curve = turnpoint::rig::friction_of(rig);
     for (const double share : {0.0, 0.3, 1.0}) {
       const double friction = curve.relative_friction(share * curve.highest_displacement_m());
       CHECK((std::isfinite(friction) && friction > 0 && friction <= 1));

@@ -6,10 +6,10 @@
 #include <functional>
 
 #include "station/collector/fetch.hpp"
-#include "station/store/annotate.hpp"
 #include "station/store/checksum.hpp"
 #include "station/store/merge.hpp"
 #include "station/store/schema.hpp"
+#include "station/store/session_log.hpp"
 #include "tests/collector/exported.hpp"
 #include "tests/collector/postgres_server.hpp"
 #include "tests/store/sample.hpp"

@@ -127,7 +127,7 @@ TEST_CASE("every value is found where the parser of TOML finds it, and is itself
       scalars += part.kind == Part::Kind::scalar;
       const auto* expected = parsed(truth, at);
       REQUIRE(expected != nullptr);
-      REQUIRE(same(document.value(part), *expected));
+      REQUIRE(same(text::value_of(part), *expected));
       if (at.size() == 1) REQUIRE(part.line == truth.find(at[0])->place.line);
       REQUIRE(document.with(at, document.written(at)) == text);
     });
@@ -270,7 +270,7 @@ TEST_CASE("every text that the parser of TOML accepts is read in the same way, a
       scalars += part.kind == Part::Kind::scalar;
       const auto* expected = parsed(truth, at);
       REQUIRE(expected != nullptr);
-      REQUIRE(same(document.value(part), *expected));
+      REQUIRE(same(text::value_of(part), *expected));
     });
     REQUIRE(scalars == leaves(truth));
   }

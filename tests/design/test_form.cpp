@@ -87,7 +87,7 @@ TEST_CASE("every value of every shipped protocol has exactly one field, which le
           if (!field.present) continue;
           const auto written = design::encoded(field, field.value);
           const auto a = text::parse_toml(question(written), "").entries[0].value;
-          const auto b = document.value(*document.find(field.path));
+          const auto b = text::value_of(*document.find(field.path));
           CHECK(a.kind == b.kind);
           CHECK(a.string == b.string);
           CHECK(a.number == b.number);

@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "station/desk/finger_gauges.hpp"
+#include "station/desk/live_facts.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;

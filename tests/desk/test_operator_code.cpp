@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "station/desk/code_back_off.hpp"
 #include "station/desk/operator_code.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/problem.hpp"

@@ -4,11 +4,10 @@
 #include <fstream>
 
 #include "station/desk/choices.hpp"
-#include "station/desk/cue_advice.hpp"
 #include "station/desk/session_list.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/simulation/check.hpp"
-#include "station/store/annotate.hpp"
+#include "station/store/session_log.hpp"
 #include "station/system/read_file.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"

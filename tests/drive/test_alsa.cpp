@@ -3,8 +3,8 @@
 #include <cstdlib>
 
 #include "station/drive/alsa_capture.hpp"
-#include "station/drive/alsa_output.hpp"
 #include "station/drive/engine.hpp"
+#include "station/drive/output.hpp"
 #include "tests/drive/bursts.hpp"
 #include "tests/support/catch.hpp"
 

@@ -1,4 +1,4 @@
-#include "station/drive/frame_layout.hpp"
+#include "station/drive/alsa_device.hpp"
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 #include "station/limits/finger_account.hpp"
-#include "station/system/clock_watch.hpp"
+#include "station/system/clocks.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;

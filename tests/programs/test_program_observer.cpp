@@ -2,7 +2,7 @@
 #include <tuple>
 #include <vector>
 
-#include "station/programs/program_choice.hpp"
+#include "station/programs/conversation.hpp"
 #include "station/programs/programs.hpp"
 #include "station/system/read_file.hpp"
 #include "station/terms/usage_error.hpp"

@@ -6,7 +6,7 @@
 #include "station/procedure/trace.hpp"
 #include "station/programs/programs.hpp"
 #include "station/random/draws.hpp"
-#include "station/terms/program_failed.hpp"
+#include "station/terms/usage_error.hpp"
 #include "tests/programs/written_program.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/quick_rig.hpp"

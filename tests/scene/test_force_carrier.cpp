@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "station/terms/force_carrier.hpp"
+#include "station/terms/limits.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::scene;

@@ -13,7 +13,7 @@ namespace {
 constexpr auto kModel = physics::Model::mode;
 
 double level_dB(const rig::Rig& rig, const physics::Tone& tone) {
-  return physics::loudest_sound(scene::surface_of(rig), tone, kModel, scene::kEarDistance_m).level_dB;
+  return physics::loudest_sound(rig::surface_of(rig), tone, kModel, scene::kEarDistance_m).level_dB;
 }
 
 scene::SoundBound bound_of(const rig::Rig& rig, const std::vector<physics::Tone>& tones) {

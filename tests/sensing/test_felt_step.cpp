@@ -6,7 +6,7 @@
 #include "physics/field.hpp"
 #include "physics/friction.hpp"
 #include "station/analysis/quantile.hpp"
-#include "station/sensing/trial_summary.hpp"
+#include "station/sensing/trial_finger.hpp"
 #include "tests/sensing/finger.hpp"
 #include "tests/sensing/studies.hpp"
 #include "tests/support/catch.hpp"

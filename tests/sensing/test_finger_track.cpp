@@ -4,7 +4,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "station/sensing/strokes.hpp"
 #include "tests/sensing/finger.hpp"
 #include "tests/sensing/studies.hpp"
 #include "tests/support/catch.hpp"

@@ -6,7 +6,6 @@
 #include <iterator>
 #include <string>
 
-#include "station/drive/peak.hpp"
 #include "station/drive/prepared_burst.hpp"
 
 namespace turnpoint::many_tones {

@@ -165,7 +165,7 @@ TEST_CASE("after 10 K, corrected frequencies put each boundary where it was plan
   CHECK(said[0].find("frequencies are corrected") != std::string::npos);
   CHECK(warm.resonance == Approx(1 - 0.5 * 4.57e-4 * 10).epsilon(1e-6));
   REQUIRE(warm.trials.size() == cold.trials.size());
-  const auto surface = scene::surface_of(warm.rig);
+  const auto surface = rig::surface_of(warm.rig);
   for (std::size_t k = 0; k < warm.trials.size(); ++k) {
     const auto& trial = warm.trials[k];
     CHECK(trial.outcome == terms::Outcome::answered);

@@ -3,11 +3,11 @@
 // make_sample FOLDER every: writes a database that has rows in every table to FOLDER/lab.sqlite.
 #include <cstdio>
 
-#include "station/store/annotate.hpp"
 #include "station/store/export.hpp"
 #include "station/store/merge.hpp"
 #include "station/store/people.hpp"
 #include "station/store/places.hpp"
+#include "station/store/session_log.hpp"
 #include "station/store/station.hpp"
 #include "station/store/withdraw.hpp"
 #include "tests/store/sample.hpp"

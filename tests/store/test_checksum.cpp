@@ -6,13 +6,13 @@
 #include <fstream>
 #include <random>
 
-#include "station/store/annotate.hpp"
 #include "station/store/export.hpp"
 #include "station/store/fields.hpp"
 #include "station/store/merge.hpp"
 #include "station/store/open.hpp"
 #include "station/store/read.hpp"
 #include "station/store/seal.hpp"
+#include "station/store/session_log.hpp"
 #include "station/store/text_table.hpp"
 #include "station/store/verify.hpp"
 #include "station/store/whole_file.hpp"

@@ -8,12 +8,12 @@
 #include <random>
 #include <set>
 
-#include "station/store/annotate.hpp"
 #include "station/store/backup.hpp"
 #include "station/store/export.hpp"
 #include "station/store/merge.hpp"
 #include "station/store/read.hpp"
 #include "station/store/seal.hpp"
+#include "station/store/session_log.hpp"
 #include "station/store/station.hpp"
 #include "station/store/verify.hpp"
 #include "station/store/withdraw.hpp"

@@ -157,7 +157,7 @@ TEST_CASE("what the operator's pages show is never a sentence in their sources, 
   std::vector<std::string> files;
   for (const char* file : {"station/maintenance/force_weights.cpp", "station/maintenance/bridge_reader.cpp",
                            "station/maintenance/disks.cpp", "station/maintenance/panel_latency.cpp",
-                           "station/setup/prepare.cpp", "station/calibration/response_fit.cpp"})
+                           "station/setup/prepare.cpp", "station/calibration/fits.cpp"})
     files.push_back(root + file);
   for (const auto& entry : std::filesystem::directory_iterator(root + "station/ui/operator"))
     if (entry.path().extension() == ".cpp") files.push_back(entry.path().string());

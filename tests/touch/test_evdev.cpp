@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "station/touch/evdev_contact.hpp"
-#include "station/touch/touch_decoder.hpp"
+#include "station/touch/touch_times.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/fake_evdev.hpp"
 

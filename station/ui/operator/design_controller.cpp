@@ -13,7 +13,7 @@
 #include "station/setup/prepare.hpp"
 #include "station/system/read_file.hpp"
 #include "station/text/toml.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 #include "station/ui/operator/design_lists.hpp"
 #include "station/ui/operator/facts.hpp"
 #include "station/ui/operator/figure_view.hpp"
@@ -94,7 +94,7 @@ bool DesignController::open(const QString& path) try {
   old_version_.clear();
   if (draft_->document() != nullptr)
     if (const auto* version = draft_->document()->find({"protocol", "version"}); version != nullptr)
-      old_version_ = draft_->document()->value(*version).string;
+      old_version_ = version->scalar.string;
   return true;
 } catch (const std::exception& error) {
   return refuse(phrases_of(error).front());

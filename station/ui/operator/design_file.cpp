@@ -64,7 +64,7 @@ void DesignController::raise_version() {
   const auto version = std::exchange(old_version_, "");
   const auto* part =
       draft_->document() == nullptr ? nullptr : draft_->document()->find({"protocol", "version"});
-  if (version.empty() || part == nullptr || draft_->document()->value(*part).string != version) return;
+  if (version.empty() || part == nullptr || part->scalar.string != version) return;
   take_change(
       draft_->document()->with({"protocol", "version"}, design::toml_string(design::next_version(version))));
 }

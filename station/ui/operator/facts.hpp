@@ -9,7 +9,7 @@
 
 #include "station/store/error.hpp"
 #include "station/text/problem.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 #include "station/ui/shared/phrases.hpp"
 
 namespace turnpoint::ui {

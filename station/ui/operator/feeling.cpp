@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "station/desk/preview.hpp"
-#include "station/maintenance/feel_scene.hpp"
+#include "station/maintenance/play_armed.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/ui/operator/facts.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "station/plot/svg.hpp"
 #include "station/system/write_file.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 #include "station/ui/operator/painter_canvas.hpp"
 
 namespace turnpoint::ui {

@@ -244,7 +244,7 @@ void OperatorController::prepare(const std::string& early) {
             Q_EMIT changed();
             Q_EMIT chosen(session);
           };
-        } catch (const setup::TooEarly& refused) {
+        } catch (const session::TooEarly& refused) {
           return [this, early = refused.early()] {
             too_early_ = early;
             stay();

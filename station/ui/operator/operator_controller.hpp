@@ -13,7 +13,6 @@
 #include "station/desk/station_state.hpp"
 #include "station/session/session.hpp"
 #include "station/setup/prepare.hpp"
-#include "station/setup/station_request.hpp"
 #include "station/ui/operator/check_protocol.hpp"
 #include "station/ui/platform/newest_job.hpp"
 

@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "station/desk/code_back_off.hpp"
 #include "station/desk/operator_code.hpp"
 #include "station/ui/platform/newest_job.hpp"
 
@@ -14,7 +13,7 @@ namespace turnpoint::ui {
 
 /// Protects the operator's pages on the participant's screen. A code is compared on a separate thread,
 /// because hashing takes as long as several frames. After wrong codes it refuses every code for a while
-/// (desk/code_back_off.hpp). The log says how many codes were wrong in a row. GUI thread only.
+/// (desk/operator_code.hpp). The log says how many codes were wrong in a row. GUI thread only.
 class OperatorLock : public QObject {
   Q_OBJECT
   QML_ELEMENT

@@ -6,7 +6,7 @@
 
 #include "station/desk/scene_figures.hpp"
 #include "station/setup/prepare.hpp"
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 #include "station/ui/operator/facts.hpp"
 
 namespace turnpoint::ui {

@@ -4,7 +4,6 @@
 #include <exception>
 #include <utility>
 
-#include "station/texts/refusal.hpp"
 #include "station/texts/texts.hpp"
 #include "station/ui/operator/facts.hpp"
 #include "station/ui/operator/figure_view.hpp"

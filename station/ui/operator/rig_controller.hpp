@@ -10,7 +10,7 @@
 
 #include "station/lines/probe.hpp"
 #include "station/session/self_test.hpp"
-#include "station/setup/station_request.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/ui/operator/calibration_guide.hpp"
 #include "station/ui/operator/weighing.hpp"
 #include "station/ui/platform/newest_job.hpp"

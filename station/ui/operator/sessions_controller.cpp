@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "station/desk/report_pages.hpp"
-#include "station/store/annotate.hpp"
 #include "station/store/backup.hpp"
 #include "station/store/export.hpp"
+#include "station/store/session_log.hpp"
 #include "station/ui/operator/facts.hpp"
 
 namespace turnpoint::ui {

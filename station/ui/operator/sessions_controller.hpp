@@ -9,7 +9,7 @@
 
 #include "station/desk/session_list.hpp"
 #include "station/maintenance/disks.hpp"
-#include "station/setup/station_request.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/store/withdraw.hpp"
 #include "station/ui/operator/report_model.hpp"
 #include "station/ui/platform/newest_job.hpp"

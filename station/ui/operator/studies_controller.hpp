@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "station/desk/choices.hpp"
-#include "station/setup/station_request.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/ui/operator/check_protocol.hpp"
 #include "station/ui/platform/newest_job.hpp"
 

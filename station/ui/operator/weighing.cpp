@@ -6,7 +6,7 @@
 #include <exception>
 #include <utility>
 
-#include "station/texts/refusal.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::ui {
 

@@ -7,7 +7,6 @@
 #include "station/desk/report_pages.hpp"
 #include "station/setup/open_touch.hpp"
 #include "station/system/clocks.hpp"
-#include "station/texts/refusal.hpp"
 #include "station/texts/texts.hpp"
 
 namespace turnpoint::ui {

@@ -6,7 +6,6 @@
 #include "station/maintenance/panel_latency.hpp"
 #include "station/session/session.hpp"
 #include "station/setup/prepare.hpp"
-#include "station/setup/station_request.hpp"
 
 namespace turnpoint::ui {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <QVariantMap>
 
-#include "station/session/early_session.hpp"
+#include "station/session/planned_session.hpp"
 
 namespace turnpoint::ui {
 

@@ -1,14 +1,15 @@
+#include "station/rig/physical.hpp"
+
 #include <stdexcept>
 
 #include "physics/boundary_budget.hpp"
 #include "physics/boundary_fit.hpp"
-#include "station/scene/planner.hpp"
 
-namespace turnpoint::scene {
+namespace turnpoint::rig {
 
 namespace {
 
-physics::TaperForm taper_of(const rig::Taper& taper) {
+physics::TaperForm taper_of(const Taper& taper) {
   if (taper.slope) return physics::LinearTaper{taper.half_width_m, *taper.slope};
   if (taper.decay_length_m) return physics::ExponentialTaper{taper.half_width_m, *taper.decay_length_m};
   physics::TabulatedTaper table;
@@ -16,13 +17,13 @@ physics::TaperForm taper_of(const rig::Taper& taper) {
   return table;
 }
 
-physics::Bending bending_of(rig::Bending bending) {
+physics::Bending bending_of(Bending bending) {
   switch (bending) {
-    case rig::Bending::on:
+    case Bending::on:
       return physics::Bending::on;
-    case rig::Bending::off:
+    case Bending::off:
       return physics::Bending::off;
-    case rig::Bending::automatic:
+    case Bending::automatic:
       break;
   }
   return physics::Bending::automatic;
@@ -30,24 +31,24 @@ physics::Bending bending_of(rig::Bending bending) {
 
 /// Returns the plate theory for this surface. If the rig file leaves the choice open, this is the most exact
 /// theory in which every model can be computed for the surface.
-physics::PlateTheory theory_of(rig::PlateTheory theory, const rig::Surface& surface) {
+physics::PlateTheory theory_of(PlateTheory theory, const Surface& surface) {
   switch (theory) {
-    case rig::PlateTheory::kirchhoff:
+    case PlateTheory::kirchhoff:
       return physics::PlateTheory::kirchhoff;
-    case rig::PlateTheory::mindlin:
+    case PlateTheory::mindlin:
       return physics::PlateTheory::mindlin;
-    case rig::PlateTheory::elastic:
+    case PlateTheory::elastic:
       return physics::PlateTheory::elastic;
-    case rig::PlateTheory::automatic:
+    case PlateTheory::automatic:
       break;
   }
-  const bool clamped_plate = surface.tension_Pa == 0 && surface.edges == rig::Edges::clamped;
+  const bool clamped_plate = surface.tension_Pa == 0 && surface.edges == Edges::clamped;
   const double poisson = surface.poisson.value_or(-1);
   return clamped_plate && poisson >= 0 && poisson <= 0.49 ? physics::PlateTheory::mindlin
                                                           : physics::PlateTheory::kirchhoff;
 }
 
-physics::Surface fitted(physics::Surface surface, const rig::SurfaceFit& fit) {
+physics::Surface fitted(physics::Surface surface, const SurfaceFit& fit) {
   std::vector<physics::FittedParameter> parameters;
   std::vector<physics::Correlation> correlations;
   for (const auto& p : fit.parameters) {
@@ -61,9 +62,15 @@ physics::Surface fitted(physics::Surface surface, const rig::SurfaceFit& fit) {
   return physics::with_fit(std::move(surface), parameters, correlations);
 }
 
+texts::Phrase said(const physics::Statement& statement, const std::string& table) {
+  std::vector<texts::Phrase> values;
+  for (const auto& value : statement.values) values.push_back(texts::plain(value));
+  return texts::phrase(table + "." + statement.code, std::move(values));
+}
+
 }  // namespace
 
-physics::Surface surface_of(const rig::Rig& rig) {
+physics::Surface surface_of(const Rig& rig) {
   const auto& s = rig.surface;
   physics::Surface surface;
   surface.density_kg_m3 = s.density_kg_m3;
@@ -72,7 +79,7 @@ physics::Surface surface_of(const rig::Rig& rig) {
   surface.length_m = s.length_m;
   surface.quality_factor = s.quality_factor;
   surface.taper = taper_of(s.taper);
-  surface.edges = s.edges == rig::Edges::clamped ? physics::Edges::clamped : physics::Edges::supported;
+  surface.edges = s.edges == Edges::clamped ? physics::Edges::clamped : physics::Edges::supported;
   surface.bending = bending_of(s.bending);
   surface.modulus_Pa = s.modulus_Pa;
   if (s.poisson) surface.poisson = *s.poisson;
@@ -94,7 +101,7 @@ physics::Surface surface_of(const rig::Rig& rig) {
   return surface;
 }
 
-physics::FrictionMap friction_of(const rig::Rig& rig) {
+physics::FrictionMap friction_of(const Rig& rig) {
   if (!rig.friction.measured) {
     physics::LoadSharing model;
     model.pressure_Pa = rig.friction.pressure_Pa;
@@ -102,9 +109,12 @@ physics::FrictionMap friction_of(const rig::Rig& rig) {
     return physics::FrictionMap(model);
   }
   std::vector<physics::FrictionPoint> points;
-  for (const auto& [displacement_m, relative] : rig::falling(rig.friction.table))
+  for (const auto& [displacement_m, relative] : falling(rig.friction.table))
     points.push_back({displacement_m, relative, 0});
   return physics::FrictionMap(points);
 }
 
-}  // namespace turnpoint::scene
+texts::Phrase phrase_of(const physics::Warning& warning) { return said(warning, "physics_warning"); }
+texts::Phrase phrase_of(const physics::Refused& refused) { return said(refused.why(), "physics_refusal"); }
+
+}  // namespace turnpoint::rig

@@ -1,10 +1,12 @@
+#include "station/session/drift.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "physics/centre_line.hpp"
-#include "station/scene/planner.hpp"
-#include "station/session/session_run.hpp"
+#include "station/session/capture_feed.hpp"
 #include "station/system/thermometer.hpp"
 #include "station/text/number.hpp"
 
@@ -26,29 +28,26 @@ double boundary_shift_m(const physics::Surface& surface, double frequency_Hz, do
   return then && now ? *now - *then : 0;
 }
 
-/// Reads the thermometers at the beginning of the session. Temperatures during the session are compared with
-/// these readings.
-void SessionRun::begin_drift() {
-  auto capture = stage_->capture();
+Drift::Drift(const Setup& setup, Stage& stage, store::SessionLog& log)
+    : setup_(setup), stage_(stage), log_(log) {
+  auto capture = stage_.capture();
   if (!capture)
     if (const auto card = card_capture_of(setup_.rig)) capture = card->setup;
-  if (capture && !capture->pick_ups.empty()) drift_.emplace(capture->pick_ups);
+  if (capture && !capture->pick_ups.empty()) tracker_.emplace(capture->pick_ups);
   if (!setup_.rig.thermometers) return;
   thermometers_ = {system::find_thermometer(setup_.rig.thermometers->plate_uri, setup_.thermometers),
                    system::find_thermometer(setup_.rig.thermometers->frame_uri, setup_.thermometers)};
 }
 
-/// Logs the temperatures before a trial. When a thermometer first differs by 3 K from its reading at the
-/// start, the change is flagged; its later changes are not.
-void SessionRun::log_temperature() {
+void Drift::log_temperature(int trial_index) {
   if (thermometers_.empty()) return;
   const auto plate = system::read_thermometer_C(thermometers_[0]);
   const auto frame = system::read_thermometer_C(thermometers_[1]);
   const auto shown = [](const std::optional<double>& value) {
     return value ? text::number(*value, 4) : std::string("unknown");
   };
-  log_.event({stage_->now_ns(), "temperature", "plate " + shown(plate) + " C, frame " + shown(frame) + " C",
-              trial_index()});
+  log_.event({stage_.now_ns(), "temperature", "plate " + shown(plate) + " C, frame " + shown(frame) + " C",
+              trial_index});
   const std::array now{plate, frame};
   for (std::size_t k = 0; k < now.size(); ++k) {
     if (!now[k]) continue;
@@ -56,43 +55,40 @@ void SessionRun::log_temperature() {
     const double change_K = *now[k] - *first_C_[k];
     if (std::abs(change_K) < kFlag_K || warm_[k]) continue;
     warm_[k] = true;
-    log_.event({stage_->now_ns(), "temperature_flag",
+    log_.event({stage_.now_ns(), "temperature_flag",
                 fmt::format("the {} changed by {} K since the session began", k == 0 ? "plate" : "frame",
                             text::number(change_K, 3)),
-                trial_index()});
+                trial_index});
   }
 }
 
-/// Updates the drift of the surface's resonances from the measured phases of an interval's tones.
-void SessionRun::follow_drift(const sensing::IntervalResult& measured) {
+void Drift::follow(const sensing::IntervalResult& measured) {
   using terms::Proof;
-  if (!drift_ || (measured.verdict != Proof::ok && measured.verdict != Proof::flagged)) return;
-  if (const auto found = drift_->take(measured.tones, applied_drift_)) newest_drift_ = found;
+  if (!tracker_ || (measured.verdict != Proof::ok && measured.verdict != Proof::flagged)) return;
+  if (const auto found = tracker_->take(measured.tones, applied_)) newest_ = found;
 }
 
-/// If the boundaries have moved by 0.2 mm or more since the last correction, the frequencies of the following
-/// trials are corrected. A trial that is already planned is planned again.
-void SessionRun::correct_drift() {
-  if (!newest_drift_) return;
-  const auto drift = *std::exchange(newest_drift_, std::nullopt);
+std::optional<double> Drift::correction(int trial_index) {
+  const auto found = std::exchange(newest_, std::nullopt);
+  if (!found) return std::nullopt;
+  const auto& drift = *found;
   double largest_m = 0;
-  const auto surface = scene::surface_of(setup_.rig);
+  const auto surface = rig::surface_of(setup_.rig);
   for (const auto& transducer : setup_.rig.transducers)
     for (const double f :
          {transducer.low_Hz, std::sqrt(transducer.low_Hz * transducer.high_Hz), transducer.high_Hz})
-      if (const double shift_m = boundary_shift_m(surface, f, (1 + drift.share) / (1 + applied_drift_) - 1);
+      if (const double shift_m = boundary_shift_m(surface, f, (1 + drift.share) / (1 + applied_) - 1);
           std::abs(shift_m) > std::abs(largest_m))
         largest_m = shift_m;
-  if (std::abs(largest_m) < kCorrect_m || std::abs(drift.share) > kMostDrift) return;
-  applied_drift_ = drift.share;
-  plans_.set_drift(drift.share);
-  stage_->set_drift(drift.share);
+  if (std::abs(largest_m) < kCorrect_m || std::abs(drift.share) > kMostDrift) return std::nullopt;
+  applied_ = drift.share;
   log_.event(
-      {stage_->now_ns(), "drift",
+      {stage_.now_ns(), "drift",
        fmt::format("the resonances moved by {} % since the calibration, boundaries by up to {} mm since "
                    "the last correction; frequencies are corrected",
                    text::number(100 * drift.share, 3), text::number(1e3 * largest_m, 3)),
-       trial_index()});
+       trial_index});
+  return applied_;
 }
 
 }  // namespace turnpoint::session

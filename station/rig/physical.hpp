@@ -1,0 +1,19 @@
+#pragma once
+#include "physics/friction.hpp"
+#include "physics/surface.hpp"
+#include "physics/warning.hpp"
+#include "station/rig/rig.hpp"
+#include "station/texts/texts.hpp"
+
+namespace turnpoint::rig {
+
+/// Converts the rig's surface and friction map to the types of the physics library. Throws
+/// std::invalid_argument for values that the library does not accept.
+physics::Surface surface_of(const Rig& rig);
+physics::FrictionMap friction_of(const Rig& rig);
+
+/// Says a warning or a refusal of the physics library in a language that is chosen later.
+texts::Phrase phrase_of(const physics::Warning& warning);
+texts::Phrase phrase_of(const physics::Refused& refused);
+
+}  // namespace turnpoint::rig
