@@ -110,7 +110,8 @@ double profile_end(const Replicator& base, const Quantity& quantity, Theta start
       outside = middle;
     }
   }
-  return (inside + outside) / 2;
+  // At the bound itself the search may find a lower maximum than close to it.
+  return outside == bound ? bound : (inside + outside) / 2;
 }
 
 ParameterInterval profile(const Replicator& base, const Quantity& quantity, const Theta& start,

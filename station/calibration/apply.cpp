@@ -62,6 +62,7 @@ rig::Rig applied(const Calibration& calibration, rig::Rig rig) {
   for (const auto& transducer : calibration.transducers) apply(transducer, rig);
   for (const auto& pick_up : calibration.pick_ups) apply(pick_up.response, rig);
   if (calibration.forces) apply(*calibration.forces, rig);
+  rig.mixer = calibration.mixer;
   if (calibration.quality_factor) rig.surface.quality_factor = *calibration.quality_factor;
   if (calibration.boundary) rig.surface.fit = calibration.boundary->surface;
   if (!calibration.friction) return rig;

@@ -9,7 +9,7 @@ namespace turnpoint::calibration {
 
 /// Returns the rig with the values of the calibration: each transducer's response, and its usable band as far
 /// as it lies within the rig's band; loss; the surface that measured boundaries determine; the responses of
-/// the pick-ups; and friction, which then counts as measured. Throws terms::UsageError for a transducer or a
+/// the pick-ups; the levels of the mixer; and friction, which then counts as measured. Throws terms::UsageError for a transducer or a
 /// pick-up that the rig does not have, or a transducer that would be left without a band.
 rig::Rig applied(const Calibration& calibration, rig::Rig rig);
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,8 @@ struct Calibration {
   std::optional<PanelLatency> panel;
   std::vector<PickUp> pick_ups;
   std::optional<rig::ForceCells> forces;
+  /// the sound card's mixer during the measurements: the values of each control by its name
+  std::map<std::string, std::string> mixer;
 };
 
 /// Names of the files with measurements; "" if there is no such file. Their columns are:

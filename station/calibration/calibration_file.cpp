@@ -373,6 +373,12 @@ void read_tables(text::TableReader& reader, Calibration& calibration) {
     inner.finish();
     calibration.friction = fit;
   }
+  if (const text::Value* table = reader.maybe_table("mixer")) {
+    text::TableReader inner(*table, "mixer", findings);
+    for (const auto& control : table->entries)
+      calibration.mixer[control.key] = inner.string(control.key, phrase("write the values as text"));
+    inner.finish();
+  }
   if (const text::Value* table = reader.maybe_table("sound")) {
     text::TableReader inner(*table, "sound", findings);
     const auto f = inner.numbers("frequency_Hz", {0, 1e6, Ends::open_low}),
@@ -408,6 +414,8 @@ std::string to_toml(const Calibration& c) {
   for (const auto& transducer : c.transducers) out += transducer_toml(transducer);
   if (c.forces) out += forces_toml(*c.forces);
   for (const auto& pick_up : c.pick_ups) out += pick_up_toml(pick_up);
+  if (!c.mixer.empty()) out += "\n[mixer]                       # levels of the sound card during the measurements\n";
+  for (const auto& [control, values] : c.mixer) out += fmt::format("{} = {}\n", quoted(control), quoted(values));
   return out;
 }
 

@@ -107,6 +107,15 @@ Json to_json(const simulation::Check& check, const std::string& signal) {
                     {"chance", json_number(cue.chance)},
                     {"accuracy_error", json_number(cue.error)},
                     {"above_chance", cue.above_chance()}});
+  Json runs = Json::array();
+  for (const auto& of : check.runs)
+    runs.push_back({{"of", of.of},
+                    {"limit", of.limit},
+                    {"longest", of.longest},
+                    {"sessions", of.sessions},
+                    {"sessions_with_longer", of.longer},
+                    {"share_low", json_number(of.share_longer.low)},
+                    {"share_high", json_number(of.share_longer.high)}});
   const auto extremes = extremes_of(check.survey);
   const bool planned = !check.survey.sights.empty();
   return {
@@ -124,6 +133,7 @@ Json to_json(const simulation::Check& check, const std::string& signal) {
       {"wanted_sessions", check.wanted_sessions},
       {"stopped", signal.empty() ? Json(nullptr) : Json(signal)},
       {"blocks", blocks},
+      {"runs", runs},
       {"frequencies",
        {{"lowest_Hz", planned ? json_number(extremes.lowest_Hz) : Json(nullptr)},
         {"highest_Hz", planned ? json_number(extremes.highest_Hz) : Json(nullptr)}}},
@@ -203,6 +213,16 @@ void print(std::ostream& out, const simulation::Check& check, const std::string&
         check.blocks.empty() || check.blocks.front().visit.empty() ? "" : "The longest session: ",
         range(check.trials, 1), range(check.duration_s, 60), check.simulated_sessions,
         check.simulated_sessions < check.wanted_sessions ? fmt::format(" of {}", check.wanted_sessions) : "");
+  for (const auto& of : check.runs)
+    fmt::print(
+        out,
+        "Runs: at most {} trials in a row have {} in {} of {} simulated sessions in which one answer of ten "
+        "is "
+        "missing; in {} to {} % of all sessions a run is longer (95 %)\n",
+        of.limit,
+        of.of == procedure::kRightAnswer ? "the same right answer" : fmt::format("the same \"{}\"", of.of),
+        of.sessions - of.longer, of.sessions, number(100 * of.share_longer.low, 2),
+        number(100 * of.share_longer.high, 2));
   const auto extremes = extremes_of(check.survey);
   std::string models;
   for (const auto& model : check.survey.models) models += (models.empty() ? "" : ", ") + model;

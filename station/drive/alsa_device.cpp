@@ -7,7 +7,6 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
-#include <string_view>
 #include <system_error>
 
 #include "station/terms/letters.hpp"
@@ -217,17 +216,11 @@ void check_kernel(snd_pcm_t* pcm, const OutputConfig& config, const std::string&
 
 void say_nothing(const char*, int, const char*, int, const char*, va_list) {}
 
-// alsa-lib also prints its errors to standard error. This object silences it on this thread, because our own
-// messages report the errors.
-struct QuietAlsa {
-  snd_local_error_handler_t before = snd_lib_error_set_local(say_nothing);
-  QuietAlsa() = default;
-  QuietAlsa(const QuietAlsa&) = delete;
-  QuietAlsa& operator=(const QuietAlsa&) = delete;
-  ~QuietAlsa() { snd_lib_error_set_local(before); }
-};
-
 }  // namespace
+
+QuietAlsa::QuietAlsa() : before_(snd_lib_error_set_local(say_nothing)) {}
+
+QuietAlsa::~QuietAlsa() { snd_lib_error_set_local(before_); }
 
 AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name, Direction direction) {
   const QuietAlsa quiet;
@@ -248,41 +241,6 @@ AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name,
   check_chain(device, config, name);
   check_kernel(pcm, config, name);
   return device;
-}
-
-namespace {
-
-struct Free {
-  void operator()(snd_ctl_t* card) const noexcept { snd_ctl_close(card); }
-  void operator()(snd_ctl_elem_info_t* info) const noexcept { snd_ctl_elem_info_free(info); }
-  void operator()(snd_ctl_elem_value_t* value) const noexcept { snd_ctl_elem_value_free(value); }
-};
-
-}  // namespace
-
-std::optional<bool> card_switch(const std::string& output_uri, const std::string& name) {
-  constexpr std::string_view scheme = "alsa:";
-  if (!output_uri.starts_with("alsa:hw:")) return std::nullopt;
-  // Remove the device part of the name: the card of hw:CARD=NAME,DEV=0 is hw:CARD=NAME.
-  const std::string card_name = output_uri.substr(scheme.size(), output_uri.find(',') - scheme.size());
-  snd_ctl_t* opened = nullptr;
-  if (snd_ctl_open(&opened, card_name.c_str(), SND_CTL_READONLY) < 0) return std::nullopt;
-  const std::unique_ptr<snd_ctl_t, Free> card(opened);
-  snd_ctl_elem_info_t* new_info = nullptr;
-  snd_ctl_elem_value_t* new_value = nullptr;
-  if (snd_ctl_elem_info_malloc(&new_info) < 0) return std::nullopt;
-  const std::unique_ptr<snd_ctl_elem_info_t, Free> info(new_info);
-  if (snd_ctl_elem_value_malloc(&new_value) < 0) return std::nullopt;
-  const std::unique_ptr<snd_ctl_elem_value_t, Free> value(new_value);
-  snd_ctl_elem_info_set_interface(info.get(), SND_CTL_ELEM_IFACE_MIXER);
-  snd_ctl_elem_info_set_name(info.get(), name.c_str());
-  snd_ctl_elem_value_set_interface(value.get(), SND_CTL_ELEM_IFACE_MIXER);
-  snd_ctl_elem_value_set_name(value.get(), name.c_str());
-  if (snd_ctl_elem_info(card.get(), info.get()) < 0 || snd_ctl_elem_read(card.get(), value.get()) < 0)
-    return std::nullopt;
-  for (unsigned channel = 0; channel < snd_ctl_elem_info_get_count(info.get()); ++channel)
-    if (snd_ctl_elem_value_get_boolean(value.get(), channel) != 0) return true;
-  return false;
 }
 
 }  // namespace turnpoint::drive

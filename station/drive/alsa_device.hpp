@@ -36,6 +36,19 @@ struct FrameLayout {
 void pack(std::span<const std::int32_t> samples, int channels, const FrameLayout& layout,
           std::span<unsigned char> out) noexcept;
 
+/// alsa-lib also prints its errors to standard error. This object silences it on this thread, because our own
+/// messages report the errors.
+class QuietAlsa {
+ public:
+  QuietAlsa();
+  ~QuietAlsa();
+  QuietAlsa(const QuietAlsa&) = delete;
+  QuietAlsa& operator=(const QuietAlsa&) = delete;
+
+ private:
+  snd_local_error_handler_t before_;
+};
+
 struct PcmCloser {
   void operator()(snd_pcm_t* pcm) const noexcept { snd_pcm_close(pcm); }
 };
@@ -59,10 +72,5 @@ enum class Direction { playback, capture };
 /// available. A capture device must offer S32_LE; the depth of its converter is not checked.
 AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name,
                             Direction direction = Direction::playback);
-
-/// Reads a switch of the sound card behind an output `alsa:hw:...`, such as "Auto Mute Switch" of a PCM512x.
-/// Returns true if it is on in any channel. Returns nothing if the output is not ALSA hardware, the card has
-/// no such switch, or it cannot be read. Changes nothing.
-std::optional<bool> card_switch(const std::string& output_uri, const std::string& name);
 
 }  // namespace turnpoint::drive

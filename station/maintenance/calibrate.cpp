@@ -12,6 +12,7 @@
 #include "station/maintenance/play_armed.hpp"
 #include "station/rig/csv.hpp"
 #include "station/scene/planner.hpp"
+#include "station/session/mixer.hpp"
 #include "station/session/stage.hpp"
 #include "station/system/write_file.hpp"
 #include "station/terms/usage_error.hpp"
@@ -195,7 +196,14 @@ std::string usable_toml(const Calibration& calibration, const rig::Rig& rig) {
   });
 }
 
-void write_calibration(const Calibration& calibration, const rig::Rig& rig, const std::string& path) {
+void write_calibration(Calibration calibration, const rig::Rig& rig, const std::string& path) {
+  if (auto now = session::mixer_levels(rig); !now.empty()) {
+    auto earlier = rig;
+    earlier.mixer = calibration.mixer;
+    if (const auto reading = session::read_mixer(earlier); !reading.changes.empty())
+      throw texts::Refusal(texts::phrase("series.other_mixer", {reading.changes.front()}));
+    calibration.mixer = std::move(now);
+  }
   system::write_file(path, usable_toml(calibration, rig), 0666, system::Replaces::input);
 }
 

@@ -19,9 +19,10 @@ calibration::Calibration calibrate(const rig::Rig& rig, const calibration::Measu
 /// another one cannot use.
 std::string usable_toml(const calibration::Calibration& calibration, const rig::Rig& rig);
 
-/// Writes the file with usable_toml(). It may replace the calibration from which this one was continued.
-void write_calibration(const calibration::Calibration& calibration, const rig::Rig& rig,
-                       const std::string& path);
+/// Writes the file with usable_toml() and with the present levels of the sound card's mixer. It may replace
+/// the calibration from which this one was continued. Throws texts::Refusal if that one was measured with
+/// other levels of the mixer. Where no mixer can be read, its levels stay as they were.
+void write_calibration(calibration::Calibration calibration, const rig::Rig& rig, const std::string& path);
 
 /// Plots the measured points with their fit, and the residuals below. There is a chart for each quantity that
 /// was measured: response (amplitude and phase), boundary, friction, sound level.

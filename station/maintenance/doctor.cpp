@@ -17,11 +17,12 @@
 #include <utility>
 
 #include "station/drive/alsa_capture.hpp"
-#include "station/drive/alsa_device.hpp"
+#include "station/drive/alsa_mixer.hpp"
 #include "station/drive/engine.hpp"
 #include "station/iio/converter.hpp"
 #include "station/sensing/own_clock.hpp"
 #include "station/session/cell_feed.hpp"
+#include "station/session/mixer.hpp"
 #include "station/session/self_test.hpp"
 #include "station/session/stage.hpp"
 #include "station/setup/places.hpp"
@@ -72,6 +73,15 @@ void converter_mute(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
   checks.push_back({phrase("doctor.converter_mute"), *on ? Status::failed : Status::ok,
                     phrase(*on ? "doctor.mute_on" : "doctor.mute_off"),
                     *on ? phrase("doctor.mute_mend", {plain(card_of(rig.output.uri))}) : Phrase()});
+}
+
+// Compares the card's levels with those of the calibration.
+void mixer(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
+  const auto check = session::judged(session::read_mixer(rig));
+  if (check.verdict == records::Verdict::not_possible) return;
+  const bool good = check.verdict == records::Verdict::passed;
+  checks.push_back({check.name, good ? Status::ok : Status::failed, check.what,
+                    good ? Phrase() : phrase("refusal.mixer")});
 }
 
 /// True for alsa:hw:0 or alsa:plughw:CARD=0: the numbers of cards change between boots.
@@ -308,6 +318,7 @@ std::vector<lines::Finding> examine(const rig::Rig& rig, const std::string& data
   std::vector<lines::Finding> checks;
   converter(rig, checks);
   converter_mute(rig, checks);
+  mixer(rig, checks);
   if (const auto plan = session::card_capture_of(rig)) {
     checks.push_back(capture(*plan));
     checks.push_back(pick_ups(rig));

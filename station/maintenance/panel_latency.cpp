@@ -82,6 +82,7 @@ void keep_devices(const rig::Rig& rig, calibration::Calibration& made, const std
   made.panel = known.panel;
   made.pick_ups = known.pick_ups;
   made.forces = known.forces;
+  if (!made.pick_ups.empty() || made.forces) made.mixer = known.mixer;
 }
 
 }  // namespace turnpoint::maintenance

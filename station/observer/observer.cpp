@@ -310,6 +310,7 @@ Reply Observer::answer(const Question& q) const {
   }
   if (lapses || anticipates) reply.choice = any;
   reply.response_time_s = anticipates ? 0.05 : passage.time_s + residual_s + p.travel_s;
+  reply.travel_s = p.travel_s;
   if (q.signal_s && !anticipates) reply.response_time_s = *q.signal_s + latency_s(q) + jitter_s;
   if (q.value) {
     auto asked = q;
@@ -331,7 +332,7 @@ Setting Observer::adjust(const Adjustment& a) const {
   const double sigma = std::fabs(threshold) / kZ75;
   const bool lapses = draws.uniform() < parameters_.lapse;
   const double anywhere = draws.uniform(a.low, a.high);
-  const double felt = parameters_.bias + sigma * draws.normal();
+  const double felt = a.equal + parameters_.bias + sigma * draws.normal();
   const double wanted = std::clamp(lapses ? anywhere : felt, a.low, a.high);
   Setting setting;
   double time_s = parameters_.residual_s;

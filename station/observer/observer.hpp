@@ -131,16 +131,20 @@ struct Reply {
   double response_time_s =
       0;  ///< time of the answer after response_zero; may be negative for an anticipation
   double confidence_time_s = 0;  ///< time from the answer to the statement of confidence
+  /// time for which the finger was away from the surface before the answer; 0 if that is not known
+  double travel_s = 0;
 };
 
-/// A slider to be adjusted: its starting position and its range.
+/// A slider to be adjusted: its starting position and its range, and the setting at which the stimuli are
+/// equal.
 struct Adjustment {
   double start = 0, low = 0, high = 1;
+  double equal = 0;
   random::Key key;
 };
 
 struct Move {
-  double time_s = 0;  ///< time after response_zero, from which response times count
+  double time_s = 0;  ///< time after the onset of the scene that the slider changes
   double value = 0;
 };
 
@@ -163,9 +167,9 @@ class Observer {
   double bound(double deadline_s) const;
   /// Returns the mean non-decision time, in s.
   double nondecision_s() const { return parameters_.residual_s + parameters_.travel_s; }
-  /// Moves the slider in ever smaller steps to where the stimuli seem equal. The settings follow a normal
-  /// distribution around the bias; its 75 % point is one threshold above the bias (without a threshold: a
-  /// tenth of the range). In a lapse, the setting is anywhere in the range.
+  /// Moves the slider in ever smaller steps to where the stimuli seem equal: the bias away from where they
+  /// are. The settings follow a normal distribution around that place; its 75 % point is one threshold above
+  /// it (without a threshold: a tenth of the range). In a lapse, the setting is anywhere in the range.
   Setting adjust(const Adjustment& adjustment) const;
 
  private:

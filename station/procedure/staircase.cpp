@@ -75,7 +75,7 @@ std::map<std::string, Estimate> Staircase::estimates() const {
     sum += value, squares += value * value;
   }
   const double mean = sum / n;
-  const double sd = std::sqrt(std::max(0.0, squares / n - mean * mean));
+  const double sd = std::sqrt(std::max(0.0, (squares - n * mean * mean) / (n - 1)));
   Estimate estimate;
   estimate.mean = estimate.mode = logs ? std::exp(mean) : mean;
   estimate.sd = logs ? estimate.mean * sd : sd;

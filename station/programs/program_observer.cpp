@@ -155,7 +155,8 @@ observer::Setting ProgramObserver::adjust(const observer::Adjustment& adjustment
     Json message{{"type", "adjustment"},
                  {"start", adjustment.start},
                  {"low", adjustment.low},
-                 {"high", adjustment.high}};
+                 {"high", adjustment.high},
+                 {"equal", adjustment.equal}};
     add_key(message, adjustment.key);
     const auto reply = ask(message, "setting");
     observer::Setting setting;

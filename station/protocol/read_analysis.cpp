@@ -62,6 +62,8 @@ texts::Phrase without_effect(const std::string& word, const Protocol& protocol) 
     return phrase("the level decides which answer is right, not how difficult the trial is");
   if (word == "ez" && task.choices.size() > 2 && task.kind != TaskKind::oddity)
     return phrase("the diffusion model is a model of two answers");
+  if (word == "ez" && protocol.timing.signal)
+    return phrase("the response signal decides when answers come, not the decision");
   const auto& by = protocol.analysis.by;
   for (const auto& spec : protocol.procedures)
     if (word == "psychometric" && spec.second &&

@@ -3,6 +3,9 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <vector>
+
+#include "physics/root.hpp"
 
 namespace turnpoint::protocol {
 
@@ -21,6 +24,18 @@ scene::ToneTarget tone_of(const SceneTone& tone, const Factors& factors) {
   target.displacement_m = 1e-6 * evaluate(tone.displacement_um, factors);
   target.phase_rad = tone.phase_deg * std::numbers::pi / 180;
   return target;
+}
+
+/// Everything about a scene that the expressions of a protocol can set; empty for what the scene does not
+/// say.
+std::vector<std::optional<double>> numbers_of(const scene::Scene& scene) {
+  std::vector<std::optional<double>> numbers{scene.boundary_m, scene.displacement_m, scene.friction};
+  if (scene.under_finger)
+    numbers.insert(numbers.end(), {scene.under_finger->displacement_m, scene.under_finger->finger_m});
+  if (scene.zone) numbers.insert(numbers.end(), {scene.zone->from_m, scene.zone->friction});
+  for (const auto& tone : scene.tones)
+    numbers.insert(numbers.end(), {tone.boundary_m, tone.frequency_Hz, tone.displacement_m, tone.phase_rad});
+  return numbers;
 }
 
 }  // namespace
@@ -63,6 +78,37 @@ scene::Scene resolve(const Protocol& protocol, const std::string& name, const Fa
   scene.tolerance.level_dB = from.tolerance.level_dB;
   scene.tolerance.friction = from.tolerance.friction;
   return scene;
+}
+
+std::optional<double> where_equal(const Protocol& protocol, const std::string& one, const std::string& other,
+                                  const std::string& factor, double low, double high, Factors factors) {
+  const auto numbers_at = [&](const std::string& name, double value) {
+    factors[factor] = value;
+    return numbers_of(resolve(protocol, name, factors, 0));
+  };
+  std::optional<double> where;
+  const auto size = numbers_at(one, low).size();
+  if (numbers_at(other, low).size() != size) return std::nullopt;
+  for (std::size_t i = 0; i < size; ++i) {
+    const auto known = [&](double value) {
+      return numbers_at(one, value)[i].has_value() && numbers_at(other, value)[i].has_value();
+    };
+    if (!known(low)) {
+      if (numbers_at(one, low)[i].has_value() || numbers_at(other, low)[i].has_value()) return std::nullopt;
+      continue;
+    }
+    const auto gap = [&](double value) { return *numbers_at(one, value)[i] - *numbers_at(other, value)[i]; };
+    const double at_low = gap(low), at_high = gap(high);
+    if (at_low == 0 && at_high == 0) continue;
+    if (at_low * at_high > 0) return std::nullopt;
+    const physics::Bracket ends =
+        at_high > at_low ? physics::Bracket{high, low} : physics::Bracket{low, high};
+    const double inside = physics::bisect(ends, [&](double value) { return gap(value) > 0; }).middle();
+    const double mine = at_low == 0 ? low : at_high == 0 ? high : inside;
+    if (where && std::fabs(*where - mine) > 1e-6 * (high - low)) return std::nullopt;
+    if (!where) where = mine;
+  }
+  return where;
 }
 
 }  // namespace turnpoint::protocol

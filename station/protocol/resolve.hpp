@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 
 #include "station/protocol/protocol.hpp"
@@ -11,6 +12,11 @@ namespace turnpoint::protocol {
 /// Throws std::out_of_range for an unknown scene and std::invalid_argument for a factor without a number.
 scene::Scene resolve(const Protocol& protocol, const std::string& scene, const Factors& factors,
                      double rove_dB);
+
+/// Returns the value from `low` to `high` of a numeric factor at which two scenes present the same; empty if
+/// there is none, or if they do not differ by the factor.
+std::optional<double> where_equal(const Protocol& protocol, const std::string& one, const std::string& other,
+                                  const std::string& factor, double low, double high, Factors factors);
 
 /// Returns the friction below `reference` for which 20 log10((reference - friction) / reference) =
 /// contrast_dB.

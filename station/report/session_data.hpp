@@ -121,6 +121,7 @@ struct SessionData : LevelAnalysis {
   /// false for a single-interval task without right answers, such as ratings; the report then leaves out
   /// accuracy
   bool scored = true;
+  bool signalled = false;  ///< true if a response signal asks for the answers, and so decides when they come
   /// parts of the report that the protocol chooses; if empty, the report has all parts that suit the design
   std::optional<std::vector<std::string>> show;
   std::vector<ProcedureEstimate> estimates;
@@ -148,7 +149,7 @@ SessionData part_of(const SessionData& data, std::size_t part);
 /// True if the report contains this part: "psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime",
 /// "response-signal" or "trace". If the protocol does not choose the parts, the report contains all of them,
 /// with two exceptions: d' only for yes/no tasks and where `deciding` has a model, and the diffusion model only for
-/// two answers.
+/// two answers that come without a response signal.
 bool shows(const SessionData& data, const std::string& part);
 
 }  // namespace turnpoint::report

@@ -269,6 +269,7 @@ void add_trials(const std::vector<records::BlockRecord>& blocks, const protocol:
   data.scored = protocol::scored(protocol.task);
   data.alternatives = std::max(2, static_cast<int>(protocol.task.choices.size()));
   data.deciding = deciding_in(protocol.task.kind);
+  data.signalled = protocol.timing.signal.has_value();
   for (const auto& choice : protocol.task.choices) data.choices.push_back(choice.id);
   data.show = protocol.analysis.show;
   data.exclusion = {protocol.analysis.exclude_below_s, protocol.analysis.exclude_mad};

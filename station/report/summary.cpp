@@ -233,7 +233,7 @@ texts::Phrase describe_intervals(const NamedFit& named, const SessionData& data)
 bool shows(const SessionData& data, const std::string& part) {
   if (data.show) return std::find(data.show->begin(), data.show->end(), part) != data.show->end();
   if (part == "response-signal") return true;
-  if (part == "ez") return data.choices.size() <= 2;
+  if (part == "ez") return data.choices.size() <= 2 && !data.signalled;
   return part != "dprime" || data.design == Design::yes_no || data.design == Design::ratings ||
          !data.deciding.empty();
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -258,6 +259,8 @@ struct Rig {
   Friction friction;
   Finger finger;
   Limits limits;
+  /// the sound card's mixer while the calibration was measured, by names of controls; empty without one
+  std::map<std::string, std::string> mixer;
   std::vector<std::string> defaults_used;  ///< `key = value` for each default that was used
 };
 

@@ -161,8 +161,9 @@ class RealStage : public Stage {
     return devices_.buttons ? devices_.buttons->names() : no_buttons_;
   }
   std::string missing() const override { return devices_.buttons ? devices_.buttons->missing() : ""; }
-  void question(const observer::Question&, std::int64_t) override {}
-  void adjustment(const observer::Adjustment&, std::int64_t) override {}
+  void question(const observer::Question&, const trial::SimulatedTimes&) override {}
+  void adjustment(const observer::Adjustment&, const trial::TrialSpec&,
+                  const trial::SimulatedTimes&) override {}
   void simulate(Input) override {}
   drive::Amplifier* guarded_amplifier() override { return devices_.amplifier.get(); }
   void set_drift(double share) override {

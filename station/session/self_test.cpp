@@ -122,6 +122,17 @@ std::vector<Check> judged(const CellReading& reading) {
                   {plain(fmt::format("{:.2f}", reading.noise_mN))})}};
 }
 
+Check judged(const MixerReading& reading) {
+  const auto name = phrase("self_test.mixer");
+  if (reading.controls == 0) return not_possible(name, phrase("self_test.mixer_missing"));
+  Check check{name, verdict(reading.changes.empty()), {}, {}, "", {}};
+  if (reading.changes.empty())
+    check.what = phrase("self_test.mixer_good", {plain(reading.controls)});
+  else
+    check.what.values = reading.changes;
+  return check;
+}
+
 Check judged_temperature(std::optional<double> hottest_C) {
   const auto name = phrase("self_test.temperature");
   if (!hottest_C) return not_possible(name, phrase("self_test.temperature_missing"));
@@ -185,6 +196,7 @@ std::vector<Check> self_test(SelfTestRig& rig) {
     for (const auto& reading : rig.read_cells())
       for (auto& check : judged(reading)) checks.push_back(std::move(check));
   });
+  run(phrase("self_test.mixer"), checks, [&] { add(rig.mixer()); });
   run(phrase("self_test.temperature"), checks,
       [&] { checks.push_back(judged_temperature(rig.hottest_C())); });
   run(phrase("self_test.clock"), checks, [&] { add(rig.clock()); });

@@ -77,6 +77,12 @@ struct CellReading {
   double zero_N = 0, noise_mN = 0;     ///< mean force, and the standard deviation of the force signal
 };
 
+/// How the mixer of the sound card differs from its levels during the calibration.
+struct MixerReading {
+  std::size_t controls = 0;             ///< number of controls whose levels the calibration holds; 0: none
+  std::vector<texts::Phrase> changes;  ///< one sentence for each control that differs
+};
+
 /// The wall clock, and by how much it was set (by a person or a time service) during the self-test.
 struct ClockReading {
   system::WallClock clock;
@@ -104,6 +110,7 @@ Check judged(const ToneReading& reading);
 std::optional<Check> judged_linearity(const ToneReading& reading);
 /// Returns two checks: one of the cell's zero and one of its noise.
 std::vector<Check> judged(const CellReading& reading);
+Check judged(const MixerReading& reading);
 Check judged_temperature(std::optional<double> hottest_C);
 Check judged(const ClockReading& reading);
 Check judged(const system::Disk& disk);
@@ -120,6 +127,7 @@ class SelfTestRig {
   virtual std::vector<ToneReading> play_tones() = 0;
   /// Must be called after play_tones(), during which the cells are captured.
   virtual std::vector<CellReading> read_cells() = 0;
+  virtual MixerReading mixer() = 0;
   virtual std::optional<double> hottest_C() = 0;
   virtual ClockReading clock() = 0;
   virtual system::Disk disk() = 0;

@@ -9,6 +9,7 @@
 #include "station/lines/uri.hpp"
 #include "station/observer/observer.hpp"
 #include "station/sensing/pick_up.hpp"
+#include "station/session/mixer.hpp"
 #include "station/system/clocks.hpp"
 #include "station/terms/limits.hpp"
 
@@ -228,6 +229,8 @@ class StageRig : public SelfTestRig {
     }
     return readings;
   }
+
+  MixerReading mixer() override { return read_mixer(*parts_.rig); }
 
   std::optional<double> hottest_C() override { return system::hottest_C(parts_.sensors); }
 

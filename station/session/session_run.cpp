@@ -400,17 +400,12 @@ void SessionRun::interval_begins(Running& trial) {
 
 void SessionRun::ask_observer(const Running& trial, std::int64_t onset_ns) {
   if (trial.spec.strokes) return;
-  const auto last = trial::interval_times(setup_.protocol, trial.spec).back();
-  const auto ns = [](double s) { return static_cast<std::int64_t>(s * 1e9); };
-  auto zero_ns = onset_ns;
-  if (setup_.protocol.timing.response_zero == terms::ResponseZero::interval_off) zero_ns += ns(last.length_s);
-  if (setup_.protocol.timing.response_zero == terms::ResponseZero::change)
-    zero_ns += ns(last.starts_s.front());
+  const auto times = trial::simulated_times(setup_.protocol, trial.spec, onset_ns);
   try {
     if (trial.slider)
-      stage_->adjustment(trial::adjustment_of(trial.spec, summary_.seed), zero_ns);
+      stage_->adjustment(trial::adjustment_of(trial.spec, setup_.protocol, summary_.seed), trial.spec, times);
     else
-      stage_->question(trial::question_of(trial.spec, setup_.protocol, summary_.seed), zero_ns);
+      stage_->question(trial::question_of(trial.spec, setup_.protocol, summary_.seed), times);
   } catch (const terms::ProgramFailed& failed) {
     // The trial ends without a result, and the session is interrupted.
     Input failure;

@@ -18,6 +18,7 @@
 #include "station/session/inputs.hpp"
 #include "station/session/simulated_room.hpp"
 #include "station/session/triggers.hpp"
+#include "station/trial/timing.hpp"
 
 namespace turnpoint::session {
 
@@ -96,13 +97,14 @@ class Stage {
   /// Names the lines (buttons, contact) that are disconnected at present, with the reason; "" if none are.
   virtual std::string missing() const = 0;
 
-  /// Asks a simulated observer to answer this question. Times count from `zero_ns`. A real stage does
-  /// nothing. Throws terms::ProgramFailed if the observer is a program that fails.
-  virtual void question(const observer::Question& question, std::int64_t zero_ns) = 0;
+  /// Asks a simulated observer to answer this question, and its finger to touch and leave the surface if the
+  /// protocol asks for it. A real stage does nothing. Throws terms::ProgramFailed if the observer is a
+  /// program that fails.
+  virtual void question(const observer::Question& question, const trial::SimulatedTimes& times) = 0;
 
-  /// Asks a simulated observer to set this slider and press Done. Times count from `zero_ns`. A real stage
-  /// does nothing.
-  virtual void adjustment(const observer::Adjustment& adjustment, std::int64_t zero_ns) = 0;
+  /// Asks a simulated observer to set the slider of this trial and press Done. A real stage does nothing.
+  virtual void adjustment(const observer::Adjustment& adjustment, const trial::TrialSpec& spec,
+                          const trial::SimulatedTimes& times) = 0;
 
   /// Makes a simulated participant give this input at the time `input.time_ns`. A real stage does nothing.
   virtual void simulate(Input input) = 0;

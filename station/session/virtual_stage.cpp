@@ -151,36 +151,35 @@ class VirtualStage : public Stage {
 
   const std::vector<std::string>& buttons() const override { return no_buttons_; }
   std::string missing() const override { return ""; }
-  void question(const observer::Question& question, std::int64_t zero_ns) override {
+  void question(const observer::Question& question, const trial::SimulatedTimes& times) override {
     const auto reply = observer_.answer(question);
-    if (!reply.choice) return;
-    Input input;
-    input.time_ns = std::max(now_ns_, zero_ns + static_cast<std::int64_t>(reply.response_time_s * 1e9));
-    input.kind = InputKind::answer;
-    input.value = *reply.choice;
-    input.quality = TimeQuality::simulated;
-    if (reply.value) input.kind = InputKind::value, input.number = *reply.value;
-    script_ = {input};
-    if (!reply.confidence) return;
-    input.kind = InputKind::answer;
-    input.time_ns += static_cast<std::int64_t>(reply.confidence_time_s * 1e9);
-    input.value = *reply.confidence - 1;
-    script_.push_back(input);
+    script_.clear();
+    for (const auto& event : trial::simulated_events(times, reply)) {
+      auto& input = script_.emplace_back(at(event.time_ns, InputKind::answer));
+      input.value = event.value;
+      if (event.kind == trial::EventKind::contact) {
+        input.kind = InputKind::contact, input.number = -1;
+      } else if (reply.value) {
+        input.kind = InputKind::value, input.number = *reply.value;
+      }
+    }
   }
 
-  void adjustment(const observer::Adjustment& adjustment, std::int64_t zero_ns) override {
+  void adjustment(const observer::Adjustment& adjustment, const trial::TrialSpec& spec,
+                  const trial::SimulatedTimes& times) override {
     const auto settings = observer_.adjust(adjustment);
-    const auto at = [&](double s) { return std::max(now_ns_, zero_ns + static_cast<std::int64_t>(s * 1e9)); };
-    Input input;
-    input.quality = TimeQuality::simulated;
-    input.kind = InputKind::slider;
     script_.clear();
-    for (const auto& move : settings.moves) {
-      input.time_ns = at(move.time_s), input.number = move.value;
-      script_.push_back(input);
+    for (const auto& event : trial::simulated_events(times, {})) {
+      auto& input = script_.emplace_back(at(event.time_ns, InputKind::contact));
+      input.value = event.value, input.number = -1;
     }
-    input.time_ns = at(settings.done_s), input.kind = InputKind::next, input.number = 0;
-    script_.push_back(input);
+    for (const auto& move : settings.moves)
+      script_
+          .emplace_back(at(times.slider_ns + static_cast<std::int64_t>(move.time_s * 1e9), InputKind::slider))
+          .number = move.value;
+    script_.push_back(at(trial::simulated_done_ns(times, spec, settings.done_s), InputKind::next));
+    std::stable_sort(script_.begin(), script_.end(),
+                     [](const Input& a, const Input& b) { return a.time_ns < b.time_ns; });
   }
 
   void simulate(Input input) override {
@@ -234,6 +233,15 @@ class VirtualStage : public Stage {
     input.kind = InputKind::heard;
     unheard_.erase(unheard_.begin());
     measured_ = false;
+    return input;
+  }
+
+  /// What the simulated participant does at this time, but not in the past.
+  Input at(std::int64_t time_ns, InputKind kind) const {
+    Input input;
+    input.time_ns = std::max(now_ns_, time_ns);
+    input.kind = kind;
+    input.quality = TimeQuality::simulated;
     return input;
   }
 

@@ -13,6 +13,7 @@
 #include "station/protocol/sources.hpp"
 #include "station/protocol/survey.hpp"
 #include "station/scene/sound.hpp"
+#include "station/session/mixer.hpp"
 #include "station/session/planned_session.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
@@ -70,7 +71,7 @@ std::optional<texts::Phrase> unmeasured_sound(const session::Setup& setup, const
 }
 
 /// Checks what only a live session requires: a measured friction table, a rig that is not the reproduction of
-/// a historical one, a calibration and, for every scene, airborne sound that was measured or whose
+/// a historical one, a calibration, the mixer's levels of that calibration and, for every scene, airborne sound that was measured or whose
 /// computed bound is within the recommended limit.
 std::vector<Problem> check_live(const session::Setup& setup, const protocol::Survey& survey) {
   const auto& rig = setup.rig;
@@ -87,6 +88,7 @@ std::vector<Problem> check_live(const session::Setup& setup, const protocol::Sur
   if (rig.reproduction) add(phrase("refusal.reproduction"), phrase("refusal.no_reproduction"));
   if (!has_response(setup) && rig.amplifier_uri != "sim:")
     add(phrase("refusal.no_calibration"), phrase("refusal.make_calibration", {plain(rig.path)}));
+  for (const auto& change : session::read_mixer(rig).changes) add(change, phrase("refusal.mixer"));
   for (const auto& sight : survey.sights) {
     // Use an amplitude near 0, so that this checks only whether the level was measured. Whether the sound is
     // too loud depends on each tone's amplitude and is checked in the trial.

@@ -4,6 +4,7 @@
 
 #include <ostream>
 
+#include "station/session/mixer.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/store/read.hpp"
 #include "station/text/number.hpp"
@@ -40,6 +41,9 @@ std::optional<session::Setup> prepare_resume(const ResumeRequest& request, std::
   setup.rig = rig::parse(start.rig_text, start.rig_path);
   setup.protocol = protocol::parse(start.protocol_text, start.protocol_path);
   if (start.calibration_id) take_calibration(start.calibration_text, "the session's calibration", setup);
+  if (start.run_mode == terms::RunMode::live)
+    if (const auto mixer = session::read_mixer(setup.rig); !mixer.changes.empty())
+      throw text::BadInput({{{start.rig_path, 0, 0}, mixer.changes.front(), texts::phrase("refusal.mixer")}});
   setup.consent_version = start.consent_version;
   const double age_h = found->age_s / 3600, allowed_h = setup.protocol.resume.max_age_h;
   if (age_h < 0)

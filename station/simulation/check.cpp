@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "station/analysis/proportion.hpp"
 #include "station/observer/observer.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/design_advice.hpp"
@@ -130,40 +131,59 @@ void add_visit(const std::vector<Estimate>& estimates, Check& check) {
   check.trials = spread_of(trials);
 }
 
-/// Simulates sessions in which one trial of twenty is not answered, and says by how much runs of trials were longer
-/// than the protocol allows, and how often. Trials that come again can make a run longer.
-void check_runs(const Protocol& protocol, int sessions, const std::stop_token& stop, Check& check) {
-  const auto limited = [](const auto& spec) { return !spec.max_run.empty(); };
-  if (std::ranges::none_of(protocol.procedures, limited)) return;
-  auto careless = person(protocol);
-  std::uint64_t seed = 0;
-  careless.answer = [answer = careless.answer, &seed](const trial::TrialSpec& spec, const observer::Question& asked) {
-    auto reply = answer(spec, asked);
-    random::Draws draws({seed, random::Stream::observer, spec.block_index, spec.attempt, -1 - spec.trial_in_block});
-    if (draws.below(20) == 0) reply.response_time_s = 1e6;
-    return reply;
-  };
-  std::map<std::string, std::pair<int, trial::Director::LongRun>> all;
-  const auto visits = protocol::different_visits(protocol);
-  for (; seed < static_cast<std::uint64_t>(sessions); ++seed) {
-    if (stop.stop_requested()) throw protocol::Abandoned();
-    const auto& visit = visits[seed % visits.size()];
-    for (const auto& [key, run] : rehearse(protocol, visit, seed, careless).long_runs) {
-      auto& [times, longest] = all[key];
-      ++times;
-      if (run.longest > longest.longest) longest = run;
+/// Simulates sessions in which one trial of ten is not answered, and counts those in which runs of trials
+/// were longer than the protocol allows. Trials that come again can make a run longer, so hardly any limit is
+/// certain.
+void check_runs(const Protocol& protocol, int sessions, const std::stop_token& stop, const Steps& steps,
+                Check& check) {
+  std::map<std::string, int> limits;
+  for (const auto& spec : protocol.procedures)
+    for (const auto& [key, limit] : spec.max_run) {
+      auto& smallest = limits.try_emplace(key, limit).first->second;
+      smallest = std::min(smallest, limit);
     }
+  if (limits.empty() || sessions == 0) return;
+  const auto visits = protocol::different_visits(protocol);
+  std::vector<std::map<std::string, trial::Director::LongRun>> found(static_cast<std::size_t>(sessions));
+  const int done = in_parallel(
+      sessions, processors(), steps.counted("orders of trials simulated"),
+      [&](int i) {
+        if (stop.stop_requested()) throw protocol::Abandoned();
+        const auto seed = static_cast<std::uint64_t>(i);
+        auto careless = person(protocol);
+        careless.answer = [answer = careless.answer, seed](const trial::TrialSpec& spec,
+                                                           const observer::Question& asked) {
+          auto reply = answer(spec, asked);
+          random::Draws draws(
+              {seed, random::Stream::observer, spec.block_index, spec.attempt, -1 - spec.trial_in_block});
+          if (draws.below(10) == 0) reply.response_time_s = 1e6;
+          return reply;
+        };
+        const auto at = static_cast<std::size_t>(i);
+        found[at] = rehearse(protocol, visits[at % visits.size()], seed, careless).long_runs;
+      },
+      steps.finish);
+  if (done == 0) return;
+  for (const auto& [key, limit] : limits) {
+    CheckedRuns runs{key, limit, limit, 0, done, {}};
+    for (const auto& session : found)
+      if (const auto run = session.find(key); run != session.end())
+        ++runs.longer, runs.longest = std::max(runs.longest, run->second.longest);
+    runs.share_longer = analysis::clopper_pearson(runs.longer, done);
+    if (runs.longer > 0)
+      check.warnings.push_back(
+          {{protocol.path, 0, 0},
+           phrase(
+               "in %1 of %2 simulated sessions, \"max_run\" could not be kept: up to %3 trials in a row had "
+               "%4, and %5 are allowed",
+               {plain(runs.longer), plain(done), plain(runs.longest),
+                key == procedure::kRightAnswer ? phrase("the same right answer")
+                                               : phrase("the same \"%1\"", {plain(key)}),
+                plain(limit)}),
+           phrase("allow longer runs, or use levels, catch trials and draws of factors that leave more "
+                  "choice")});
+    check.runs.push_back(std::move(runs));
   }
-  for (const auto& [key, found] : all)
-    check.warnings.push_back(
-        {{protocol.path, 0, 0},
-         phrase("in %1 of %2 simulated sessions, \"max_run\" could not be kept: up to %3 trials in a row had "
-                "%4, and %5 are allowed",
-                {plain(found.first), plain(sessions), plain(found.second.longest),
-                 key == procedure::kRightAnswer ? phrase("the same right answer")
-                                                : phrase("the same \"%1\"", {plain(key)}),
-                 plain(found.second.limit)}),
-         phrase("allow longer runs, or use levels, catch trials and draws of factors that leave more choice")});
 }
 
 /// Simulates this number of sessions, divided equally among the protocol's different visits.
@@ -304,7 +324,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
     const auto& finish = options.steps.finish;
     estimate(*protocol, options.sessions.value_or(usual_sessions(*protocol)), stop, options.steps, check);
     if (stop.stop_requested()) throw protocol::Abandoned();
-    check_runs(*protocol, std::min(200, options.sessions.value_or(200)), stop, check);
+    check_runs(*protocol, std::min(200, options.sessions.value_or(200)), stop, options.steps, check);
     if (check.problems.empty()) {
       if (options.finger) check.finger = shares(check.survey, *rig);
       if (options.sound) check.sound = loudest(check.survey, *rig, stop, options.steps);

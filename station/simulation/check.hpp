@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "station/analysis/trial_record.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/protocol/survey.hpp"
 #include "station/rig/rig.hpp"
@@ -43,6 +44,16 @@ struct CheckedBlock {
   Spread trials;
 };
 
+/// How often a limit of runs could not be kept in simulated sessions in which one trial of ten is not
+/// answered.
+struct CheckedRuns {
+  std::string of;  ///< the key of procedure::Spec::max_run
+  int limit = 0;   ///< the smallest, if blocks differ
+  int longest = 0, longer = 0,
+      sessions = 0;                 ///< `longer` of `sessions` had a longer run; `longest` of them all
+  analysis::Interval share_longer;  ///< of sessions with a longer run: 95 %, Clopper & Pearson
+};
+
 /// The result of `turnpoint check` for a protocol on a rig.
 struct Check {
   /// problems of both files and of their combination; if there are any, all other members are empty
@@ -53,6 +64,7 @@ struct Check {
   /// what the trials measure, one line for each analysis: "main: threshold of `contrast_dB` at 82 % correct"
   std::vector<std::string> measures;
   std::vector<CheckedBlock> blocks;
+  std::vector<CheckedRuns> runs;  ///< one for each limit of runs that the protocol sets
   /// values of one session; if sessions or groups differ in length, values of the longest
   Spread trials, duration_s;
   int simulated_sessions = 0, wanted_sessions = 0;

@@ -9,9 +9,11 @@
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/quantile.hpp"
 #include "station/protocol/conditions.hpp"
+#include "station/protocol/sources.hpp"
 #include "station/protocol/visits.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/simulation/power_session.hpp"
+#include "station/trial/question.hpp"
 
 namespace turnpoint::simulation {
 
@@ -29,6 +31,19 @@ Recovery& entry_for(const Finding& finding, std::vector<Recovery>& recoveries) {
   return entry;
 }
 
+/// Returns the mean of the settings of a slider; empty if it depends on other factors.
+std::optional<double> mean_setting(const protocol::Protocol& protocol, double bias) {
+  auto factors = protocol::any_factors(protocol);
+  const double equal = trial::equal_setting(protocol, factors);
+  for (const auto& factor : protocol.factors)
+    for (const auto& level : factor.levels) {
+      auto others = factors;
+      others[factor.name] = level;
+      if (trial::equal_setting(protocol, others) != equal) return std::nullopt;
+    }
+  return equal + bias;
+}
+
 /// The true value of each estimated number, by source and parameter.
 class Truths {
  public:
@@ -42,7 +57,8 @@ class Truths {
     for (const auto& spec : protocol.procedures)
       if (spec.kind == procedure::Kind::adjustment)
         for (const auto& condition : with_none(protocol::analysed_conditions(protocol)))
-          add(source_of(source_of("settings", spec.name), condition), "PSE", options.observer.bias);
+          add(source_of(source_of("settings", spec.name), condition), "PSE",
+              mean_setting(protocol, options.observer.bias));
     if (protocol.task.value && protocol.task.value->typed)
       for (const auto& condition : with_none(protocol::analysed_conditions(protocol)))
         add(source_of("numbers", condition), "exponent", options.observer.slope);

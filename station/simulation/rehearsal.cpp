@@ -25,18 +25,12 @@ constexpr int most_trials = 100'000;
 
 std::int64_t ns(double s) { return static_cast<std::int64_t>(s * 1e9); }
 
-/// The time from the last interval's onset to response zero, from which response times count.
-std::int64_t zero_after_onset_ns(const protocol::Protocol& protocol, const TrialSpec& spec) {
-  const auto last = trial::interval_times(protocol, spec).back();
-  switch (trial::zero_of(protocol, spec)) {
-    case terms::ResponseZero::interval_off:
-      return ns(last.length_s);
-    case terms::ResponseZero::change:
-      return ns(last.starts_s.front());
-    default:
-      return 0;
-  }
-}
+/// What the participant does in a trial: gives an answer, or makes a setting and finishes it at some time.
+struct Doing {
+  observer::Reply reply;
+  std::optional<double> setting;
+  double done_s = 0;  ///< for a setting
+};
 
 /// Runs one trial on a simulated clock, which advances to each event of the trial's state machine. Intervals
 /// begin when the machine asks for them, and the answer comes at the observer's response time.
@@ -49,16 +43,16 @@ class Bench {
         machine_(trial::timing_of(protocol, block, spec)),
         now_ns_(now_ns) {}
 
-  const trial::Result& run(const observer::Reply& reply) {
-    perform(machine_.start(now_ns_), reply);
+  const trial::Result& run(const Doing& doing) {
+    perform(machine_.start(now_ns_), doing);
     while (!machine_.done()) {
       const auto wake_ns = machine_.wake_ns();
       if (!answers_.empty() && (!wake_ns || answers_.front().time_ns <= *wake_ns)) {
         const auto answer = answers_.front();
         answers_.pop_front();
-        handle(answer, reply);
+        handle(answer, doing);
       } else if (wake_ns) {
-        handle({*wake_ns, trial::EventKind::tick, 0}, reply);
+        handle({*wake_ns, trial::EventKind::tick, 0}, doing);
       } else {
         throw std::logic_error("rehearsal: a trial waits for an event that never comes");
       }
@@ -69,32 +63,33 @@ class Bench {
   std::int64_t now_ns() const { return now_ns_; }
 
  private:
-  void handle(const trial::Event& event, const observer::Reply& reply) {
+  void handle(const trial::Event& event, const Doing& doing) {
     now_ns_ = std::max(now_ns_, event.time_ns);
-    perform(machine_.handle(event), reply);
+    perform(machine_.handle(event), doing);
   }
 
-  void perform(const std::vector<trial::Action>& actions, const observer::Reply& reply) {
+  void perform(const std::vector<trial::Action>& actions, const Doing& doing) {
     for (const auto& action : actions) {
       if (action.kind != trial::ActionKind::present) continue;
-      const auto onset_ns = present(std::max(now_ns_, action.time_ns), reply);
-      if (!reply.choice) continue;
-      const auto at_ns = onset_ns + zero_after_onset_ns(protocol_, spec_) + ns(reply.response_time_s);
-      answers_ = {{std::max(now_ns_, at_ns), trial::EventKind::answer, *reply.choice}};
-      if (reply.confidence)
-        answers_.push_back({answers_.front().time_ns + ns(reply.confidence_time_s), trial::EventKind::answer,
-                            *reply.confidence - 1});
+      const auto onset_ns = present(std::max(now_ns_, action.time_ns), doing);
+      const auto times = trial::simulated_times(protocol_, spec_, onset_ns);
+      const auto events = trial::simulated_events(times, doing.setting ? observer::Reply{} : doing.reply);
+      answers_.assign(events.begin(), events.end());
+      if (doing.setting)
+        answers_.push_back(
+            {trial::simulated_done_ns(times, spec_, doing.done_s), trial::EventKind::answer, 0});
+      for (auto& answer : answers_) answer.time_ns = std::max(now_ns_, answer.time_ns);
     }
   }
 
   /// Presents all intervals without any fault. Returns the onset of the last one.
-  std::int64_t present(std::int64_t onset_ns, const observer::Reply& reply) {
+  std::int64_t present(std::int64_t onset_ns, const Doing& doing) {
     const auto times = trial::interval_times(protocol_, spec_);
     for (int i = 0; i < static_cast<int>(times.size()); ++i) {
       if (i > 0)
         onset_ns += ns(times[static_cast<std::size_t>(i) - 1].length_s + protocol_.task.gap_s.value_or(0));
-      perform(machine_.handle({onset_ns, trial::EventKind::onset, i}), reply);
-      perform(machine_.handle({now_ns_, trial::EventKind::heard, i}), reply);
+      perform(machine_.handle({onset_ns, trial::EventKind::onset, i}), doing);
+      perform(machine_.handle({now_ns_, trial::EventKind::heard, i}), doing);
     }
     return onset_ns;
   }
@@ -103,13 +98,7 @@ class Bench {
   const TrialSpec& spec_;
   trial::Machine machine_;
   std::int64_t now_ns_;
-  std::deque<trial::Event> answers_;  ///< what the participant will press, in order of time
-};
-
-/// What the participant does in a trial: gives an answer, or makes a setting and finishes it at some time.
-struct Doing {
-  observer::Reply reply;
-  std::optional<double> setting;
+  std::deque<trial::Event> answers_;  ///< what the participant will do, in order of time
 };
 
 Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol::Protocol& protocol,
@@ -120,14 +109,15 @@ Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol:
     return doing;
   }
   if (!spec.slider) return {rehearser.answer(spec, trial::question_of(spec, protocol, seed)), {}};
-  const auto set = rehearser.adjust(spec, trial::adjustment_of(spec, seed));
+  const auto set = rehearser.adjust(spec, trial::adjustment_of(spec, protocol, seed));
   trial::Slider slider(*spec.slider, spec.level.value_or(spec.slider->low));
   // Ignore slider movements after the tones have ended: the participant could not feel their effect.
-  const double sounds_s = trial::interval_times(protocol, spec).back().length_s;
+  const double sounds_s = trial::interval_times(protocol, spec).back().length_s -
+                          1e-9 * static_cast<double>(trial::simulated_times(protocol, spec, 0).slider_ns);
   for (const auto& move : set.moves)
     if (move.time_s < sounds_s) slider.move(move.value);
   Doing doing;
-  doing.reply.choice = 0, doing.reply.response_time_s = set.done_s;
+  doing.reply.choice = 0, doing.done_s = set.done_s;
   doing.setting = slider.setting();
   return doing;
 }
@@ -148,7 +138,7 @@ Rehearsal rehearse(const protocol::Protocol& protocol, const protocol::Visit& vi
       auto row = trial::row_of(*spec, protocol, rehearsal.trials);
       Bench bench(protocol, *block, *spec, now_ns);
       const auto doing = done_by(rehearser, *spec, protocol, seed);
-      const auto& result = bench.run(doing.reply);
+      const auto& result = bench.run(doing);
       trial::fill_result(row, result, *spec, protocol, 0, doing.setting ? doing.setting : doing.reply.value);
       trial::TrialEnd end{row.outcome, result.response, row.correct, {}};
       if (result.response) end.setting = doing.setting;

@@ -15,7 +15,7 @@ namespace turnpoint::simulation {
 /// Returns the observer's answer to a trial whose TrialSpec is complete. The time of the reply counts from
 /// response zero.
 using Answerer = std::function<observer::Reply(const trial::TrialSpec&, const observer::Question&)>;
-/// Returns how the observer moves the slider in an adjustment. Times count from the onset of the interval.
+/// Returns how the observer moves the slider in an adjustment.
 using Adjuster = std::function<observer::Setting(const trial::TrialSpec&, const observer::Adjustment&)>;
 
 /// The participant of a rehearsal. `adjust` is called only in adjustment tasks, `answer` in all other tasks.

@@ -217,10 +217,19 @@ std::vector<Tombstone> new_tombstones(const Withdrawal& withdrawal) {
   return tombstones;
 }
 
+// A row of `meta` with this key says that sessions were deleted, but not yet from the free pages of the file
+// and from its copies. Whoever follows tombstones next then completes this.
+constexpr const char* kErasing = "erasing";
+
+bool is_erasing(Database& database) {
+  return Statement(database, "SELECT 1 FROM meta WHERE key = ?").bind(kErasing).step();
+}
+
 /// Writes the tombstones (the marks of withdrawals), and deletes the sessions and codes that they withdraw.
 void remove_sessions(Database& database, const std::vector<Tombstone>& tombstones,
                      const std::vector<Bearer>& bearers) {
   SealedTransaction transaction(database);
+  Statement(database, "INSERT OR REPLACE INTO meta VALUES (?, 'yes')").bind(kErasing).run();
   for (const auto& stone : tombstones) {
     Statement(database, "INSERT INTO tombstone VALUES (?,?,?,?,?)")
         .bind(stone.session_id, stone.salt, stone.participant_sha256, stone.withdrawn_realtime_ns,
@@ -290,6 +299,9 @@ void carry_out(const std::string& path, Database& database, Withdrawal& withdraw
     const auto copies = copies_of(path, database, backup_directory, ids);
     note_copies(withdrawal, copies);
     remove_copies(copies, backup_directory);
+    SealedTransaction transaction(database);
+    Statement(database, "DELETE FROM meta WHERE key = ?").bind(kErasing).run();
+    transaction.commit();
   } catch (const StoreError& error) {
     throw StoreError(error.kind(), fmt::format("withdraw: the sessions were removed from the database, but "
                                                "copies of it may still contain them: {}; then withdraw again",
@@ -378,7 +390,7 @@ Withdrawal follow_tombstones(const std::string& name, const std::vector<Tombston
   {
     auto reader = open_reader(path);
     if (const auto follow = following(reader, tombstones);
-        follow.tombstones.empty() && follow.withdrawal.bearers.empty())
+        follow.tombstones.empty() && follow.withdrawal.bearers.empty() && !is_erasing(reader))
       return {};
   }
   auto writer = open_writer(path, IfMissing::fail);

@@ -60,7 +60,7 @@ std::vector<Tombstone> list_tombstones(Database& database);
 /// Withdraws from this database what was withdrawn from another: deletes the sessions to which the tombstones
 /// belong, as withdraw() does, and keeps the tombstones. If a tombstone withdraws a code, all sessions with
 /// this code at its station go, also those that the other database has never seen. Changes nothing if there
-/// is nothing to do. A tombstone whose station or code is not that of its session is not followed.
+/// is nothing to do; completes a withdrawal that was interrupted. A tombstone whose station or code is not that of its session is not followed.
 Withdrawal follow_tombstones(const std::string& database, const std::vector<Tombstone>& tombstones,
                              const std::string& backup_directory = "");
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "station/protocol/answers.hpp"
+#include "station/protocol/resolve.hpp"
 #include "station/protocol/sources.hpp"
 
 namespace turnpoint::trial {
@@ -121,10 +122,24 @@ observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& 
   return question;
 }
 
-observer::Adjustment adjustment_of(const TrialSpec& spec, std::uint64_t seed) {
+double equal_setting(const protocol::Protocol& protocol, const protocol::Factors& factors) {
+  const auto& task = protocol.task;
+  const auto factor = std::find_if(protocol.factors.begin(), protocol.factors.end(),
+                                   [&](const auto& entry) { return entry.name == task.adjusts; });
+  const auto [low, high] = factor->range.value();
+  if (const auto& scenes = task.intervals.back(); scenes.size() > 1)
+    if (const auto equal =
+            protocol::where_equal(protocol, scenes.front(), scenes.back(), task.adjusts, low, high, factors))
+      return *equal;
+  return low <= 0 && high >= 0 ? 0 : 0.5 * (low + high);
+}
+
+observer::Adjustment adjustment_of(const TrialSpec& spec, const protocol::Protocol& protocol,
+                                   std::uint64_t seed) {
   observer::Adjustment adjustment;
   adjustment.start = spec.level.value_or(spec.slider->low);
   adjustment.low = spec.slider->low, adjustment.high = spec.slider->high;
+  adjustment.equal = equal_setting(protocol, spec.factors);
   adjustment.key = {seed, random::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
   return adjustment;
 }

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "station/procedure/grid.hpp"
+
 namespace turnpoint::trial {
 
 void Slider::move(double wanted) {
   if (!std::isfinite(wanted)) return;
-  const double steps = std::round((std::clamp(wanted, span_.low, span_.high) - span_.low) / span_.step);
-  setting_ = std::min(span_.low + steps * span_.step, span_.high);
+  const auto steps = std::llround((std::clamp(wanted, span_.low, span_.high) - span_.low) / span_.step);
+  setting_ = std::min(procedure::at_step(span_.low, steps, span_.step), span_.high);
 }
 
 std::optional<std::int64_t> Slider::glide_due_ns() const {

@@ -1,5 +1,6 @@
 #include "station/trial/timing.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "station/protocol/answers.hpp"
@@ -10,6 +11,9 @@ namespace turnpoint::trial {
 namespace {
 
 std::int64_t ns(double s) { return std::llround(s * 1e9); }
+
+/// Rounds down, as simulated sessions always did.
+std::int64_t whole_ns(double s) { return static_cast<std::int64_t>(s * 1e9); }
 
 /// The times of the scenes that the task names; a buzz, if there is one, is not among them.
 std::vector<IntervalTimes> task_times(const protocol::Protocol& protocol, const TrialSpec& spec) {
@@ -73,6 +77,62 @@ std::optional<double> signal_in_stimulus_s(const protocol::Protocol& protocol, c
 
 terms::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& spec) {
   return spec.strokes ? terms::ResponseZero::interval_off : protocol.timing.response_zero;
+}
+
+SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSpec& spec,
+                               std::int64_t onset_ns) {
+  constexpr double reach_s = 0.2;
+  const auto last = interval_times(protocol, spec).back();
+  SimulatedTimes times{onset_ns, onset_ns, {}, {}, onset_ns};
+  if (spec.strokes || !protocol::explored(protocol.task)) times.open_ns += whole_ns(last.length_s);
+  if (const auto scenes = task_times(protocol, spec); !spec.strokes && !scenes.back().starts_s.empty())
+    times.slider_ns += whole_ns(scenes.back().starts_s.back());
+  switch (zero_of(protocol, spec)) {
+    case terms::ResponseZero::go_cue:
+      break;
+    case terms::ResponseZero::change:
+      times.zero_ns += whole_ns(last.starts_s.front());
+      break;
+    case terms::ResponseZero::interval_off:
+      times.zero_ns += whole_ns(last.length_s);
+      break;
+    case terms::ResponseZero::first_contact:
+      times.touch_ns = times.zero_ns += whole_ns(std::min(reach_s, 0.5 * last.length_s));
+      times.slider_ns = std::max(times.slider_ns, times.zero_ns);
+      break;
+    case terms::ResponseZero::lift_off:
+      times.touch_ns = onset_ns + whole_ns(std::min(reach_s, 0.5 * last.length_s));
+      times.lift_ns = times.zero_ns += whole_ns(last.length_s);
+      break;
+  }
+  return times;
+}
+
+std::vector<Event> simulated_events(const SimulatedTimes& times, const observer::Reply& reply) {
+  std::vector<Event> events;
+  if (times.touch_ns) events.push_back({*times.touch_ns, EventKind::contact, 1});
+  if (!reply.choice) {
+    if (times.lift_ns) events.push_back({*times.lift_ns, EventKind::contact, 0});
+    return events;
+  }
+  auto at_ns = times.zero_ns + whole_ns(reply.response_time_s);
+  if (reply.response_time_s >= 0) at_ns = std::max(at_ns, times.open_ns);
+  auto lift_ns = times.lift_ns;
+  if (times.touch_ns && !lift_ns && reply.travel_s > 0)
+    lift_ns = std::max(*times.touch_ns, at_ns - whole_ns(reply.travel_s));
+  if (lift_ns) events.push_back({*lift_ns, EventKind::contact, 0});
+  events.push_back({at_ns, EventKind::answer, *reply.choice});
+  if (reply.confidence)
+    events.push_back({at_ns + whole_ns(reply.confidence_time_s), EventKind::answer, *reply.confidence - 1});
+  std::stable_sort(events.begin(), events.end(),
+                   [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; });
+  return events;
+}
+
+std::int64_t simulated_done_ns(const SimulatedTimes& times, const TrialSpec& spec, double done_s) {
+  constexpr double press_s = 0.5;
+  const auto done_ns = times.slider_ns + whole_ns(done_s);
+  return done_ns >= times.zero_ns ? done_ns : times.zero_ns + whole_ns(spec.anticipation_s + press_s);
 }
 
 Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec) {

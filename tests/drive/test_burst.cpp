@@ -50,7 +50,7 @@ TEST_CASE("a burst outside the limits is refused with the reason instead of bein
   burst.signal = {1, 0.2, 1000, burst.length_frames - 9600, 9600};
   CHECK_NOTHROW(prepare(burst, format));
   ++burst.signal.at_frame;
-  CHECK_THROWS_WITH(prepare(burst, format), Catch::Matchers::Contains("it must lie within the burst's"));
+  CHECK_THROWS_WITH(prepare(burst, format), Catch::Matchers::ContainsSubstring("it must lie within the burst's"));
   burst.signal = {0, 0.6, 1000, 0, 9600};  // on the tone's own channel, above full scale
   CHECK_THROWS_AS(prepare(burst, format), BurstRefused);
 }

@@ -80,11 +80,13 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
   void close_amplifier() override { closing_ = world_.plant != Plant::never_off; }
   const std::vector<std::string>& buttons() const override { return inner_->buttons(); }
   std::string missing() const override { return missing_; }
-  void question(const turnpoint::observer::Question& question, std::int64_t zero_ns) override {
-    inner_->question(question, zero_ns);
+  void question(const turnpoint::observer::Question& question,
+                const turnpoint::trial::SimulatedTimes& times) override {
+    inner_->question(question, times);
   }
-  void adjustment(const turnpoint::observer::Adjustment& adjustment, std::int64_t zero_ns) override {
-    inner_->adjustment(adjustment, zero_ns);
+  void adjustment(const turnpoint::observer::Adjustment& adjustment, const turnpoint::trial::TrialSpec& spec,
+                  const turnpoint::trial::SimulatedTimes& times) override {
+    inner_->adjustment(adjustment, spec, times);
   }
   void simulate(Input input) override { inner_->simulate(std::move(input)); }
   turnpoint::session::Triggers& triggers() override { return inner_->triggers(); }

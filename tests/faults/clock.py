@@ -4,11 +4,14 @@ Simulated sessions with the same seed are equal, so one during which the clock i
 same as one without, except for the wall-clock times themselves.
 """
 import csv
+import datetime
+import json
 import os
 import sqlite3
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 TURNPOINT, FAULTY_SYSTEM = (os.path.abspath(path) for path in sys.argv[1:3])
@@ -60,6 +63,25 @@ class Clock(unittest.TestCase):
             self.assertEqual(events, its_events)
             self.assertEqual(self.exported("plain.sqlite"), self.exported(name))
             self.assertIn(" 0 changed", self.call("verify", "--db", name))
+
+    def test_the_hour_that_comes_twice_in_autumn_is_told_apart(self):
+        twice = datetime.datetime(2026, 10, 25, 0, 30, tzinfo=datetime.timezone.utc)  # 02:30 in Berlin, and again an hour later
+        started = []
+        for hours in (0, 1):
+            there = (twice + datetime.timedelta(hours=hours)).timestamp()
+            self.session("autumn.sqlite", TZ="Europe/Berlin", CLOCK_OFFSET_S=str(round(there - time.time())))
+        listed = json.loads(self.call("sessions", "--db", "autumn.sqlite", "--json"))
+        started = sorted(session["started"] for session in listed)
+        self.assertEqual([text[:16] + text[19:] for text in started], ["2026-10-25T02:30+0100", "2026-10-25T02:30+0200"])
+        self.call("export", "--db", "autumn.sqlite", "--out", "autumn")
+        with open(os.path.join(self.folder, "autumn", "demo", "trials.csv"), encoding="utf-8", newline="") as table:
+            rows = list(csv.DictReader(table))
+        with sqlite3.connect(os.path.join(self.folder, "autumn.sqlite")) as database:
+            times = [row[0] for row in database.execute("SELECT recorded_realtime_ns FROM trial ORDER BY trial_id")]
+        self.assertEqual(len(rows), 20)
+        self.assertEqual(times, sorted(times), "real time goes on")
+        self.assertEqual(len({row["session_id"] for row in rows}), 2)
+        self.assertIn(" 0 changed", self.call("verify", "--db", "autumn.sqlite"))
 
 
 if __name__ == "__main__":

@@ -300,4 +300,11 @@ int clock_gettime(clockid_t clock, struct timespec* time) {
   return result;
 }
 
+time_t time(time_t* result) {
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  if (result != nullptr) *result = now.tv_sec;
+  return now.tv_sec;
+}
+
 }  // extern "C"

@@ -21,6 +21,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "collector"))
+import server
+
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 RIG = os.path.join(SOURCE, "tests/support/thin_plate.toml")
 DEMO = os.path.join(SOURCE, "protocols/demo.toml")
@@ -81,6 +84,17 @@ def publish_half_made(folder):
                 os.rename(os.path.join(base, name), os.path.join(base, name[:-len(".new")]))
 
 
+class Collector(server.Server):
+    """A PostgreSQL server whose database can be kept and put back."""
+
+    def keep(self, name):
+        self.run("createdb", "-T", "lab", "-h", self.work, "-U", "postgres", name)
+
+    def restore(self, name):
+        self.run("dropdb", "--force", "-h", self.work, "-U", "postgres", "lab")
+        self.run("createdb", "-T", name, "-h", self.work, "-U", "postgres", "lab")
+
+
 class Operation:
     """One command under test. prepare() makes the files from which each run starts; check() checks them after a run."""
     databases = ["lab.sqlite"]
@@ -112,6 +126,9 @@ class Operation:
     def kept(self, before, after):
         if not before <= after:
             wrong(f"{len(before - after)} trials are missing")
+
+    def reset(self):
+        """Brings what lies outside of the folder into the state from which each run starts."""
 
     def done(self, folder):
         """Checks the result after the command has reported success."""
@@ -312,8 +329,68 @@ class Calibrate(Operation):
             wrong("calibration.toml is neither the old nor the complete new file")
 
 
+class Push(Withdraw):
+    """Sends a session to a collector on which one of two participants, whose sessions came from this station, was
+    withdrawn. Only the station's calls fail; the server is as before at each point."""
+
+    def prepare(self, folder):
+        server = self.sweep.collector()
+        server.restore("empty")
+        for code in ("P01", "QX9"):
+            self.good(folder, *self.session("lab.sqlite", code))
+        self.push_all(folder)
+        self.good(folder, "backup", "--db", "lab.sqlite", "--dir", "backups")
+        server.sql("SELECT turnpoint.withdraw('a', 'QX9')")
+        self.good(folder, *self.session("lab.sqlite", "P02"))
+        server.keep(type(self).__name__)
+
+    sent = 20  # trials on the server afterwards
+
+    def push_all(self, folder):
+        self.good(folder, "push", "--db", "lab.sqlite", "--to", self.sweep.collector().address("s"))
+
+    def reset(self):
+        self.sweep.collector().restore(type(self).__name__)
+
+    def arguments(self):
+        return ("push", "--db", "lab.sqlite", "--to", self.sweep.collector().address("s"), "--backups", "backups")
+
+    def done(self, folder):
+        Withdraw.done(self, folder)
+        here = len(trials(os.path.join(folder, "lab.sqlite")))
+        there = int(self.sweep.collector().sql("SELECT count(*) FROM turnpoint.trial"))
+        if here != 20 or there != self.sent:
+            wrong(f"P01 and P02 have 20 trials; {here} are here, and {there} instead of {self.sent} on the server")
+
+    def check(self, folder, before):
+        Withdraw.check(self, folder, before)
+        server = self.sweep.collector()
+        if int(server.sql("SELECT count(*) FROM turnpoint.trial")) not in (10, 20):
+            wrong("the server has a part of a session")
+        if server.sql("SELECT 1 FROM turnpoint.participant WHERE code = 'QX9'"):
+            wrong("a withdrawn participant came back to the server")
+
+
+class Receive(Push):
+    """Applies what another user of the machine got from the collector, before P02 was sent."""
+    sent = 10
+
+    def prepare(self, folder):
+        Push.prepare(self, folder)
+        self.good(folder, "push", "--db", "lab.sqlite", "--to", self.sweep.collector().address("s"), "--received",
+                  "received.json")
+
+    def arguments(self):
+        return ("receive", "--db", "lab.sqlite", "--backups", "backups", "received.json")
+
+    def done(self, folder):
+        os.remove(os.path.join(folder, "received.json"))  # says which codes were withdrawn
+        Push.done(self, folder)
+        shutil.copy(os.path.join(self.sweep.start, "received.json"), folder)
+
+
 OPERATIONS = {"create": Create, "run": Run, "resume": Resume, "backup": Backup, "restore": Restore, "drill": Drill, "merge": Merge,
-              "withdraw": Withdraw, "export": Export, "calibrate": Calibrate}
+              "withdraw": Withdraw, "export": Export, "calibrate": Calibrate, "push": Push, "receive": Receive}
 
 
 class Sweep:
@@ -321,16 +398,28 @@ class Sweep:
         self.program, self.faulty_system, self.work = program, faulty_system, work
         self.careless = careless
         self.start = ""
+        self.server = None
+
+    def collector(self):
+        """Returns a collector that is started by the first operation that needs it."""
+        if self.server is None:
+            folder = os.path.join(self.work, "server")
+            os.mkdir(folder)
+            os.chmod(self.work, 0o711)  # the server may have another user
+            self.server = Collector(folder, self.program, ["a"])
+            self.server.keep("empty")
+        return self.server
 
     def once(self, operation, folder, environment):
         return operation.run(folder, *operation.arguments(),
                              environment=dict(LD_PRELOAD=self.faulty_system, FAULT_UNDER=folder, HOST_NAME="a",
                                               **environment))
 
-    def fresh(self):
+    def fresh(self, operation):
         folder = os.path.join(self.work, "now")
         shutil.rmtree(folder, ignore_errors=True)
         shutil.copytree(self.start, folder)
+        operation.reset()
         return folder
 
     def calls(self, operation):
@@ -339,7 +428,7 @@ class Sweep:
         log = os.path.join(self.work, "calls.log")
         if os.path.exists(log):
             os.remove(log)
-        done = self.once(operation, self.fresh(), {"FAULT_LOG": log})
+        done = self.once(operation, self.fresh(operation), {"FAULT_LOG": log})
         if done.returncode != 0:
             sys.exit(f"sweep: the operation fails even without a fault: {done.stdout}{done.stderr}")
         operation.done(os.path.join(self.work, "now"))
@@ -352,7 +441,7 @@ class Sweep:
         return found
 
     def point(self, operation, before, number, kind):
-        folder = self.fresh()
+        folder = self.fresh(operation)
         done = self.once(operation, folder, {"FAULT_AT": str(number), "FAULT_KIND": kind})
         if self.careless:
             publish_half_made(folder)
@@ -427,8 +516,12 @@ def main():
     with tempfile.TemporaryDirectory(dir="/dev/shm" if os.path.isdir("/dev/shm") else None) as work:
         sweep = Sweep(os.path.abspath(options.program), os.path.abspath(options.faulty_system), os.path.realpath(work),
                       options.careless)
-        for name in options.operations or OPERATIONS:
-            failures += sweep.run(name, choose)
+        try:
+            for name in options.operations or OPERATIONS:
+                failures += sweep.run(name, choose)
+        finally:
+            if sweep.server:
+                sweep.server.stop()
     for failure in failures:
         print(failure)
     sys.exit(1 if bool(failures) != options.careless else 0)

@@ -243,7 +243,8 @@ TEST_CASE("the calibration of cells on a converter names a wire that is off and 
   }
   SECTION("samples without any noise") {
     room.converter->dead = true;
-    CHECK_THROWS_WITH(reader.read(weight), Catch::Contains("cell a on captured channel voltage0: the samples do not change at all"));
+    CHECK_THROWS_WITH(reader.read(weight), Catch::Matchers::ContainsSubstring(
+                                               "cell a on captured channel voltage0: the samples do not change at all"));
   }
   SECTION("lost samples, which do not matter for the next reading") {
     room.converter->until_gap = 100;

@@ -3,7 +3,6 @@
 #include <sys/resource.h>
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <ctime>
 #include <functional>
@@ -27,6 +26,7 @@
 #include "physics/taper.hpp"
 #include "physics/warning.hpp"
 #include "physics/zone.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace turnpoint::physics;
 

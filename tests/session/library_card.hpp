@@ -1,8 +1,10 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <mutex>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace turnpoint {
@@ -19,6 +21,16 @@ struct LibraryCard {
       wires;
   int played_channels = 0, captured_channels = 0;
   std::int64_t delay_frames = 40'000;  ///< longer than the buffer of the playback
+
+  /// A control of the card's mixer.
+  struct Control {
+    enum class Kind { level, toggle, choice } kind = Kind::level;
+    std::string name;
+    std::array<long, 2> values{};  ///< of both channels; a choice is 0 (Line) or 1 (Phones)
+    bool changes_itself = false;   ///< such as a level meter
+    unsigned index = 0;
+  };
+  std::vector<Control> controls = {};
 
   static std::int64_t frame_now();
 

@@ -1,11 +1,13 @@
 // A plug-in for alsa-lib: the device type `looped`, which is a LibraryCard.
 #define PIC
 #include <alsa/asoundlib.h>
+#include <alsa/control_external.h>
 #include <alsa/pcm_external.h>
 #include <sys/timerfd.h>
 #include <unistd.h>
 
 #include <array>
+#include <cstdio>
 
 #include "tests/session/library_card.hpp"
 
@@ -87,9 +89,99 @@ int allow(snd_pcm_ioplug_t* io) {
   return snd_pcm_ioplug_set_param_minmax(io, SND_PCM_IOPLUG_HW_PERIODS, 2, 1024);
 }
 
+// The mixer. A key is the index of a control.
+LibraryCard::Control& control(snd_ctl_ext_key_t key) { return card().controls.at(key); }
+
+int control_count(snd_ctl_ext_t*) { return static_cast<int>(card().controls.size()); }
+
+int list_control(snd_ctl_ext_t*, unsigned offset, snd_ctl_elem_id_t* id) {
+  snd_ctl_elem_id_set_interface(id, SND_CTL_ELEM_IFACE_MIXER);
+  snd_ctl_elem_id_set_name(id, control(offset).name.c_str());
+  snd_ctl_elem_id_set_index(id, control(offset).index);
+  return 0;
+}
+
+snd_ctl_ext_key_t find_control(snd_ctl_ext_t*, const snd_ctl_elem_id_t* id) {
+  for (std::size_t k = 0; k < card().controls.size(); ++k)
+    if (control(k).name == snd_ctl_elem_id_get_name(id) && control(k).index == snd_ctl_elem_id_get_index(id))
+      return k;
+  return SND_CTL_EXT_KEY_NOT_FOUND;
+}
+
+int describe_control(snd_ctl_ext_t*, snd_ctl_ext_key_t key, int* type, unsigned* access, unsigned* count) {
+  using Kind = LibraryCard::Control::Kind;
+  const auto kind = control(key).kind;
+  *type = kind == Kind::level    ? SND_CTL_ELEM_TYPE_INTEGER
+          : kind == Kind::toggle ? SND_CTL_ELEM_TYPE_BOOLEAN
+                                 : SND_CTL_ELEM_TYPE_ENUMERATED;
+  *access = SND_CTL_EXT_ACCESS_READWRITE;
+  if (control(key).changes_itself) *access |= SND_CTL_EXT_ACCESS_VOLATILE;
+  *count = kind == Kind::level ? 2 : 1;
+  return 0;
+}
+
+int describe_level(snd_ctl_ext_t*, snd_ctl_ext_key_t, long* low, long* high, long* step) {
+  *low = 0, *high = 207, *step = 1;
+  return 0;
+}
+
+int describe_choice(snd_ctl_ext_t*, snd_ctl_ext_key_t, unsigned* items) {
+  *items = 2;
+  return 0;
+}
+
+int name_choice(snd_ctl_ext_t*, snd_ctl_ext_key_t, unsigned item, char* name, std::size_t size) {
+  std::snprintf(name, size, "%s", item == 0 ? "Line" : "Phones");
+  return 0;
+}
+
+int read_level(snd_ctl_ext_t*, snd_ctl_ext_key_t key, long* values) {
+  values[0] = control(key).values[0];
+  if (control(key).kind == LibraryCard::Control::Kind::level) values[1] = control(key).values[1];
+  return 0;
+}
+
+int read_choice(snd_ctl_ext_t*, snd_ctl_ext_key_t key, unsigned* items) {
+  *items = static_cast<unsigned>(control(key).values[0]);
+  return 0;
+}
+
+void close_mixer(snd_ctl_ext_t* mixer) { delete mixer; }
+
+const snd_ctl_ext_callback_t mixer_callbacks = [] {
+  snd_ctl_ext_callback_t made{};
+  made.close = close_mixer;
+  made.elem_count = control_count;
+  made.elem_list = list_control;
+  made.find_elem = find_control;
+  made.get_attribute = describe_control;
+  made.get_integer_info = describe_level;
+  made.get_enumerated_info = describe_choice;
+  made.get_enumerated_name = name_choice;
+  made.read_integer = read_level;
+  made.read_enumerated = read_choice;
+  return made;
+}();
+
 }  // namespace
 
 extern "C" {
+
+SND_CTL_PLUGIN_DEFINE_FUNC(looped) {
+  static_cast<void>(root), static_cast<void>(conf);
+  auto* mixer = new snd_ctl_ext_t{};
+  mixer->version = SND_CTL_EXT_VERSION;
+  mixer->callback = &mixer_callbacks;
+  mixer->poll_fd = -1;
+  std::snprintf(mixer->name, sizeof mixer->name, "a simulated sound card");
+  if (const int error = snd_ctl_ext_create(mixer, name, mode); error < 0) {
+    delete mixer;
+    return error;
+  }
+  *handlep = mixer->handle;
+  return 0;
+}
+SND_CTL_PLUGIN_SYMBOL(looped);
 
 SND_PCM_PLUGIN_DEFINE_FUNC(looped) {
   static_cast<void>(root), static_cast<void>(conf);

@@ -70,9 +70,10 @@ struct Room : session::Display {
   std::function<void(const session::Page&)> reacts;
   int stimuli = 0;
 
-  void push(InputKind kind, int value = 0) {
+  /// `after_ns` is the time of the input, counted from now.
+  void push(InputKind kind, int value = 0, std::int64_t after_ns = 0) {
     session::Input input;
-    input.time_ns = system::monotonic_ns();
+    input.time_ns = system::monotonic_ns() + after_ns;
     input.kind = kind;
     input.value = value;
     inputs.push(input);

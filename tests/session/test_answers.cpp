@@ -71,7 +71,7 @@ TEST_CASE("confidence is stored with its answer; a stop before it leaves no tria
     CHECK(page.answers.size() == 3);
     CHECK(page.text == "Sure?");
     room.press(0);  // a press of a response button is not accepted as a confidence
-    room.push(asked++ == 0 ? InputKind::answer : InputKind::stop, 2);
+    room.push(asked++ == 0 ? InputKind::answer : InputKind::stop, 2, terms::kConfidenceGuard_ns);
   };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
   const auto trials = trials_of(setup.database, summary);

@@ -8,8 +8,12 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "station/calibration/apply.hpp"
+#include "station/drive/alsa_mixer.hpp"
+#include "station/maintenance/calibrate.hpp"
 #include "station/sensing/carrier.hpp"
 #include "station/sensing/force_calibration.hpp"
+#include "station/session/mixer.hpp"
 #include "station/session/stage.hpp"
 #include "station/session/vibration_watch.hpp"
 #include "station/store/open.hpp"
@@ -126,7 +130,9 @@ rig::ForceCells cells_of(double length_mm) {
 void use_plugin(const TemporaryFolder& folder) {
   const auto path = folder / "asound.conf";
   std::ofstream(path) << "pcm_type.looped { lib \"" << LIBRARY_CARD_PLUGIN << "\" }\n"
-                      << "pcm.looped { type looped }\n";
+                      << "pcm.looped { type looped }\n"
+                      << "ctl_type.looped { lib \"" << LIBRARY_CARD_PLUGIN << "\" }\n"
+                      << "ctl.looped { type looped }\n";
   ::setenv("ALSA_CONFIG_PATH", path.c_str(), 1);
 }
 
@@ -196,4 +202,68 @@ TEST_CASE("a live session reads its force cells through alsa-lib, and stores wha
     CHECK(*std::max_element(values[0].begin(), values[0].end()) == Approx(kNormal_N).epsilon(0.1));
   }
   CHECK(rows == (finger.wire_off ? 0 : 2));
+}
+
+TEST_CASE("the mixer's levels belong to a calibration", "[session][alsa][mixer]") {
+  using Kind = LibraryCard::Control::Kind;
+  const TemporaryFolder folder;
+  use_plugin(folder);
+  card.controls = {{Kind::level, "Digital Playback Volume", {207, 207}},
+                   {Kind::toggle, "Auto Mute Switch", {0, 0}},
+                   {Kind::choice, "Output", {1, 0}},
+                   {Kind::level, "Mic", {10, 12}, false, 1},
+                   {Kind::level, "Meter", {3, 4}, true}};
+  auto rig = rig::load(TURNPOINT_SOURCE_DIR "/deploy/rigs/raspberry-pi-aluminium.toml");
+  rig.output.uri = "alsa:looped";
+  CHECK(drive::card_switch(rig.output.uri, "Auto Mute Switch") == false);
+  CHECK_FALSE(drive::card_switch(rig.output.uri, "Headphone Switch"));
+  CHECK_FALSE(drive::mixer_levels("alsa:absent"));
+  CHECK_FALSE(drive::mixer_levels("sim:"));
+
+  // What a calibration writes comes back from the file, and the rig then has it.
+  calibration::Calibration calibration;
+  calibration.rig_name = rig.name, calibration.rig_sha256 = rig.sha256;
+  calibration.made_on = calibration::today();
+  const auto path = folder / "calibration.toml";
+  maintenance::write_calibration(calibration, rig, path);
+  const auto made = calibration::load(path);
+  const std::map<std::string, std::string> levels{{"Digital Playback Volume", "207, 207"},
+                                                  {"Auto Mute Switch", "off"},
+                                                  {"Output", "Phones"},
+                                                  {"Mic,1", "10, 12"}};
+  CHECK(made.mixer == levels);
+  const auto calibrated = calibration::applied(made, rig);
+  const auto check = [&] { return session::row_of(session::judged(session::read_mixer(calibrated))); };
+  card.controls.back().values = {90, 90};  // a meter may move
+  CHECK(check().verdict == records::Verdict::passed);
+  CHECK(session::judged(session::read_mixer(rig)).verdict == records::Verdict::not_possible);
+
+  SECTION("a level that was changed is named with both values") {
+    card.controls[0].values = {207, 180};
+    CHECK(check().verdict == records::Verdict::failed);
+    CHECK(check().what == "the control \"Digital Playback Volume\" of the sound card is at 207, 180; during the "
+                          "calibration it was at 207, 207");
+  }
+  SECTION("a switch and a choice that were changed are named too") {
+    card.controls[1].values = {1, 0}, card.controls[2].values = {0, 0};
+    CHECK(check().what.find("\"Auto Mute Switch\" of the sound card is at on;") != std::string::npos);
+    CHECK(check().what.find("\"Output\" of the sound card is at Line;") != std::string::npos);
+  }
+  SECTION("a control that is gone is named") {
+    card.controls.erase(card.controls.begin());
+    CHECK(check().what == "the control \"Digital Playback Volume\" of the sound card cannot be read; during the "
+                          "calibration it was at 207, 207");
+  }
+  SECTION("a calibration is not continued with other levels") {
+    maintenance::write_calibration(made, rig, path);
+    card.controls[0].values = {1, 1};
+    CHECK_THROWS_WITH(maintenance::write_calibration(made, rig, path),
+                      Catch::Matchers::ContainsSubstring("Digital Playback Volume") &&
+                          Catch::Matchers::ContainsSubstring("set it back"));
+    CHECK(calibration::load(path).mixer == levels);
+    // A new calibration takes the new levels.
+    maintenance::write_calibration(calibration, rig, path);
+    CHECK(calibration::load(path).mixer.at("Digital Playback Volume") == "1, 1");
+  }
+  card.controls.clear();
 }

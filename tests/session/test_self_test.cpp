@@ -18,6 +18,7 @@ struct GoodRig : SelfTestRig {
   std::vector<PressReading> buttons{{{}, "left", true, true}, {{}, "right", true, true}};
   std::vector<ToneReading> tones{{{}, "main", 30'000, -0.1, 0.02, terms::Proof::ok, terms::ProofCause::none}};
   std::vector<CellReading> cells{{{}, texts::plain("a"), {}, 0.1, 0.3}};
+  MixerReading levels{3, {}};
   std::optional<double> temperature_C = 50;
   ClockReading wall{{"tsc", true, true}, std::nullopt};
   system::Disk store{"/data", 5000, true, "", "ext4"};
@@ -27,6 +28,7 @@ struct GoodRig : SelfTestRig {
   std::vector<PressReading> press_buttons() override { return buttons; }
   std::vector<ToneReading> play_tones() override { return tones; }
   std::vector<CellReading> read_cells() override { return cells; }
+  MixerReading mixer() override { return levels; }
   std::optional<double> hottest_C() override { return temperature_C; }
   ClockReading clock() override { return wall; }
   system::Disk disk() override { return store; }
@@ -62,7 +64,7 @@ rig::Rig simulated(const TemporaryFolder& folder, const std::string& capture = m
 TEST_CASE("a rig in order passes every check of the self-test", "[session][self-test]") {
   GoodRig rig;
   const auto checks = self_test(rig);
-  CHECK(checks.size() == 11);
+  CHECK(checks.size() == 12);
   CHECK(failed(checks).empty());
   CHECK(with(Verdict::not_possible, checks).empty());
   CHECK(passed(checks));
@@ -75,6 +77,7 @@ TEST_CASE("each fault fails its check of the self-test and no other", "[session]
     CHECK(failed(checks) == name);
     CHECK_FALSE(passed(checks));
   };
+  SECTION("level of the mixer") { rig.levels.changes = {texts::plain("changed")}, expect("mixer"); }
   SECTION("gate that never opens") { rig.gate = {{}, false, {}}, expect("gate"); }
   SECTION("gate that never shuts") { rig.gate = {{}, true, {}}, expect("gate"); }
   SECTION("gate that shuts late") { rig.gate = {{}, true, 0.3}, expect("gate"); }
@@ -153,9 +156,10 @@ TEST_CASE("what a rig does not have is not possible to check, and does not fail"
   rig.tones[0].nonlinearity_dB.reset();
   rig.tones.push_back({{}, "second", 30'000, 0, {}, terms::Proof::unproven, terms::ProofCause::none});
   rig.temperature_C.reset();
+  rig.levels.controls = 0;
   const auto checks = self_test(rig);
   CHECK(with(Verdict::not_possible, checks) ==
-        "gate, stop, button left, tone main, tone second, cells, temperature");
+        "gate, stop, button left, tone main, tone second, cells, mixer, temperature");
   CHECK(passed(checks));
 }
 
@@ -181,7 +185,7 @@ TEST_CASE("the self-test measures the simulated rig and finds nothing wrong",
   for (const auto& check : checks)
     UNSCOPED_INFO(row_of(check).name << ": " << name(check.verdict) << ", " << row_of(check).what);
   CHECK(failed(checks).empty());
-  CHECK(with(Verdict::not_possible, checks) == "temperature");
+  CHECK(with(Verdict::not_possible, checks) == "mixer, temperature");
   // The monostable of the simulated gate lasts 110 ms, and the heartbeat may have toggled 10 ms before.
   CHECK(find(checks, "gate").value.value() > 90);
   CHECK(find(checks, "linearity main").value.value() < 0.01);

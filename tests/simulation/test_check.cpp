@@ -175,3 +175,88 @@ TEST_CASE("the ranges of check hold nine of ten sessions of each shipped protoco
   }
   CHECK(too_few > 3);
 }
+
+TEST_CASE(
+    "response times from the finger's contact or lift-off, and tasks whose answers wait, can be simulated",
+    "[check]") {
+  const std::string root = TURNPOINT_SOURCE_DIR;
+  const auto text = system::read_file(root + "/protocols/friction-2ifc.toml");
+  const std::string key = "response_zero = \"interval_off\"";
+  REQUIRE(text.find(key) != std::string::npos);
+  const TemporaryFolder folder;
+  for (const std::string zero : {"first_contact", "lift_off", "go_cue", "interval_off"}) {
+    INFO(zero);
+    auto changed = text;
+    changed.replace(changed.find(key), key.size(), "response_zero = \"" + zero + "\"");
+    const auto path = folder / (zero + ".toml");
+    std::ofstream(path) << changed;
+    int trials = 0, answered = 0;
+    for (const auto& block :
+         simulation::rehearse(protocol::load(path), 0, 0,
+                              simulation::rehearser(observer::Observer(observer::Parameters{})))
+             .blocks)
+      for (const auto& row : block.trials) {
+        ++trials, answered += row.outcome == terms::Outcome::answered;
+        if (zero != "first_contact") continue;
+        // the finger leaves the surface before the answer, for the time that it needs to reach the button
+        CHECK(row.decision_time_s.has_value() == (row.outcome == terms::Outcome::answered));
+      }
+    CHECK(answered > 0.95 * trials);
+  }
+}
+
+TEST_CASE("simulated settings are around the place where the two scenes of the interval are equal",
+          "[check]") {
+  const std::string root = TURNPOINT_SOURCE_DIR;
+  const TemporaryFolder folder;
+  const auto mean_of =
+      [&](const std::string& standard, const std::string& intervals, const std::string& zero) {
+        const auto path = folder / "settings.toml";
+        std::ofstream(path) << R"(format = "friction-protocol/1"
+protocol = { id = "settings", version = "1.0.0", title = "Settings", languages = ["en"] }
+factor = [ { name = "strength", range = [0.4, 1.6] } ]
+procedure = [ { name = "settings", kind = "adjustment", level = "strength", start = [0.5, 1.5], repeats = 20 } ]
+block = [ { name = "main", procedures = ["settings"] } ]
+[scene.standard]
+boundary_mm = 158.0
+edge = "p50"
+displacement_um = )" << standard
+                            << R"(
+[scene.strip]
+base = "standard"
+displacement_um = "strength"
+[timing]
+response_zero = ")" << zero << R"("
+explore_s = 28.0
+deadline_s = 30.0
+iti_s = 2.0
+[task]
+kind = "adjustment"
+adjusts = "strength"
+step = 0.02
+device = "touch"
+question = { en = "?" }
+choices = [ { id = "done", label = { en = "Done" } } ]
+)" << intervals;
+        std::vector<double> settings;
+        for (const auto& block :
+             simulation::rehearse(
+                 protocol::load(path), 0, 3,
+                 simulation::rehearser(observer::Observer(observer::parse("sim:threshold=0.02,lapse=0"))))
+                 .blocks)
+          for (const auto& row : block.trials) {
+            CHECK(row.outcome == terms::Outcome::answered);
+            settings.push_back(std::stod(row.response.value()));
+          }
+        double sum = 0;
+        for (const double setting : settings) sum += setting;
+        return sum / static_cast<double>(settings.size());
+      };
+  const std::string two =
+      "intervals = [[\"standard\", \"strip\"]]\nforeperiod_s = { uniform = [1.0, 1.5] }\ntransition_ms = "
+      "50\n";
+  CHECK(mean_of("0.7", two, "change") == Approx(0.7).margin(0.03));
+  CHECK(mean_of("1.3", two, "go_cue") == Approx(1.3).margin(0.03));
+  CHECK(mean_of("0.7", "intervals = [\"strip\"]\n", "first_contact") == Approx(1.0).margin(0.03));
+  CHECK(mean_of("0.7", "intervals = [\"strip\"]\n", "interval_off") == Approx(1.0).margin(0.03));
+}

@@ -9,4 +9,5 @@ using Catch::Approx;
 namespace Catch::Matchers {
 inline auto ContainsSubstring(const std::string& part) { return Contains(part); }
 }  // namespace Catch::Matchers
+#pragma GCC poison Contains  // which is another matcher in Catch2 3
 #endif

@@ -4,16 +4,18 @@ program sees only the order of the exported trials and what `check` says.
 
     tests/trial/orders.py TURNPOINT [NUMBER [FIRST]]
 
-Each protocol must keep its limits of runs, or `check` must have said that it cannot; procedures in passes come once in
-each pass. NUMBER protocols (default 4) are made from the seeds FIRST (default 14), FIRST + 1, ... As a negative control, the same
-protocols without limits must break them.
+Each protocol must keep its limits of runs, or `check` must have said that it cannot. Check simulates 200 sessions, and this
+session is one more of their kind, so its run is longer than that of all the others in at most one of 201 limits: more such
+surprises than chance explains (one time in a thousand) are a failure. Procedures in passes come once in each pass. NUMBER
+protocols (default 4) are made from the seeds FIRST (default 14), FIRST + 1, ... As a negative control, the same protocols
+without limits must break them.
 """
 import collections
 import csv
 import json
+import math
 import pathlib
 import random
-import re
 import subprocess
 import sys
 import tempfile
@@ -21,6 +23,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 RIG = ROOT / "deploy/rigs/simulated.toml"
 OBSERVER = f"program:{pathlib.Path(__file__).resolve().parent}/careless.py"
+SESSIONS = 200  # that check simulates
 HEAD = """format = "friction-protocol/1"
 [protocol]
 id = "order"
@@ -108,7 +111,7 @@ class Protocol:
             if draw.random() < 0.4 else ""
 
     def text(self, limited=True):
-        text = HEAD.replace("SEED", str(self.seed)) + TASKS[self.kind]
+        text = HEAD.replace("SEED", str(1000 + self.seed)) + TASKS[self.kind]
         for procedure, order in self.procedures:
             kept = [entry for entry in order if limited or not entry.startswith("max_run")]
             text += procedure + (f"order = {{ {', '.join(kept)} }}\n" if kept else "")
@@ -148,17 +151,28 @@ def call(turnpoint, *arguments):
 def exported(turnpoint, folder, path, seed):
     database = folder / "lab.sqlite"
     run = call(turnpoint, "run", path, "--rig", RIG, "--participant", "P01", "--db", database, "--headless",
-               "--observer", f"{OBSERVER},seed={seed}")
+               "--observer", f"{OBSERVER},seed={seed},limit_s=120")
     if run.returncode != 0:
-        raise RuntimeError(f"run: status {run.returncode}: {run.stderr.strip()[-300:]}")
+        raise RuntimeError(f"seed {seed}: run: status {run.returncode}: {run.stderr.strip()[-300:]} {run.stdout.strip()[-300:]}")
     call(turnpoint, "export", "--db", database, "--out", folder / "csv")
     with open(next((folder / "csv").rglob("trials.csv")), newline="") as file:
         return presented(list(csv.DictReader(file)))
 
 
+def most_by_chance(mean):
+    """The number that a Poisson variable exceeds less than one time in a thousand."""
+    number, share = 0, math.exp(-mean)
+    below = share
+    while below < 0.999:
+        number += 1
+        share *= mean / number
+        below += share
+    return number
+
+
 def main():
     turnpoint, number, first = sys.argv[1], int((sys.argv[2:] or [4])[0]), int((sys.argv[3:] or [14])[0])
-    failures, counts = [], collections.Counter()
+    failures, surprises, counts = [], [], collections.Counter()
     for seed in range(first, first + number):
         protocol = Protocol(seed)
         with tempfile.TemporaryDirectory() as name:
@@ -167,21 +181,20 @@ def main():
             path.write_text(protocol.text())
             rows = exported(turnpoint, folder, path, seed)
             counts["protocols"] += 1
-            warnings = None
+            said = None
             for key, limit in protocol.limits.items():
                 counts["limits"] += 1
                 runs = longest(rows, key)
                 if runs <= limit:
                     continue
-                if warnings is None:
-                    said = json.loads(call(turnpoint, "check", path, "--rig", RIG, "--json").stdout)
-                    warnings = " ".join(warning["what"] for warning in said["warnings"])
-                words = "the same right answer" if key == "right" else f'the same "{key}"'
-                announced = re.search(r"up to (\d+) trials in a row had " + words, warnings)
-                counts["longer runs that check announces"] += announced is not None
-                if not announced or runs > int(announced.group(1)) + 2:
-                    failures.append(f"seed {seed}: {runs} trials in a row have {words}, allowed {limit}; {protocol.kind}, "
-                                    f"{protocol.interleave}, {protocol.catches.strip()}; check: {warnings}")
+                if said is None:
+                    said = {of["of"]: of for of in json.loads(call(turnpoint, "check", path, "--rig", RIG, "--sessions", SESSIONS, "--json").stdout)["runs"]}
+                counts["longer runs"] += 1
+                if said[key]["limit"] != limit or said[key]["sessions"] != SESSIONS:
+                    failures.append(f"seed {seed}: check simulated other limits: {said[key]}")
+                if runs > said[key]["longest"]:
+                    surprises.append(f"seed {seed}: {runs} trials in a row have the same {key}, allowed {limit}; {protocol.kind}, "
+                                     f"{protocol.interleave}, {protocol.catches.strip()}; check: {said[key]}")
             if protocol.interleave == "passes" and len(protocol.procedures) > 1:
                 counts["passes"] += 1
                 if not passes_hold(rows, len(protocol.procedures)):
@@ -193,8 +206,12 @@ def main():
                 path.write_text(protocol.text(limited=False))
                 free = exported(turnpoint, folder, path, seed)
                 counts["broken without limits"] += any(longest(free, k) > n for k, n in protocol.limits.items())
-    for failure in failures:
-        print(failure)
+    allowed = most_by_chance(counts["limits"] / (SESSIONS + 1))
+    counts["runs longer than in all sessions of check"] = len(surprises)
+    if len(surprises) > allowed:
+        failures.append(f"{len(surprises)} runs are longer than check expects, chance explains {allowed}")
+    for line in surprises + failures:
+        print(line)
     print(", ".join(f"{count} {what}" for what, count in counts.items()), f"- {len(failures)} failures")
     sys.exit(1 if failures or not counts["limits"] or not counts["broken without limits"] else 0)
 
