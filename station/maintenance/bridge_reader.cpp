@@ -310,21 +310,18 @@ class ConverterBridges : public BridgeReader {
       clock.push({sample.time_ns, sample.value, sample.at_limit}, {}, [](const sensing::BridgePoint&) {});
       for (std::size_t cell = 0; cell < cells.size(); ++cell) {
         if (sample.at_limit[cell])
-          throw std::runtime_error(
-              fmt::format("cell {} on channel {}: a wire is off, or the cell is overloaded", cells[cell],
-                          rig_.channels[cell]));
+          throw texts::Failure(
+              phrase("weights.overloaded", {plain(cells[cell]), plain(rig_.channels[cell])}));
         reading.ratio[cell] += sample.value[cell] / count;
       }
     }
     if (const auto silent = clock.silent_cell())
-      throw std::runtime_error(fmt::format(
-          "cell {} on channel {}: the samples do not change at all; its amplifier or the converter is dead",
-          cells[*silent], rig_.channels[*silent]));
+      throw texts::Failure(phrase("weights.silent", {plain(cells[*silent]), plain(rig_.channels[*silent])}));
     if (clock.counters().lost + clock.counters().disorder > 0)
       throw std::runtime_error(fmt::format("{}: {} samples were lost", rig_.uri, clock.counters().lost));
     if (const auto rate_Hz = clock.rate_Hz())
       if (const auto wrong = session::wrong_rate(rig_.uri.substr(4), *rate_Hz, rig_.rate_Hz))
-        throw std::runtime_error(texts::say(*wrong, "en"));
+        throw texts::Failure(*wrong);
     for (const auto& sample : samples)
       for (std::size_t cell = 0; cell < cells.size(); ++cell)
         reading.sd[cell] += std::pow(sample.value[cell] - reading.ratio[cell], 2) / count;

@@ -52,7 +52,7 @@ std::size_t character_length(std::string_view bytes) {
 }
 
 /// A key, which may consist of several names separated by dots.
-struct Key {
+struct DottedKey {
   std::vector<std::string> names;
   std::vector<Span> spans;
   std::vector<Place> places;
@@ -157,8 +157,8 @@ class Reader {
     }
   }
 
-  Key key() {
-    Key key;
+  DottedKey key() {
+    DottedKey key;
     for (;;) {
       skip_spaces();
       const auto begin = at_;
@@ -495,7 +495,7 @@ class Reader {
     if (whole_line) table.value.end = line_end(text_, part.value.end);
   }
 
-  [[noreturn]] static void defined_twice(const Key& key, std::size_t i, const Part& other) {
+  [[noreturn]] static void defined_twice(const DottedKey& key, std::size_t i, const Part& other) {
     fail_at(
         key.places[i],
         phrase("\"%1\" is defined twice; line %2 has it already", {plain(key.names[i]), plain(other.line)}),

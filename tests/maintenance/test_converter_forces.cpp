@@ -239,12 +239,12 @@ TEST_CASE("the calibration of cells on a converter names a wire that is off and 
   SECTION("a wire") {
     room.converter->wire_off = true;
     CHECK_THROWS_WITH(reader.read(weight),
-                      "cell b on channel voltage1: a wire is off, or the cell is overloaded");
+                      "cell b on captured channel voltage1: a wire is off, or the cell is overloaded");
   }
   SECTION("samples without any noise") {
     room.converter->dead = true;
     CHECK_THROWS_WITH(reader.read(weight), Catch::Matchers::ContainsSubstring(
-                                               "cell a on channel voltage0: the samples do not change at all"));
+                                               "cell a on captured channel voltage0: the samples do not change at all"));
   }
   SECTION("lost samples, which do not matter for the next reading") {
     room.converter->until_gap = 100;

@@ -1,0 +1,22 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "station/rig/rig.hpp"
+#include "station/text/reader.hpp"
+
+namespace turnpoint::rig {
+
+/// Reads the key "uri" of a table. `forms` are the allowed forms, such as "sim:" and "alsa:DEVICE". Text must
+/// follow the scheme if the form has text after it.
+std::string read_uri(text::TableReader& reader, const std::vector<std::string>& forms);
+
+/// Checks a URI `gpio:name=LINE,name=LINE`; other schemes are accepted. It must contain all names in
+/// `needed`, may contain those in `optional`, and must contain no others.
+void check_gpio(text::TableReader& reader, const std::string& uri, const std::vector<std::string>& needed,
+                const std::vector<std::string>& optional);
+
+/// Reads [amplifier], [buttons], [contact], [trigger_lines] and [touch] of the file.
+void read_devices(text::TableReader& file, Rig& rig);
+
+}  // namespace turnpoint::rig
