@@ -73,9 +73,9 @@ struct Sources {
   }
 };
 
-/// Returns the sum of volume exp(-2 pi i waves_per_m R) / R over the sources. The loops are written for vector
-/// instructions, and always add in the same order. Sine and cosine of twice an angle below a quarter turn
-/// follow from Taylor's series, which end where a term is below 1e-10.
+/// Returns the sum of volume exp(-2 pi i waves_per_m R) / R over the sources. The loops are written for
+/// vector instructions, and always add in the same order. Sine and cosine of twice an angle below a quarter
+/// turn follow from Taylor's series, which end where a term is below 1e-10.
 TURNPOINT_CLONES
 void add_paths(const double* __restrict x, const double* __restrict y, const double* __restrict real,
                const double* __restrict imaginary, std::size_t n, const Place& place, double waves_per_m,
@@ -89,9 +89,15 @@ void add_paths(const double* __restrict x, const double* __restrict y, const dou
       const double r = std::sqrt(dx * dx + dy * dy + z2), turns = waves_per_m * r;
       const double u = std::numbers::pi * (turns - std::nearbyint(turns)), q = -u * u;
       const double sine =
-          u * (1 + q / 6 * (1 + q / 20 * (1 + q / 42 * (1 + q / 72 * (1 + q / 110 * (1 + q / 156 * (1 + q / 210)))))));
+          u * (1 + q / 6 *
+                       (1 + q / 20 *
+                                (1 + q / 42 * (1 + q / 72 * (1 + q / 110 * (1 + q / 156 * (1 + q / 210)))))));
       const double cosine =
-          1 + q / 2 * (1 + q / 12 * (1 + q / 30 * (1 + q / 56 * (1 + q / 90 * (1 + q / 132 * (1 + q / 182 * (1 + q / 240)))))));
+          1 +
+          q / 2 *
+              (1 + q / 12 *
+                       (1 + q / 30 *
+                                (1 + q / 56 * (1 + q / 90 * (1 + q / 132 * (1 + q / 182 * (1 + q / 240)))))));
       const double c = (1 - 2 * sine * sine) / r, s = -2 * sine * cosine / r;
       a[l] = real[i + l] * c - imaginary[i + l] * s;
       b[l] = real[i + l] * s + imaginary[i + l] * c;

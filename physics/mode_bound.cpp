@@ -29,10 +29,11 @@ constexpr double slope_shift = 0.1;      // shift of an edge, divided by |W'|^3
 // On a clamped plate, the transverse shape of `mode` is exact only at the cut-off, so its phase drifts
 // between the drive edge and the cut-off.
 constexpr double plate_drift = 1.5e-3;  // phase error in radians, divided by k times the turning point's x
-// Of Mindlin's plate, `mode` has the shapes at the drive edge and at the turning point. Its phase error is 0 if
-// these are one place, and grows with the square of the relative difference between their half-widths: by the
-// first number at the drive edge, and by the second for each radian on the way. The bounds are twice the largest
-// errors found on random plates with straight sides, which do not depend on the slope (planner_test.cpp).
+// Of Mindlin's plate, `mode` has the shapes at the drive edge and at the turning point. Its phase error is 0
+// if these are one place, and grows with the square of the relative difference between their half-widths: by
+// the first number at the drive edge, and by the second for each radian on the way. The bounds are twice the
+// largest errors found on random plates with straight sides, which do not depend on the slope
+// (planner_test.cpp).
 constexpr double thick_phase = 2.6e-2, thick_drift = 2.2e-4, thick_least_phase = 2e-3;
 constexpr double plate_piston = 0.9;    // amplitude of higher modes for a piston drive, at any slope
 // cut-off half-width of the second symmetric mode divided by that of the first

@@ -33,12 +33,12 @@ constexpr double membrane_resonance = 5e-4, plate_resonance = 6e-4;
 // shift of an edge relative to the cut-off half-width, divided by the error of `modes`; larger with a quality
 // factor of the wave below 30, because the field is then less steep at its edges
 constexpr double edge_share = 0.8, lossy_edge_share = 1.2, lossy_below = 30;
-// A solution of fewer functions than `modes`, with which `mode` of a clamped plate is compared. Its errors are
-// those of |v| and of the phase at the drive edge, where only one mode propagates: twice the largest that were
-// found on random plates (planner_test.cpp), and more under tension.
+// A solution of fewer functions than `modes`, with which `mode` of a clamped plate is compared. Its errors
+// are those of |v| and of the phase at the drive edge, where only one mode propagates: twice the largest that
+// were found on random plates (planner_test.cpp), and more under tension.
 constexpr double sparse_shape = 3e-3, sparse_phase = 2e-3, sparse_tension = 5;
-// The comparison costs a third of `modes`. It is made only where it can help: if the bound that is known before it
-// is at most so many times the tolerance.
+// The comparison costs a third of `modes`. It is made only where it can help: if the bound that is known
+// before it is at most so many times the tolerance.
 constexpr double worth_comparing = 60;
 // half-width of the drive edge over that of the cut-off, below which the second mode does not propagate
 constexpr double second_mode_free = 2.1;
@@ -267,15 +267,16 @@ RungEstimate compared_mode_estimate(const Surface& surface, const PlanRequest& r
                                     const Reference& reference) {
   RungEstimate e = profile_estimate(surface, request, reference, Model::mode);
   const RungEstimate modes = modes_estimate(surface, request, reference);
-  const Difference d = compare(surface, request, reference.edge, reference.mode,
-                               probe(surface, reference.edge, make_centre_line(surface, reference.f, Model::modes)));
+  const Difference d =
+      compare(surface, request, reference.edge, reference.mode,
+              probe(surface, reference.edge, make_centre_line(surface, reference.f, Model::modes)));
   e.amplitude_bound = std::min(e.amplitude_bound, modes.amplitude_bound + d.amplitude);
   e.level_bound_dB = std::min(e.level_bound_dB, modes.level_bound_dB + probe_margin * d.level_dB);
   return e;
 }
 
-// True if `mode` of this plate can be compared with a sparse solution: only the first mode propagates, so that
-// no resonance of another one is missed.
+// True if `mode` of this plate can be compared with a sparse solution: only the first mode propagates, so
+// that no resonance of another one is missed.
 bool sparse_comparison_applies(const Surface& surface, const PlanRequest& request) {
   if (!modes_bound_applies(surface) || !Dispersion(surface).clamped_bending()) return false;
   return std::all_of(request.tones.begin(), request.tones.end(), [&surface](const Tone& tone) {
@@ -283,8 +284,8 @@ bool sparse_comparison_applies(const Surface& surface, const PlanRequest& reques
   });
 }
 
-// Bounds the error of `mode` by a sparse solution of the two-dimensional field: the difference between the two
-// plus the error of the sparse solution.
+// Bounds the error of `mode` by a sparse solution of the two-dimensional field: the difference between the
+// two plus the error of the sparse solution.
 RungEstimate sparsely_compared_mode(const Surface& surface, const PlanRequest& request,
                                     const std::vector<Reference>& references) {
   const bool thick = surface.theory == PlateTheory::mindlin;

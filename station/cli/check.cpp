@@ -203,7 +203,8 @@ void print(std::ostream& out, const simulation::Check& check, const std::string&
     fmt::print(
         out,
         "{}Trials: {}. Duration: {} minutes, with the time that a person needs to read, explore and set. "
-        "Medians of {}{} simulated sessions; in brackets the range of nine sessions in ten; with other sessions, "
+        "Medians of {}{} simulated sessions; in brackets the range of nine sessions in ten; with other "
+        "sessions, "
         "these numbers would differ by up to {} trials and {} minutes\n",
         check.blocks.empty() || check.blocks.front().visit.empty() ? "" : "The longest session: ",
         range(check.trials, 1), range(check.duration_s, 60), check.simulated_sessions,

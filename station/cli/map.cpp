@@ -171,9 +171,10 @@ void print(std::ostream& out, const std::vector<physics::MapAnswer>& answers) {
   }
 }
 
-/// Answers for one boundary by a map of the frequencies around it. A map of all frequencies would take many times as
-/// long; it is made only to say why there is no such boundary.
-physics::MapAnswer at_boundary(const physics::Surface& surface, const physics::MapOptions& wanted, double x_m) {
+/// Answers for one boundary by a map of the frequencies around it. A map of all frequencies would take many
+/// times as long; it is made only to say why there is no such boundary.
+physics::MapAnswer at_boundary(const physics::Surface& surface, const physics::MapOptions& wanted,
+                               double x_m) {
   try {
     if (const auto f = physics::solve_frequency_Hz(surface, wanted, x_m)) {
       auto near = wanted;
@@ -208,8 +209,8 @@ void map(const Options& options, Context& context) {
     for (const double f : options.frequencies_Hz) answers.push_back(boundary_map.at_frequency(f));
   }
   if (!options.plot.empty())
-    system::write_file(options.plot, plot::render(figure_of(rig, surface,
-                                                            physics::BoundaryMap(surface, wanted), answers)));
+    system::write_file(options.plot,
+                       plot::render(figure_of(rig, surface, physics::BoundaryMap(surface, wanted), answers)));
   const auto budget_of = [&](const physics::MapAnswer& a) {
     return physics::boundary_budget(surface, *a.frequency_Hz, *a.boundary_m);
   };

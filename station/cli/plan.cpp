@@ -29,17 +29,18 @@ struct Options {
 Json tones_json(scene::Planner& planner, const scene::DrivePlan& plan) {
   Json tones = Json::array();
   for (const auto& tone : plan.tones)
-    tones.push_back({{"frequency_Hz", tone.frequency_Hz},
-                     {"drive_um", json_number(tone.amplitude_m * 1e6)},
-                     {"phase_deg", json_number(tone.phase_rad * 180 / M_PI)},
-                     {"transducer", tone.transducer},
-                     {"channel", tone.channel},
-                     {"full_scale", json_number(tone.full_scale)},
-                     {"turning_point_mm", json_number(tone.turning_point_m, 1e3)},
-                     {"last_peak_mm", json_number(tone.last_peak_m, 1e3)},
-                     {"displacement_um", json_number(tone.displacement_m * 1e6)},
-                     {"gain", json_number(tone.gain)},
-                     {"nearest_resonance_Hz", json_number(planner.nearest_resonance_Hz(plan, tone.frequency_Hz))}});
+    tones.push_back(
+        {{"frequency_Hz", tone.frequency_Hz},
+         {"drive_um", json_number(tone.amplitude_m * 1e6)},
+         {"phase_deg", json_number(tone.phase_rad * 180 / M_PI)},
+         {"transducer", tone.transducer},
+         {"channel", tone.channel},
+         {"full_scale", json_number(tone.full_scale)},
+         {"turning_point_mm", json_number(tone.turning_point_m, 1e3)},
+         {"last_peak_mm", json_number(tone.last_peak_m, 1e3)},
+         {"displacement_um", json_number(tone.displacement_m * 1e6)},
+         {"gain", json_number(tone.gain)},
+         {"nearest_resonance_Hz", json_number(planner.nearest_resonance_Hz(plan, tone.frequency_Hz))}});
   return tones;
 }
 
@@ -212,7 +213,8 @@ void plan(const Options& options, Context& context) {
     base = planner.plan(protocol::resolve(protocol, from.base, factors, 0));
   const auto finger = touched(planner, result, base);
   if (context.json)
-    context.out << to_json(planner, result, factors, sound, finger).dump(2, ' ', false, kInvalidBytes) << "\n";
+    context.out << to_json(planner, result, factors, sound, finger).dump(2, ' ', false, kInvalidBytes)
+                << "\n";
   else
     print(context.out, result, sound, finger);
 }

@@ -258,8 +258,7 @@ plot::Figure spectrum_figure(const SceneLook& look, const std::string& language)
   panel.x = plot::fitted(words("figure.frequency"), points.x, 0.3);
   panel.y = {words("figure.drive_edge"), 0, most > 0 ? 1.2 * most : 1};
   if (const double at = 1e-3 * look.nearest_resonance_Hz.value_or(0); at > panel.x.low && at < panel.x.high)
-    panel.layers.push_back(
-        plot::Rule{plot::Rule::Direction::vertical, at, words("figure.resonance")});
+    panel.layers.push_back(plot::Rule{plot::Rule::Direction::vertical, at, words("figure.resonance")});
   panel.layers.push_back(points);
   plot::Figure figure;
   figure.title = "Tones, scene " + look.scene;

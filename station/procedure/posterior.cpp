@@ -18,8 +18,8 @@ namespace {
 /// The value is so small that it has no other effect.
 constexpr double kFloor = 1e-14;
 
-/// A place is left out of the sums over all places if none of its weights, of which the sum is 1, reaches this. A
-/// sum of a million such weights is still below the rounding error of the others.
+/// A place is left out of the sums over all places if none of its weights, of which the sum is 1, reaches
+/// this. A sum of a million such weights is still below the rounding error of the others.
 constexpr double kNegligible = 1e-22;
 
 /// Two distances count as equal if their difference is below this fraction of the largest distance, because
@@ -186,8 +186,8 @@ std::vector<std::size_t> Posterior::places_that_matter() const {
   return matter;
 }
 
-/// Returns for each stimulus the sum of products over all places that matter: `factors` times the rows of `table` that
-/// belong to the stimulus. Both have `length` entries per place.
+/// Returns for each stimulus the sum of products over all places that matter: `factors` times the rows of
+/// `table` that belong to the stimulus. Both have `length` entries per place.
 std::vector<double> Posterior::sums(const std::vector<double>& factors, const std::vector<double>& table,
                                     std::size_t length) const {
   const std::size_t n = stimuli_.size();

@@ -7,7 +7,8 @@
 
 namespace turnpoint::procedure {
 
-QuestPlus::QuestPlus(const Spec& spec) : spec_(spec), posterior_(spec), stimulus_(chosen()), ended_(how_ended()) {}
+QuestPlus::QuestPlus(const Spec& spec)
+    : spec_(spec), posterior_(spec), stimulus_(chosen()), ended_(how_ended()) {}
 
 std::size_t QuestPlus::chosen() const {
   if (spec_.kind == Kind::zest)

@@ -38,7 +38,7 @@ class QuestPlus : public Procedure {
   std::size_t stimulus_ = 0;
   int recorded_ = 0, unanswered_ = 0, spent_ = 0;
   std::vector<std::uint64_t> history_;  ///< index of the stimulus, and the answer, of each answered trial
-  Ended ended_ = Ended::no;  ///< computed after each trial, because the rules ask the posterior
+  Ended ended_ = Ended::no;             ///< computed after each trial, because the rules ask the posterior
 };
 
 }  // namespace turnpoint::procedure

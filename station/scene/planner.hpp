@@ -125,8 +125,8 @@ class Planner {
   };
   Profile profile(const DrivePlan& plan, int points);
 
-  /// The resonance that is nearest to one of the plan's frequencies, by the plan's theory. Takes some 20 ms on a
-  /// thick plate.
+  /// The resonance that is nearest to one of the plan's frequencies, by the plan's theory. Takes some 20 ms
+  /// on a thick plate.
   std::optional<double> nearest_resonance_Hz(const DrivePlan& plan, double frequency_Hz);
 
   /// Computes the plan's scene under a finger. Takes some 100 ms; on a thick plate 1 s per tone.

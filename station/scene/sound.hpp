@@ -27,8 +27,8 @@ struct SoundBound {
 std::optional<SoundBound> sound_bound(const rig::Rig& rig, std::span<const physics::Tone> tones,
                                       physics::Model model);
 
-/// sound_bound() for many sets of tones on one rig. The level of a tone is proportional to its amplitude, so the
-/// level of each frequency is computed once for each model. Several threads may call it.
+/// sound_bound() for many sets of tones on one rig. The level of a tone is proportional to its amplitude, so
+/// the level of each frequency is computed once for each model. Several threads may call it.
 class ToneLevels {
  public:
   explicit ToneLevels(const rig::Rig& rig);

@@ -166,15 +166,16 @@ void check_runs(const Protocol& protocol, int sessions, const std::stop_token& s
          phrase("allow longer runs, or use levels, catch trials and draws of factors that leave more choice")});
 }
 
-/// The number of sessions of each visit in the first round, if the protocol has this many visits. Fewer than 20
-/// would say nothing about one session in twenty.
+/// The number of sessions of each visit in the first round, if the protocol has this many visits. Fewer than
+/// 20 would say nothing about one session in twenty.
 int first_round(int visits, int most) { return std::min(std::clamp(120 / visits, 20, 40), most); }
 
 /// True if the stated range is known well enough.
 bool is_precise(const Spread& spread) { return spread.error <= kLengthPrecision * spread.median; }
 
-/// Simulates this number of sessions, divided equally among the protocol's different visits. Without a number,
-/// simulates rounds of sessions, each as many as before, until the length of the longest session is precise.
+/// Simulates this number of sessions, divided equally among the protocol's different visits. Without a
+/// number, simulates rounds of sessions, each as many as before, until the length of the longest session is
+/// precise.
 void estimate(const Protocol& protocol, std::optional<int> sessions, const std::stop_token& stop,
               const Steps& steps, Check& check) {
   const auto visits = protocol::different_visits(protocol);
@@ -193,9 +194,8 @@ void estimate(const Protocol& protocol, std::optional<int> sessions, const std::
         [&](int k) {
           if (stop.stop_requested()) throw protocol::Abandoned();
           const int i = before + k;
-          estimates[static_cast<std::size_t>(i)] =
-              simulate(protocol, visits[static_cast<std::size_t>(i % count)],
-                       static_cast<std::uint64_t>(i / count));
+          estimates[static_cast<std::size_t>(i)] = simulate(
+              protocol, visits[static_cast<std::size_t>(i % count)], static_cast<std::uint64_t>(i / count));
         },
         steps.finish);
     check.blocks.clear();

@@ -16,8 +16,8 @@
 namespace turnpoint::simulation {
 
 /// The median of a number over simulated sessions, and the 5 % and 95 % quantiles, between which nine of ten
-/// sessions lie. `error` is the Monte Carlo error: each of the three is within it of its value over all sessions
-/// in 95 % of cases; with fewer than 20 sessions it is too small.
+/// sessions lie. `error` is the Monte Carlo error: each of the three is within it of its value over all
+/// sessions in 95 % of cases; with fewer than 20 sessions it is too small.
 struct Spread {
   double low = 0, median = 0, high = 0, error = 0;
 };
@@ -30,8 +30,9 @@ struct SessionLength {
 };
 SessionLength session_length(const protocol::Protocol& protocol, std::uint64_t seed);
 
-/// If nobody says how many sessions are simulated, sessions are added until the errors of the number of trials
-/// and of the duration (Spread::error) are at most this fraction of their medians, up to this many sessions.
+/// If nobody says how many sessions are simulated, sessions are added until the errors of the number of
+/// trials and of the duration (Spread::error) are at most this fraction of their medians, up to this many
+/// sessions.
 inline constexpr double kLengthPrecision = 0.03;
 inline constexpr int kMostSessions = 1000;
 

@@ -253,8 +253,10 @@ static Surface usual_plate(Draw& draw, PlateTheory theory) {
   return s;
 }
 
-TEST_CASE("whatever the planner chooses, no true error is outside its bound, and a cheap rung that suffices is taken",
-          "[physics][rungs]") {
+TEST_CASE(
+    "whatever the planner chooses, no true error is outside its bound, and a cheap rung that suffices is "
+    "taken",
+    "[physics][rungs]") {
   struct Kind {
     const char* name;
     Surface (*make)(Draw&);
@@ -298,14 +300,15 @@ TEST_CASE("whatever the planner chooses, no true error is outside its bound, and
                       error->level_dB / rung.level_bound_dB});
         if (rung.model == choice.model) worst = std::max(worst, ratio);
         CAPTURE(kind.name, i, name(rung.model), rung.reason, normalise == Normalise::drive, error->amplitude,
-                rung.amplitude_bound, error->boundary_m, rung.boundary_bound_m, error->level_dB, rung.level_bound_dB);
+                rung.amplitude_bound, error->boundary_m, rung.boundary_bound_m, error->level_dB,
+                rung.level_bound_dB);
         CHECK(ratio <= 1);
         outside += ratio > 1;
       }
     }
     if (count > 20)
-      WARN(kind.name << ": " << compared << " compared, " << outside << " outside their bounds, worst " << worst << "; `mode` suffices in "
-                << suffices << " scenes and is taken in " << taken);
+      WARN(kind.name << ": " << compared << " compared, " << outside << " outside their bounds, worst "
+                     << worst << "; `mode` suffices in " << suffices << " scenes and is taken in " << taken);
     CHECK(compared > count / 2);
   }
 }

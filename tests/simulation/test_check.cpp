@@ -140,7 +140,8 @@ TEST_CASE("the duration estimated by check includes time to set a slider", "[che
 TEST_CASE("check adds sessions until the length is known to 3 %, and other sessions have this length",
           "[check]") {
   int missed = 0, told = 0;
-  for (const char* name : {"friction-staircase", "friction-time-limit", "limits-boundary", "friction-training"}) {
+  for (const char* name :
+       {"friction-staircase", "friction-time-limit", "limits-boundary", "friction-training"}) {
     INFO(name);
     const auto protocol = protocol::load(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
     const auto check = simulation::session_lengths(protocol);
@@ -150,7 +151,8 @@ TEST_CASE("check adds sessions until the length is known to 3 %, and other sessi
     if (!check.blocks.empty() && !check.blocks.front().visit.empty()) continue;
     const auto others = lengths(protocol, 2000, 600);
     const auto spread = simulation::spread_of(values_of(others, &simulation::SessionLength::duration_s));
-    for (const auto what : {&simulation::Spread::low, &simulation::Spread::median, &simulation::Spread::high}) {
+    for (const auto what :
+         {&simulation::Spread::low, &simulation::Spread::median, &simulation::Spread::high}) {
       const double apart = std::abs(check.duration_s.*what - spread.*what);
       CHECK(apart <= 2 * (check.duration_s.error + spread.error));
       missed += apart > check.duration_s.error + spread.error, ++told;
@@ -179,8 +181,8 @@ TEST_CASE("the error of a range holds the ranges of 95 % of other samples", "[ch
     std::vector<double> values(40);
     for (auto& value : values) value = draw();
     const auto spread = simulation::spread_of(values);
-    const double apart = std::max(
-        {std::abs(spread.low + 1.645), std::abs(spread.median), std::abs(spread.high - 1.645)});
+    const double apart =
+        std::max({std::abs(spread.low + 1.645), std::abs(spread.median), std::abs(spread.high - 1.645)});
     held += apart <= spread.error, halves += apart <= 0.5 * spread.error;
   }
   CHECK(held > 0.95 * samples);
