@@ -45,7 +45,8 @@ Json problems_json(const std::vector<text::Problem>& problems) {
 Json spread_json(const simulation::Spread& spread) {
   return {{"low", json_number(spread.low)},
           {"median", json_number(spread.median)},
-          {"high", json_number(spread.high)}};
+          {"high", json_number(spread.high)},
+          {"error", json_number(spread.error)}};
 }
 
 Json scenes_json(const protocol::Survey& survey) {
@@ -129,6 +130,8 @@ Json to_json(const simulation::Check& check, const std::string& signal) {
       {"trials_range", {json_number(check.trials.low), json_number(check.trials.high)}},
       {"duration_s", json_number(check.duration_s.median)},
       {"duration_range_s", {json_number(check.duration_s.low), json_number(check.duration_s.high)}},
+      {"trials_error", json_number(check.trials.error)},
+      {"duration_error_s", json_number(check.duration_s.error)},
       {"simulated_sessions", check.simulated_sessions},
       {"wanted_sessions", check.wanted_sessions},
       {"stopped", signal.empty() ? Json(nullptr) : Json(signal)},
@@ -209,10 +212,13 @@ void print(std::ostream& out, const simulation::Check& check, const std::string&
     fmt::print(
         out,
         "{}Trials: {}. Duration: {} minutes, with the time that a person needs to read, explore and set. "
-        "Medians of {}{} simulated sessions; in brackets the range of nine sessions in ten\n",
+        "Medians of {}{} simulated sessions; in brackets the range of nine sessions in ten; with other "
+        "sessions, "
+        "these numbers would differ by up to {} trials and {} minutes\n",
         check.blocks.empty() || check.blocks.front().visit.empty() ? "" : "The longest session: ",
         range(check.trials, 1), range(check.duration_s, 60), check.simulated_sessions,
-        check.simulated_sessions < check.wanted_sessions ? fmt::format(" of {}", check.wanted_sessions) : "");
+        check.simulated_sessions < check.wanted_sessions ? fmt::format(" of {}", check.wanted_sessions) : "",
+        number(check.trials.error, 2), number(check.duration_s.error / 60, 2));
   for (const auto& of : check.runs)
     fmt::print(
         out,
@@ -305,8 +311,8 @@ void add_check(CommandLine& app, Context& context) {
   command
       ->add_option("--sessions", options->sessions,
                    "Number of sessions to simulate in order to predict trials and duration; 0 for none; by "
-                   "default 1000, or 200 if the protocol's procedures take long")
-      ->check(range(0, 1000));
+                   "default as many as are needed to know both to 3 %")
+      ->check(range(0, simulation::kMostSessions));
   add_progress(*command, options->progress);
   add_json(*command, context);
   command->footer("Example: turnpoint check demo");

@@ -25,20 +25,21 @@ struct Options {
   std::vector<std::string> set;
 };
 
-Json tones_json(const scene::DrivePlan& plan) {
+Json tones_json(scene::Planner& planner, const scene::DrivePlan& plan) {
   Json tones = Json::array();
   for (const auto& tone : plan.tones)
-    tones.push_back({{"frequency_Hz", tone.frequency_Hz},
-                     {"drive_um", json_number(tone.amplitude_m * 1e6)},
-                     {"phase_deg", json_number(tone.phase_rad * 180 / M_PI)},
-                     {"transducer", tone.transducer},
-                     {"channel", tone.channel},
-                     {"full_scale", json_number(tone.full_scale)},
-                     {"turning_point_mm", json_number(tone.turning_point_m, 1e3)},
-                     {"last_peak_mm", json_number(tone.last_peak_m, 1e3)},
-                     {"displacement_um", json_number(tone.displacement_m * 1e6)},
-                     {"gain", json_number(tone.gain)},
-                     {"nearest_resonance_Hz", json_number(tone.nearest_resonance_Hz)}});
+    tones.push_back(
+        {{"frequency_Hz", tone.frequency_Hz},
+         {"drive_um", json_number(tone.amplitude_m * 1e6)},
+         {"phase_deg", json_number(tone.phase_rad * 180 / M_PI)},
+         {"transducer", tone.transducer},
+         {"channel", tone.channel},
+         {"full_scale", json_number(tone.full_scale)},
+         {"turning_point_mm", json_number(tone.turning_point_m, 1e3)},
+         {"last_peak_mm", json_number(tone.last_peak_m, 1e3)},
+         {"displacement_um", json_number(tone.displacement_m * 1e6)},
+         {"gain", json_number(tone.gain)},
+         {"nearest_resonance_Hz", json_number(planner.nearest_resonance_Hz(plan, tone.frequency_Hz))}});
   return tones;
 }
 
@@ -85,7 +86,7 @@ Json touched_json(const Touched& touched) {
           {"contrast_dB", json_number(touched.contrast_dB)}};
 }
 
-Json to_json(const scene::DrivePlan& plan, const protocol::Factors& factors,
+Json to_json(scene::Planner& planner, const scene::DrivePlan& plan, const protocol::Factors& factors,
              const std::optional<scene::SoundBound>& sound, const Touched& touched) {
   Json values;
   for (const auto& [name, value] : factors)
@@ -107,7 +108,7 @@ Json to_json(const scene::DrivePlan& plan, const protocol::Factors& factors,
           {"uncertainty_mm", json_number(plan.uncertainty_m * 1e3)},
           {"plate_theory", physics::name(plan.theory)},
           {"shear_shift_mm", json_number(plan.shear_shift_m, 1e3)},
-          {"tones", tones_json(plan)},
+          {"tones", tones_json(planner, plan)},
           {"zone_friction", json_number(plan.zone_friction)},
           {"residual", json_number(plan.residual)},
           {"lowest_friction", json_number(plan.lowest_friction)},
@@ -211,7 +212,8 @@ void plan(const Options& options, Context& context) {
     base = planner.plan(protocol::resolve(protocol, from.base, factors, 0));
   const auto finger = touched(planner, result, base);
   if (context.json)
-    context.out << to_json(result, factors, sound, finger).dump(2, ' ', false, kInvalidBytes) << "\n";
+    context.out << to_json(planner, result, factors, sound, finger).dump(2, ' ', false, kInvalidBytes)
+                << "\n";
   else
     print(context.out, result, sound, finger);
 }

@@ -201,6 +201,8 @@ SceneLook look_at(scene::DrivePlan planned, protocol::Factors factors, scene::Pl
   look.factors = std::move(factors);
   look.plan = std::move(planned);
   look.profile = planner.profile(look.plan, kProfilePoints);
+  if (look.plan.tones.size() == 1)
+    look.nearest_resonance_Hz = planner.nearest_resonance_Hz(look.plan, look.plan.tones[0].frequency_Hz);
   look.under = planner.under_finger(look.plan);
   describe_plan(look);
   describe_cues(look);

@@ -35,6 +35,7 @@ struct SceneLook {
   /// the surface without a finger, at kProfilePoints points, starting at the wide end
   scene::Planner::Profile profile;
   scene::UnderFinger under;
+  std::optional<double> nearest_resonance_Hz;  ///< of a scene with one tone
   /// facts about the scene and its cues, as pairs of a label and a value, in the order in which they are
   /// shown
   std::vector<std::pair<texts::Phrase, texts::Phrase>> facts, cues;

@@ -257,11 +257,8 @@ plot::Figure spectrum_figure(const SceneLook& look, const std::string& language)
   panel.title = words("figure.drive");
   panel.x = plot::fitted(words("figure.frequency"), points.x, 0.3);
   panel.y = {words("figure.drive_edge"), 0, most > 0 ? 1.2 * most : 1};
-  for (const auto& tone : look.plan.tones)
-    if (tone.nearest_resonance_Hz && 1e-3 * *tone.nearest_resonance_Hz > panel.x.low &&
-        1e-3 * *tone.nearest_resonance_Hz < panel.x.high && look.plan.tones.size() == 1)
-      panel.layers.push_back(plot::Rule{plot::Rule::Direction::vertical, 1e-3 * *tone.nearest_resonance_Hz,
-                                        words("figure.resonance")});
+  if (const double at = 1e-3 * look.nearest_resonance_Hz.value_or(0); at > panel.x.low && at < panel.x.high)
+    panel.layers.push_back(plot::Rule{plot::Rule::Direction::vertical, at, words("figure.resonance")});
   panel.layers.push_back(points);
   plot::Figure figure;
   figure.title = "Tones, scene " + look.scene;

@@ -1,6 +1,7 @@
 #include "station/observer/observer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -44,11 +45,18 @@ double half_logit_of_normal(double x) {
 /// phi and Phi are the normal density and distribution function, by the trapezoidal rule.
 double largest_is_right(double d_prime, int answers) {
   constexpr double step = 0.125;
+  constexpr int half = 64;
+  static const auto density = [] {
+    std::array<double, 2 * half + 1> all{};
+    for (int i = -half; i <= half; ++i)
+      all[static_cast<std::size_t>(i + half)] = random::exp(-0.5 * step * i * step * i);
+    return all;
+  }();
   double sum = 0;
-  for (int i = -64; i <= 64; ++i) {
-    const double x = step * i;
-    double below = random::exp(-0.5 * x * x);
-    for (int other = 1; other < answers; ++other) below *= random::normal_cdf(x + d_prime);
+  for (int i = -half; i <= half; ++i) {
+    const double smaller = random::normal_cdf(step * i + d_prime);
+    double below = density[static_cast<std::size_t>(i + half)];
+    for (int other = 1; other < answers; ++other) below *= smaller;
     sum += below;
   }
   return sum * step * kNormalPeak;

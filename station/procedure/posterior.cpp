@@ -18,6 +18,10 @@ namespace {
 /// The value is so small that it has no other effect.
 constexpr double kFloor = 1e-14;
 
+/// A place is left out of the sums over all places if none of its weights, of which the sum is 1, reaches
+/// this. A sum of a million such weights is still below the rounding error of the others.
+constexpr double kNegligible = 1e-22;
+
 /// Two distances count as equal if their difference is below this fraction of the largest distance, because
 /// such differences are rounding errors.
 constexpr double kSameDistance = 1e-13;
@@ -171,16 +175,29 @@ std::size_t Posterior::index_of(std::size_t point, Parameter parameter) const {
   return point / stride_[parameter] % values_[parameter].size();
 }
 
-/// Returns for each stimulus the sum of products over all places: `factors` times the rows of `table` that
-/// belong to the stimulus. Both have `length` entries per place.
+/// Returns the places that have a weight of at least kNegligible. After some trials, these are few.
+std::vector<std::size_t> Posterior::places_that_matter() const {
+  std::vector<std::size_t> matter;
+  for (std::size_t p = 0; p < places_; ++p) {
+    const auto first = weights_.begin() + static_cast<std::ptrdiff_t>(p * shapes_ * ends_);
+    const auto last = first + static_cast<std::ptrdiff_t>(shapes_ * ends_);
+    if (std::any_of(first, last, [](double weight) { return weight >= kNegligible; })) matter.push_back(p);
+  }
+  return matter;
+}
+
+/// Returns for each stimulus the sum of products over all places that matter: `factors` times the rows of
+/// `table` that belong to the stimulus. Both have `length` entries per place.
 std::vector<double> Posterior::sums(const std::vector<double>& factors, const std::vector<double>& table,
                                     std::size_t length) const {
   const std::size_t n = stimuli_.size();
+  const auto matter = places_that_matter();
   std::vector<double> all;
+  all.reserve(n);
   for (std::size_t x = 0; x < n; x += 2) {
     const std::size_t other = std::min(x + 1, n - 1);
     Products first, second;
-    for (std::size_t p = 0; p < places_; ++p)
+    for (const std::size_t p : matter)
       add(first, second, &factors[p * length], &table[row(x, p) * length], &table[row(other, p) * length],
           length);
     all.push_back(first.sum());
@@ -219,10 +236,11 @@ std::vector<double> Posterior::kept_entropies() const {
       weight[kept_[i]] += weights_[i];
       guess_part[kept_[i]] += weights_[i] * guesses_[e];
     }
+  const auto matter = places_that_matter();
   std::vector<double> values(shapes_ * kAbreast), ones(groups_ * kAbreast);
   for (std::size_t first = 0; first < stimuli_.size(); first += kAbreast) {
     for (std::size_t i = 0; i < ones.size(); ++i) ones[i] = guess_part[i / kAbreast];
-    for (std::size_t p = 0; p < places_; ++p) {
+    for (const std::size_t p : matter) {
       for (std::size_t x = 0; x < kAbreast; ++x) {
         const double* core = &core_[row(std::min(first + x, stimuli_.size() - 1), p) * padded_shapes_];
         for (std::size_t s = 0; s < shapes_; ++s) values[s * kAbreast + x] = core[s];

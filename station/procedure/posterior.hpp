@@ -75,6 +75,7 @@ class Posterior {
   double threshold_of(std::size_t place, double second) const;
   std::vector<double> sums(const std::vector<double>& factors, const std::vector<double>& table,
                            std::size_t length) const;
+  std::vector<std::size_t> places_that_matter() const;
   std::vector<double> predictives() const;
   std::vector<double> kept_entropies() const;
   std::vector<double> marginal(Parameter parameter) const;

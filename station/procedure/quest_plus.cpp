@@ -7,7 +7,8 @@
 
 namespace turnpoint::procedure {
 
-QuestPlus::QuestPlus(const Spec& spec) : spec_(spec), posterior_(spec), stimulus_(chosen()) {}
+QuestPlus::QuestPlus(const Spec& spec)
+    : spec_(spec), posterior_(spec), stimulus_(chosen()), ended_(how_ended()) {}
 
 std::size_t QuestPlus::chosen() const {
   if (spec_.kind == Kind::zest)
@@ -32,7 +33,7 @@ bool QuestPlus::rules_met() const {
          (!stop.entropy_nats || by_entropy);
 }
 
-Ended QuestPlus::ended() const {
+Ended QuestPlus::how_ended() const {
   if (rules_met()) return Ended::rule;
   if (recorded_ + spent_ >= most_trials(spec_.stop)) return Ended::most;
   const bool counted = spec_.stop.trials && spec_.stop.rule == StopRule::any;
@@ -40,7 +41,7 @@ Ended QuestPlus::ended() const {
 }
 
 std::optional<Proposal> QuestPlus::next() const {
-  if (ended() != Ended::no) return std::nullopt;
+  if (ended_ != Ended::no) return std::nullopt;
   const auto& stimulus = posterior_.stimuli()[stimulus_];
   return Proposal{stimulus.level, spec_.second ? std::optional(stimulus.second) : std::nullopt, {}};
 }
@@ -48,6 +49,7 @@ std::optional<Proposal> QuestPlus::next() const {
 void QuestPlus::record(Answer answer) {
   if (answer == Answer::none) {
     if (++unanswered_ > kRepeatsInARow) unanswered_ = 0, ++spent_;
+    ended_ = how_ended();
     return;
   }
   unanswered_ = 0;
@@ -56,6 +58,7 @@ void QuestPlus::record(Answer answer) {
   posterior_.update(stimulus_, one);
   history_.push_back(2 * stimulus_ + (one ? 1 : 0));
   stimulus_ = chosen();
+  ended_ = how_ended();
 }
 
 int QuestPlus::expected() const { return std::max(spec_.stop.trials.value_or(60), recorded_ + spent_); }

@@ -19,7 +19,7 @@ class QuestPlus : public Procedure {
   void record(Answer answer) override;
   int recorded() const override { return recorded_; }
   int expected() const override;
-  Ended ended() const override;
+  Ended ended() const override { return ended_; }
   std::optional<texts::Phrase> end() const override {
     return end_in_words(ended(), spec_.name, recorded_ + spent_);
   }
@@ -30,6 +30,7 @@ class QuestPlus : public Procedure {
 
  private:
   bool rules_met() const;
+  Ended how_ended() const;
   std::size_t chosen() const;  ///< index of the stimulus to present next
 
   Spec spec_;
@@ -37,6 +38,7 @@ class QuestPlus : public Procedure {
   std::size_t stimulus_ = 0;
   int recorded_ = 0, unanswered_ = 0, spent_ = 0;
   std::vector<std::uint64_t> history_;  ///< index of the stimulus, and the answer, of each answered trial
+  Ended ended_ = Ended::no;             ///< computed after each trial, because the rules ask the posterior
 };
 
 }  // namespace turnpoint::procedure

@@ -66,7 +66,6 @@ struct Solution {
   /// the tones' frequencies by the chosen model, rounded to 1 / kGridPerHz
   std::vector<double> frequencies_Hz;
   std::vector<physics::ToneField> fields;
-  std::vector<std::optional<double>> resonances_Hz;
   double uncertainty_m = 0;
   std::vector<physics::Warning> warnings;
 };
@@ -171,8 +170,6 @@ Solution Planner::State::solve(const Scene& scene, const std::vector<WantedTone>
   }
   solution.fields = physics::evaluate_tones(surface, tones, physics::linspace_points(surface, profile_points),
                                             at_least_mode(solution.choice.model), physics::Normalise::none);
-  for (const auto& tone : tones)
-    solution.resonances_Hz.push_back(physics::nearest_resonance_Hz(surface, tone.frequency_Hz));
   solution.uncertainty_m = boundary_uncertainty_m(surface, scene, wanted);
   solution.warnings = physics::tone_warnings(surface, tones);
   return solution;
@@ -201,7 +198,6 @@ void Planner::State::drive(DrivePlan& plan, const std::vector<Tone>& tones, cons
     driven.phase_rad = tone.phase_rad;
     driven.turning_point_m = info.turning_point_m;
     driven.last_peak_m = info.last_peak_m;
-    driven.nearest_resonance_Hz = solution.resonances_Hz[i];
     driven.gain = info.gain;
     driven.displacement_m = info.gain * tone.amplitude_m;
     assign_transducer(rig, driven);
@@ -370,6 +366,12 @@ Planner::Profile Planner::profile(const DrivePlan& plan, int points) {
   profile.friction =
       physics::fingertip_average(profile.x_m, profile.friction, state_->rig.friction.fingertip_m);
   return profile;
+}
+
+std::optional<double> Planner::nearest_resonance_Hz(const DrivePlan& plan, double frequency_Hz) {
+  if (state_->rig.surface.plate_theory == rig::PlateTheory::automatic)
+    return by_theory(plan.theory).nearest_resonance_Hz(plan, frequency_Hz);
+  return physics::nearest_resonance_Hz(state_->surface, frequency_Hz);
 }
 
 UnderFinger Planner::under_finger(const DrivePlan& plan) {

@@ -37,7 +37,7 @@ struct DrivenTone {
   /// phase at the converter: `phase_rad` minus the phase shift of the transducer
   double output_phase_rad = 0;
   std::optional<double> boundary_m;  ///< where the boundary would be with this tone alone
-  std::optional<double> turning_point_m, last_peak_m, nearest_resonance_Hz;
+  std::optional<double> turning_point_m, last_peak_m;
   /// peak displacement at the tone's last maximum, or the largest peak displacement if there is no maximum
   double displacement_m = 0;
   double gain = 0;
@@ -121,6 +121,10 @@ class Planner {
     std::vector<double> x_m, displacement_m, friction;
   };
   Profile profile(const DrivePlan& plan, int points);
+
+  /// The resonance that is nearest to one of the plan's frequencies, by the plan's theory. Takes some 20 ms
+  /// on a thick plate.
+  std::optional<double> nearest_resonance_Hz(const DrivePlan& plan, double frequency_Hz);
 
   /// Computes the plan's scene under a finger. Takes some 100 ms; on a thick plate 1 s per tone.
   UnderFinger under_finger(const DrivePlan& plan);

@@ -1,8 +1,12 @@
 #pragma once
+#include <map>
+#include <mutex>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "physics/model.hpp"
+#include "physics/surface.hpp"
 #include "physics/tone.hpp"
 #include "station/rig/rig.hpp"
 
@@ -22,6 +26,22 @@ struct SoundBound {
 /// tone, or if the surface is too wide for the bound to hold (see physics::loudest_sound()).
 std::optional<SoundBound> sound_bound(const rig::Rig& rig, std::span<const physics::Tone> tones,
                                       physics::Model model);
+
+/// sound_bound() for many sets of tones on one rig. The level of a tone is proportional to its amplitude, so
+/// the level of each frequency is computed once for each model. Several threads may call it.
+class ToneLevels {
+ public:
+  explicit ToneLevels(const rig::Rig& rig);
+  std::optional<SoundBound> bound(std::span<const physics::Tone> tones, physics::Model model);
+
+ private:
+  double level_dB(const physics::Tone& tone, physics::Model model);
+
+  physics::Surface surface_;
+  std::mutex mutex_;
+  /// level of a displacement of one metre of the drive edge, by frequency (Hz) and model
+  std::map<std::pair<double, physics::Model>, double> known_;
+};
 
 /// Distance from the surface at which sound_bound() computes the level. The participant's ear must not be
 /// closer to the surface.

@@ -186,46 +186,104 @@ void check_runs(const Protocol& protocol, int sessions, const std::stop_token& s
   }
 }
 
-/// Simulates this number of sessions, divided equally among the protocol's different visits.
-void estimate(const Protocol& protocol, int sessions, const std::stop_token& stop, const Steps& steps,
-              Check& check) {
+/// The number of sessions of each visit in the first round, if the protocol has this many visits. Fewer than
+/// 20 would say nothing about one session in twenty.
+int first_round(int visits, int most) { return std::min(std::clamp(120 / visits, 20, 40), most); }
+
+/// True if the stated range is known well enough.
+bool is_precise(const Spread& spread) { return spread.error <= kLengthPrecision * spread.median; }
+
+/// Simulates this number of sessions, divided equally among the protocol's different visits. Without a
+/// number, simulates rounds of sessions, each as many as before, until the length of the longest session is
+/// precise.
+void estimate(const Protocol& protocol, std::optional<int> sessions, const std::stop_token& stop,
+              const Steps& steps, Check& check) {
   const auto visits = protocol::different_visits(protocol);
   const int count = static_cast<int>(visits.size());
-  const int each = sessions == 0 ? 0 : std::max(1, sessions / count);
-  std::vector<Estimate> estimates(static_cast<std::size_t>(each * count));
-  const int done = in_parallel(
-      each * count, processors(), steps.counted("simulated sessions"),
-      [&](int i) {
-        if (stop.stop_requested()) throw protocol::Abandoned();
-        estimates[static_cast<std::size_t>(i)] = simulate(
-            protocol, visits[static_cast<std::size_t>(i % count)], static_cast<std::uint64_t>(i / count));
-      },
-      steps.finish);
-  for (int v = 0; v < count; ++v) {
-    std::vector<Estimate> mine;
-    for (int i = v; i < done; i += count) mine.push_back(std::move(estimates[static_cast<std::size_t>(i)]));
-    add_visit(mine, check);
+  const int most = std::max(1, sessions.value_or(kMostSessions) / count);
+  int each = sessions == 0 ? 0 : sessions ? most : first_round(count, most);
+  std::vector<Estimate> estimates;
+  for (int done = 0;;) {
+    estimates.resize(static_cast<std::size_t>(each * count));
+    const int before = done;
+    const auto progress = [&](int more, int) {
+      if (steps.progress) steps.progress("simulated sessions", before + more, each * count);
+    };
+    done += in_parallel(
+        each * count - before, processors(), progress,
+        [&](int k) {
+          if (stop.stop_requested()) throw protocol::Abandoned();
+          const int i = before + k;
+          estimates[static_cast<std::size_t>(i)] = simulate(
+              protocol, visits[static_cast<std::size_t>(i % count)], static_cast<std::uint64_t>(i / count));
+        },
+        steps.finish);
+    check.blocks.clear();
+    check.trials = check.duration_s = {};
+    for (int v = 0; v < count; ++v) {
+      std::vector<Estimate> mine;
+      for (int i = v; i < done; i += count) mine.push_back(estimates[static_cast<std::size_t>(i)]);
+      add_visit(mine, check);
+    }
+    check.simulated_sessions = done, check.wanted_sessions = each * count;
+    if (done < each * count || each >= most || (is_precise(check.trials) && is_precise(check.duration_s)))
+      return;
+    each = std::min(most, 2 * each);
   }
-  check.simulated_sessions = done, check.wanted_sessions = each * count;
 }
 
-std::optional<scene::SoundBound> loudest(const protocol::Survey& survey, const rig::Rig& rig,
-                                         const std::stop_token& stop, const Steps& steps) {
+/// A scene's sound, and the tones and the model of which it is.
+struct Sounding {
+  scene::SoundBound bound;
+  const protocol::Sight* sight = nullptr;
+
+  double excess_dB() const { return bound.level_dB - bound.allowed_dB; }
+};
+
+/// Returns the sound of each of the survey's scenes by the first mode alone; empty if one is not known.
+std::optional<std::vector<Sounding>> soundings(const protocol::Survey& survey, scene::ToneLevels& levels,
+                                               const std::stop_token& stop, const Steps& steps) {
   std::vector<std::optional<scene::SoundBound>> bounds(survey.sights.size());
   in_parallel(
       static_cast<int>(bounds.size()), processors(), steps.counted("sound levels computed"),
       [&](int i) {
         if (stop.stop_requested()) throw protocol::Abandoned();
-        const auto& sight = survey.sights[static_cast<std::size_t>(i)];
-        bounds[static_cast<std::size_t>(i)] = scene::sound_bound(rig, sight.tones, sight.field_model);
+        const auto k = static_cast<std::size_t>(i);
+        bounds[k] = levels.bound(survey.sights[k].tones, physics::Model::mode);
       },
       steps.finish);
-  std::optional<scene::SoundBound> most;
-  for (const auto& bound : bounds) {
-    if (!bound) return std::nullopt;
-    if (!most || bound->level_dB - bound->allowed_dB > most->level_dB - most->allowed_dB) most = bound;
+  std::vector<Sounding> all;
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    if (!bounds[i]) return std::nullopt;
+    all.push_back({*bounds[i], &survey.sights[i]});
   }
-  return most;
+  return all;
+}
+
+/// Returns the loudest of the survey's scenes. A scene that was planned with all modes is computed with all
+/// modes only if it can be the loudest one: if its level by the first mode alone, with twice the largest
+/// difference between the two that was seen so far and a margin, is not below the loudest level so far.
+std::optional<scene::SoundBound> loudest(const protocol::Survey& survey, const rig::Rig& rig,
+                                         const std::stop_token& stop, const Steps& steps) {
+  constexpr double margin_dB = 0.05;
+  scene::ToneLevels levels(rig);
+  auto all = soundings(survey, levels, stop, steps);
+  if (!all || all->empty()) return std::nullopt;
+  std::stable_sort(all->begin(), all->end(),
+                   [](const Sounding& a, const Sounding& b) { return a.excess_dB() > b.excess_dB(); });
+  std::optional<Sounding> most;
+  double difference_dB = 0;
+  for (auto& one : *all) {
+    if (stop.stop_requested()) throw protocol::Abandoned();
+    const double before_dB = one.excess_dB();
+    if (most && before_dB + 2 * difference_dB + margin_dB < most->excess_dB()) break;
+    const auto bound = levels.bound(one.sight->tones, one.sight->field_model);
+    if (!bound) return std::nullopt;
+    one.bound = *bound;
+    difference_dB = std::max(difference_dB, std::abs(one.excess_dB() - before_dB));
+    if (!most || one.excess_dB() > most->excess_dB()) most = one;
+  }
+  return most->bound;
 }
 
 std::optional<scene::FingerShares> shares(const protocol::Survey& survey, const rig::Rig& rig) {
@@ -263,11 +321,21 @@ Spread spread_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   // Of n sorted values, the k-th is an estimate of the quantile k / (n + 1).
   const auto last = static_cast<long>(values.size()) - 1;
-  const auto at = [&](double share) {
-    const auto k = std::lround(share * static_cast<double>(last + 2)) - 1;
-    return values[static_cast<std::size_t>(std::clamp(k, 0L, last))];
+  const auto count = static_cast<double>(values.size());
+  const auto at = [&](double rank) {
+    return values[static_cast<std::size_t>(std::clamp(std::lround(rank) - 1, 0L, last))];
   };
-  return {at(0.05), at(0.5), at(0.95)};
+  // The number of values below a quantile is binomial, so two of its standard deviations say between which
+  // values the quantile lies.
+  double error = 0;
+  const auto quantile = [&](double share) {
+    const double rank = share * (count + 1), away = 2 * std::sqrt(count * share * (1 - share));
+    const double value = at(rank);
+    error = std::max({error, value - at(rank - away), at(rank + away) - value});
+    return value;
+  };
+  const double low = quantile(0.05), median = quantile(0.5), high = quantile(0.95);
+  return {low, median, high, error};
 }
 
 SessionLength session_length(const Protocol& protocol, std::uint64_t seed) {
@@ -275,16 +343,10 @@ SessionLength session_length(const Protocol& protocol, std::uint64_t seed) {
   return {estimate.sum(), estimate.duration_s};
 }
 
-int usual_sessions(const Protocol& protocol) {
-  double most = 0;  // combinations that a procedure evaluates in each trial
-  for (const auto& spec : protocol.procedures) {
-    double combinations = static_cast<double>(spec.stimuli.values.size());
-    for (const auto* grid : {&spec.threshold, &spec.slope, &spec.guess, &spec.lapse})
-      combinations *= static_cast<double>(std::max<std::size_t>(1, grid->values.size()));
-    most = std::max(most, combinations);
-  }
-  constexpr double quick = 4e4;  // evaluating this many combinations takes about half a millisecond
-  return most > quick ? 200 : 1000;
+Check session_lengths(const Protocol& protocol, std::optional<int> sessions) {
+  Check check;
+  estimate(protocol, sessions, {}, {}, check);
+  return check;
 }
 
 Check check(const std::string& protocol_path, const std::string& rig_path, const CheckOptions& options,
@@ -322,7 +384,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   if (rig::largest_trigger_code(*rig) > 0) check.triggers = protocol::trigger_codes(*protocol);
   try {
     const auto& finish = options.steps.finish;
-    estimate(*protocol, options.sessions.value_or(usual_sessions(*protocol)), stop, options.steps, check);
+    estimate(*protocol, options.sessions, stop, options.steps, check);
     if (stop.stop_requested()) throw protocol::Abandoned();
     check_runs(*protocol, std::min(200, options.sessions.value_or(200)), stop, options.steps, check);
     if (check.problems.empty()) {

@@ -17,9 +17,10 @@
 namespace turnpoint::simulation {
 
 /// The median of a number over simulated sessions, and the 5 % and 95 % quantiles, between which nine of ten
-/// sessions lie.
+/// sessions lie. `error` is the Monte Carlo error: each of the three is within it of its value over all
+/// sessions in 95 % of cases; with fewer than 20 sessions it is too small.
 struct Spread {
-  double low = 0, median = 0, high = 0;
+  double low = 0, median = 0, high = 0, error = 0;
 };
 Spread spread_of(std::vector<double> values);  ///< all 0 if there are no values
 
@@ -30,9 +31,11 @@ struct SessionLength {
 };
 SessionLength session_length(const protocol::Protocol& protocol, std::uint64_t seed);
 
-/// The usual number of sessions to simulate for a Spread: 1000, or 200 if a trial takes long to plan. Between
-/// the quantiles of n sessions lie 90 % of all sessions, with a standard deviation of about 30 % / sqrt(n).
-int usual_sessions(const protocol::Protocol& protocol);
+/// If nobody says how many sessions are simulated, sessions are added until the errors of the number of
+/// trials and of the duration (Spread::error) are at most this fraction of their medians, up to this many
+/// sessions.
+inline constexpr double kLengthPrecision = 0.03;
+inline constexpr int kMostSessions = 1000;
 
 /// A block as a participant will run it.
 struct CheckedBlock {
@@ -83,8 +86,8 @@ struct Check {
 
 /// What `turnpoint check` computes besides planning every scene of the protocol.
 struct CheckOptions {
-  /// number of sessions to simulate, to estimate the number of trials and the duration; 0: none; empty: as
-  /// many as usual_sessions() says
+  /// number of sessions to simulate, to estimate the number of trials and the duration; 0: none; empty: until
+  /// both are known to kLengthPrecision
   std::optional<int> sessions;
   /// also compute the upper limit of the airborne sound level, which takes about 10 ms per tone
   bool sound = false;
@@ -102,6 +105,9 @@ struct CheckOptions {
   /// reads the protocol file; a caller that has its text applies it here
   std::function<protocol::Protocol(const std::string& path)> load_protocol = protocol::load;
 };
+
+/// Returns a Check with blocks, trials, duration_s and the numbers of sessions only.
+Check session_lengths(const protocol::Protocol& protocol, std::optional<int> sessions = {});
 
 /// Reads and checks both files as `run` would. Throws std::system_error if one cannot be read, and
 /// protocol::Abandoned soon after `stop` is requested, or if steps.finish is requested while the scenes are
