@@ -76,7 +76,7 @@ if(TURNPOINT_PYTHON)
   set(CPACK_DEBIAN_PYTHON_DESCRIPTION
       "Reads sessions, studies and recorded signals of a Turnpoint station as pandas\nframes, from a database or from an export. Its module physics computes the\nwaves on tapered friction displays, with NumPy arrays.")
   set(python_doc share/doc/python3-turnpoint)
-  install(FILES deploy/debian/copyright station/python/README.md physics/python/the-seed.ipynb station/python/a-study.ipynb
+  install(FILES deploy/debian/copyright station/python/README.md physics/python/the-seed.ipynb station/python/a-study.ipynb station/python/speed-accuracy.ipynb
           DESTINATION ${python_doc} COMPONENT python)
   install(FILES ${CMAKE_BINARY_DIR}/changelog.gz DESTINATION ${python_doc} COMPONENT python)
   install(FILES deploy/debian/python-lintian-overrides DESTINATION share/lintian/overrides RENAME python3-turnpoint COMPONENT python)

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "station/analysis/first_passage.hpp"
+#include "station/analysis/proportion.hpp"
 #include "station/analysis/quantile.hpp"
 #include "station/random/draws.hpp"
 #include "station/text/number.hpp"
@@ -27,10 +28,6 @@ constexpr int kPosteriorDraws = 1000, kAdaptations = 4;
 constexpr double kEnoughDraws = 400;  // effective draws that end the adaptation
 constexpr int kFewestAnswers = 10;    // answers
 
-/// The parameters as the search sees them, unbounded: logarithm of the boundary and of the non-decision time,
-/// logit of the proportion of contaminants, then the drifts; all with s = 1.
-enum Index { kBoundary, kNondecision, kContaminants, kFirstDrift };
-
 double log_add(double a, double b) {
   if (a < b) std::swap(a, b);
   return std::isinf(b) ? a : a + std::log1p(std::exp(b - a));
@@ -40,11 +37,29 @@ double log_add(double a, double b) {
 /// half of them guess, half decide but answer at another time.
 double contaminant_share(double decisions) { return 0.25 + 0.5 * decisions; }
 
-/// The negative logarithm of the posterior density of the parameters.
+constexpr double kDriftSdPrior = 2, kRangePrior_s = 0.2;  // with s = 1
+
+/// The parameters that all difficulties share, with s = 1.
+struct Shared {
+  double boundary = 1, nondecision_s = 0, contaminants = 0, start = 0.5, drift_sd = 0, range_s = 0;
+
+  Diffusion diffusion(double drift) const { return {drift, boundary, start, drift_sd, range_s}; }
+};
+
+/// The negative logarithm of the posterior density (or of the likelihood) over the parameters as the search
+/// sees them: the shared ones, unbounded, then the drifts. It is a sum over the difficulties, and each drift
+/// concerns one of them only, which derivatives make use of.
 class Posterior {
  public:
-  Posterior(const std::vector<DiffusionTrial>& trials, std::size_t difficulties)
-      : difficulties_(difficulties) {
+  Posterior(const std::vector<DiffusionTrial>& trials, std::size_t difficulties,
+            const DiffusionOptions& options)
+      : options_(options), answers_(difficulties), censored_(difficulties) {
+    Eigen::Index next = kContaminants;
+    contaminants_ = options.contaminants ? next++ : 0;
+    start_ = options.start ? next++ : 0;
+    drift_sd_ = options.drift_varies ? next++ : 0;
+    range_ = options.nondecision_varies ? next++ : 0;
+    first_drift_ = next;
     double longest = 0;
     for (const auto& trial : trials)
       if (trial.outcome == DiffusionTrial::Outcome::answered) longest = std::max(longest, trial.time_s);
@@ -52,91 +67,181 @@ class Posterior {
     for (const auto& trial : trials) {
       const double window = trial.deadline_s ? 2 * std::max(*trial.deadline_s, trial.time_s) : longest;
       if (trial.outcome == DiffusionTrial::Outcome::answered)
-        answers_.push_back({trial.difficulty, trial.correct, trial.time_s, -std::log(window)});
+        answers_[trial.difficulty].push_back({trial.correct, trial.time_s, -std::log(window)});
       else
         ++rest[{static_cast<double>(trial.difficulty),
                 trial.outcome == DiffusionTrial::Outcome::late ? 1.0 : 0.0, trial.time_s, window}];
     }
     for (const auto& [what, count] : rest)
-      censored_.push_back(
-          {static_cast<std::size_t>(what[0]), what[1] > 0, what[2],
+      censored_[static_cast<std::size_t>(what[0])].push_back(
+          {what[1] > 0, what[2],
            std::log(std::clamp(what[1] > 0 ? 1 - what[2] / what[3] : what[2] / what[3], 1e-9, 1.0)), count});
   }
 
-  std::size_t size() const { return kFirstDrift + difficulties_; }
+  static constexpr Eigen::Index kBoundary = 0, kNondecision = 1, kContaminants = 2;
+  static constexpr double kImpossible = 1e100;
+
+  Eigen::Index first_drift() const { return first_drift_; }
+  Eigen::Index size() const { return first_drift_ + static_cast<Eigen::Index>(answers_.size()); }
+
+  Shared shared(const Vector& theta) const {
+    const auto share = [](double logit) { return 1 / (1 + std::exp(-logit)); };
+    Shared at;
+    at.boundary = std::exp(theta[kBoundary]), at.nondecision_s = std::exp(theta[kNondecision]);
+    if (contaminants_) at.contaminants = share(theta[contaminants_]);
+    if (start_) at.start = share(theta[start_]);
+    if (drift_sd_) at.drift_sd = std::exp(theta[drift_sd_]);
+    if (range_) at.range_s = std::exp(theta[range_]);
+    return at;
+  }
+
+  Vector unbounded(const Shared& at, const std::vector<double>& drift) const {
+    const auto logit = [](double p) { return std::log(p / (1 - p)); };
+    Vector theta(size());
+    theta[kBoundary] = std::log(at.boundary), theta[kNondecision] = std::log(at.nondecision_s);
+    if (contaminants_) theta[contaminants_] = logit(at.contaminants);
+    if (start_) theta[start_] = logit(at.start);
+    if (drift_sd_) theta[drift_sd_] = std::log(at.drift_sd);
+    if (range_) theta[range_] = std::log(at.range_s);
+    for (std::size_t i = 0; i < drift.size(); ++i)
+      theta[first_drift_ + static_cast<Eigen::Index>(i)] = drift[i];
+    return theta;
+  }
 
   double operator()(const Vector& theta) const {
-    const double a = std::exp(theta[kBoundary]), ter = std::exp(theta[kNondecision]);
-    const double share = 1 / (1 + std::exp(-theta[kContaminants]));
-    if (!(a > 1e-3 && a < 1e3 && ter < 1e3 && share > 1e-12 && share < 1)) return kImpossible;
-    const double log_share = std::log(share), log_rest = std::log1p(-share);
-    double sum = log_share + kContaminantPrior * log_rest + theta[kNondecision];
-    for (std::size_t i = 0; i < difficulties_; ++i) {
-      const double v = theta[static_cast<Eigen::Index>(kFirstDrift + i)];
+    double sum = shared_part(theta);
+    for (std::size_t i = 0; i < answers_.size() && sum < kImpossible; ++i) sum += part(theta, i);
+    return std::isfinite(sum) && sum < kImpossible ? sum : kImpossible;
+  }
+
+  double log_likelihood(const Vector& theta) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < answers_.size(); ++i) sum += likelihood(theta, i);
+    return sum;
+  }
+
+  /// The prior of the shared parameters, on the scale of the search.
+  double shared_part(const Vector& theta) const {
+    const auto at = shared(theta);
+    if (!(at.boundary > 1e-3 && at.boundary < 1e3 && at.nondecision_s < 1e3 && at.drift_sd < 1e3 &&
+          at.range_s < 1e3 && at.start > 1e-9 && at.start < 1 - 1e-9))
+      return kImpossible;
+    if (contaminants_ && !(at.contaminants > 1e-12 && at.contaminants < 1)) return kImpossible;
+    if (options_.method == DiffusionOptions::Method::likelihood) return 0;
+    double sum = theta[kNondecision];
+    if (contaminants_)
+      sum += std::log(at.contaminants) + kContaminantPrior * std::log1p(-at.contaminants);
+    if (start_) sum += 2 * std::log(at.start * (1 - at.start));
+    if (drift_sd_) sum += theta[drift_sd_] - 0.5 * std::pow(at.drift_sd / kDriftSdPrior, 2);
+    if (range_) sum += theta[range_] - 0.5 * std::pow(at.range_s / kRangePrior_s, 2);
+    return -sum;
+  }
+
+  /// What the answers to one difficulty and the prior of its drift contribute.
+  double part(const Vector& theta, std::size_t difficulty) const {
+    double sum = likelihood(theta, difficulty);
+    if (options_.method == DiffusionOptions::Method::posterior) {
+      const double v = theta[first_drift_ + static_cast<Eigen::Index>(difficulty)];
       sum -= v * v / (2 * kDriftPriorSd * kDriftPriorSd);
-    }
-    std::vector<double> right;
-    for (std::size_t i = 0; i < difficulties_; ++i)
-      right.push_back(upper_probability({theta[static_cast<Eigen::Index>(kFirstDrift + i)], a, 0.5}));
-    for (const auto& answer : answers_) {
-      const Diffusion d{theta[static_cast<Eigen::Index>(kFirstDrift + answer.difficulty)], a, 0.5};
-      const double p = right[answer.difficulty];
-      sum += log_add(
-          log_rest + log_density(d, answer.correct, answer.time_s - ter),
-          log_share + answer.log_contaminant + std::log(contaminant_share(answer.correct ? p : 1 - p)));
-    }
-    for (const auto& trial : censored_) {
-      const Diffusion d{theta[static_cast<Eigen::Index>(kFirstDrift + trial.difficulty)], a, 0.5};
-      const double survival = log_survival(d, trial.time_s - ter);
-      const double decision = trial.late ? survival : std::log(std::max(-std::expm1(survival), 1e-300));
-      sum += trial.count * log_add(log_rest + decision, log_share + trial.log_contaminant);
     }
     return std::isfinite(sum) ? -sum : kImpossible;
   }
 
-  static constexpr double kImpossible = 1e100;
-
  private:
   struct Answer {
-    std::size_t difficulty;
     bool correct;
     double time_s, log_contaminant;
   };
   struct Censored {
-    std::size_t difficulty;
     bool late;
     double time_s, log_contaminant, count;
   };
-  std::size_t difficulties_;
-  std::vector<Answer> answers_;
-  std::vector<Censored> censored_;
+
+  double likelihood(const Vector& theta, std::size_t difficulty) const {
+    const auto at = shared(theta);
+    const Diffusion d = at.diffusion(theta[first_drift_ + static_cast<Eigen::Index>(difficulty)]);
+    double sum = 0;
+    if (!contaminants_) {
+      for (const auto& answer : answers_[difficulty])
+        sum += log_density(d, answer.correct, answer.time_s - at.nondecision_s);
+      for (const auto& trial : censored_[difficulty]) sum += trial.count * undecided(d, trial, at);
+      return sum;
+    }
+    const double log_share = std::log(at.contaminants), log_rest = std::log1p(-at.contaminants);
+    const double p = upper_probability(d);
+    for (const auto& answer : answers_[difficulty])
+      sum += log_add(
+          log_rest + log_density(d, answer.correct, answer.time_s - at.nondecision_s),
+          log_share + answer.log_contaminant + std::log(contaminant_share(answer.correct ? p : 1 - p)));
+    for (const auto& trial : censored_[difficulty])
+      sum += trial.count *
+             log_add(log_rest + undecided(d, trial, at), log_share + trial.log_contaminant);
+    return sum;
+  }
+  static double undecided(const Diffusion& d, const Censored& trial, const Shared& at) {
+    const double survival = log_survival(d, trial.time_s - at.nondecision_s);
+    return trial.late ? survival : std::log(std::max(-std::expm1(survival), 1e-300));
+  }
+
+  DiffusionOptions options_;
+  Eigen::Index contaminants_ = 0, start_ = 0, drift_sd_ = 0, range_ = 0, first_drift_ = 0;  // 0: not fitted
+  std::vector<std::vector<Answer>> answers_;  // by difficulty
+  std::vector<std::vector<Censored>> censored_;
 };
 
-Vector gradient(const Posterior& f, const Vector& at) {
-  Vector result(at.size());
-  Vector x = at;
-  for (Eigen::Index i = 0; i < at.size(); ++i) {
+/// The gradient of f over these entries of `at`, by central differences.
+template <class F>
+Vector gradient_over(const F& f, const Vector& at, const std::vector<Eigen::Index>& entries) {
+  Vector result(static_cast<Eigen::Index>(entries.size())), x = at;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
     constexpr double step = 1e-5;
-    x[i] = at[i] + step;
+    const auto k = entries[i];
+    x[k] = at[k] + step;
     const double up = f(x);
-    x[i] = at[i] - step;
-    result[i] = (up - f(x)) / (2 * step);
-    x[i] = at[i];
+    x[k] = at[k] - step;
+    result[static_cast<Eigen::Index>(i)] = (up - f(x)) / (2 * step);
+    x[k] = at[k];
   }
+  return result;
+}
+
+/// Calls visit(f, entries) for each summand f of the posterior, with the parameters that it depends on.
+template <class Visit>
+void over_parts(const Posterior& f, std::size_t difficulties, const Visit& visit) {
+  std::vector<Eigen::Index> entries;
+  for (Eigen::Index k = 0; k < f.first_drift(); ++k) entries.push_back(k);
+  visit([&f](const Vector& x) { return f.shared_part(x); }, entries);
+  entries.push_back(0);
+  for (std::size_t i = 0; i < difficulties; ++i) {
+    entries.back() = f.first_drift() + static_cast<Eigen::Index>(i);
+    visit([&f, i](const Vector& x) { return f.part(x, i); }, entries);
+  }
+}
+
+Vector gradient(const Posterior& f, const Vector& at) {
+  Vector result = Vector::Zero(at.size());
+  over_parts(f, static_cast<std::size_t>(at.size() - f.first_drift()), [&](const auto& part, const auto& entries) {
+    const Vector some = gradient_over(part, at, entries);
+    for (std::size_t i = 0; i < entries.size(); ++i) result[entries[i]] += some[static_cast<Eigen::Index>(i)];
+  });
   return result;
 }
 
 Matrix hessian(const Posterior& f, const Vector& at) {
   constexpr double step = 1e-3;
-  Matrix result(at.size(), at.size());
-  Vector x = at;
-  for (Eigen::Index i = 0; i < at.size(); ++i) {
-    x[i] = at[i] + step;
-    const Vector up = gradient(f, x);
-    x[i] = at[i] - step;
-    result.col(i) = (up - gradient(f, x)) / (2 * step);
-    x[i] = at[i];
-  }
+  Matrix result = Matrix::Zero(at.size(), at.size());
+  over_parts(f, static_cast<std::size_t>(at.size() - f.first_drift()), [&](const auto& part, const auto& entries) {
+    Vector x = at;
+    for (const auto k : entries) {
+      x[k] = at[k] + step;
+      const Vector up = gradient_over(part, x, entries);
+      x[k] = at[k] - step;
+      const Vector change = (up - gradient_over(part, x, entries)) / (2 * step);
+      for (std::size_t i = 0; i < entries.size(); ++i)
+        result(entries[i], k) += change[static_cast<Eigen::Index>(i)];
+      x[k] = at[k];
+    }
+  });
   return (result + result.transpose()) / 2;
 }
 
@@ -147,7 +252,7 @@ Vector mode_from(const Posterior& f, Vector x) {
   Matrix inverse = Matrix::Identity(n, n) * 1e-2;
   double value = f(x);
   Vector slope = gradient(f, x);
-  for (int round = 0; round < 200; ++round) {
+  for (int round = 0; round < 400; ++round) {
     Vector direction = -inverse * slope;
     if (!(direction.dot(slope) < 0)) {
       inverse = Matrix::Identity(n, n) * 1e-2;
@@ -177,7 +282,9 @@ Vector mode_from(const Posterior& f, Vector x) {
   return x;
 }
 
-Vector start_of(const std::vector<DiffusionTrial>& trials, std::size_t difficulties) {
+/// A place from which the search can begin, with s = 1.
+std::pair<Shared, std::vector<double>> start_of(const std::vector<DiffusionTrial>& trials,
+                                                std::size_t difficulties) {
   std::vector<double> right, all;
   std::vector<int> answered(difficulties), correct(difficulties);
   for (const auto& trial : trials) {
@@ -196,16 +303,16 @@ Vector start_of(const std::vector<DiffusionTrial>& trials, std::size_t difficult
                                      static_cast<int>(all.size()), mean(right), variance(right));
         ez && ez->nondecision_s > 0.1 * early && ez->nondecision_s < early)
       start = *ez;
-  Vector x(static_cast<Eigen::Index>(kFirstDrift + difficulties));
-  const double a = start.boundary / kDiffusionScale;
-  x[kBoundary] = std::log(a);
-  x[kNondecision] = std::log(std::max(std::min(start.nondecision_s, 0.9 * early), 1e-3));
-  x[kContaminants] = std::log(0.02 / 0.98);
+  Shared at;
+  at.boundary = start.boundary / kDiffusionScale;
+  at.nondecision_s = std::max(std::min(start.nondecision_s, 0.9 * early), 1e-3);
+  at.contaminants = 0.02, at.drift_sd = 0.5, at.range_s = 0.2 * at.nondecision_s;
+  std::vector<double> drift;
   for (std::size_t i = 0; i < difficulties; ++i) {
     const double p = (correct[i] + 0.5) / (answered[i] + 1.0);
-    x[static_cast<Eigen::Index>(kFirstDrift + i)] = std::clamp(std::log(p / (1 - p)) / a, -6.0, 6.0);
+    drift.push_back(std::clamp(std::log(p / (1 - p)) / at.boundary, -6.0, 6.0));
   }
-  return x;
+  return {at, drift};
 }
 
 /// Weighted draws from the posterior.
@@ -313,42 +420,72 @@ std::optional<DiffusionParameters> ez_diffusion(double proportion_correct, int t
   return result;
 }
 
-DiffusionFit fit_diffusion(const std::vector<DiffusionTrial>& trials, std::size_t difficulties,
-                           std::uint64_t seed, int stream, double confidence) {
-  DiffusionFit result;
-  const auto answers = std::count_if(trials.begin(), trials.end(), [](const auto& trial) {
-    return trial.outcome == DiffusionTrial::Outcome::answered;
-  });
-  if (answers < kFewestAnswers) {
-    result.statements.push_back(
-        {"diffusion-too-few", texts::phrase("statement.diffusion_too_few", {texts::plain(kFewestAnswers)})});
-    return result;
-  }
-  const Posterior posterior(trials, difficulties);
-  auto centre = mode_from(posterior, start_of(trials, difficulties));
+namespace {
+
+/// The mode of a posterior and the inverse of its curvature there.
+struct Mode {
+  Vector at;
   Matrix covariance;
-  {
-    Matrix curvature = hessian(posterior, centre);
-    for (double ridge = 0;; ridge = ridge == 0 ? 1e-3 : ridge * 10) {
-      const Eigen::LLT<Matrix> factor(curvature +
-                                      ridge * Matrix::Identity(curvature.rows(), curvature.cols()));
-      if (factor.info() == Eigen::Success && ridge < 1e6) {
-        covariance = factor.solve(Matrix::Identity(curvature.rows(), curvature.cols()));
-        break;
-      }
-      if (!(ridge < 1e6)) {
-        covariance = 0.01 * Matrix::Identity(curvature.rows(), curvature.cols());
-        break;
-      }
-    }
-    // a nearly flat direction must not send most of the draws to where nothing is possible
-    for (Eigen::Index i = 0; i < covariance.rows(); ++i)
-      if (const double sd = std::sqrt(covariance(i, i)); sd > 2) {
-        covariance.row(i) *= 2 / sd;
-        covariance.col(i) *= 2 / sd;
-      }
+  bool curved = true;  ///< false if the curvature is not positive in all directions
+};
+
+Matrix covariance_at(const Posterior& posterior, const Vector& centre, bool& curved) {
+  const Matrix curvature = hessian(posterior, centre);
+  const Matrix one = Matrix::Identity(curvature.rows(), curvature.cols());
+  for (double ridge = 0; ridge < 1e6; ridge = ridge == 0 ? 1e-3 : ridge * 10) {
+    const Eigen::LLT<Matrix> factor(curvature + ridge * one);
+    if (factor.info() == Eigen::Success) return factor.solve(one);
+    curved = false;
   }
-  random::Draws draws({seed, random::Stream::bootstrap, 2000, stream, 0});
+  return 0.01 * one;
+}
+
+/// The maximum of the likelihood from the best of five starts, with a last step by Newton's method.
+Mode maximum(const Posterior& f, const Shared& start, const std::vector<double>& drift) {
+  Mode best;
+  double lowest = 2 * Posterior::kImpossible;
+  for (const double stretch : {1.0, 0.7, 1.4, 0.85, 1.2}) {
+    Shared from = start;
+    from.boundary *= stretch, from.nondecision_s *= std::min(1.0, 1.6 - 0.6 * stretch);
+    from.drift_sd *= stretch, from.range_s *= stretch;
+    std::vector<double> slower = drift;
+    for (auto& v : slower) v /= stretch;
+    const Vector found = mode_from(f, f.unbounded(from, slower));
+    if (const double value = f(found); value < lowest) lowest = value, best.at = found;
+  }
+  for (int round = 0; round < 3; ++round) {
+    best.curved = true;
+    best.covariance = covariance_at(f, best.at, best.curved);
+    const Vector next = best.at - best.covariance * gradient(f, best.at);
+    if (!(f(next) < f(best.at))) break;
+    best.at = next;
+  }
+  return best;
+}
+
+/// Draws from a normal distribution around the maximum.
+WeightedDraws normal_draws(const Mode& mode, random::Draws& draws) {
+  const Matrix root = mode.covariance.llt().matrixL();
+  WeightedDraws sample;
+  for (int i = 0; i < kPosteriorDraws; ++i) {
+    Vector z(mode.at.size());
+    for (Eigen::Index k = 0; k < z.size(); ++k) z[k] = draws.normal();
+    sample.at.push_back(mode.at + root * z);
+  }
+  sample.weight.assign(sample.at.size(), 1.0 / kPosteriorDraws);
+  sample.effective = kPosteriorDraws;
+  return sample;
+}
+
+WeightedDraws posterior_draws(const Posterior& posterior, const Vector& centre, random::Draws& draws) {
+  bool curved = true;
+  Matrix covariance = covariance_at(posterior, centre, curved);
+  // a nearly flat direction must not send most of the draws to where nothing is possible
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i)
+    if (const double sd = std::sqrt(covariance(i, i)); sd > 2) {
+      covariance.row(i) *= 2 / sd;
+      covariance.col(i) *= 2 / sd;
+    }
   WeightedDraws sample = draw(posterior, centre, 1.2 * covariance, draws);
   for (int round = 1; round < kAdaptations && sample.effective < kEnoughDraws; ++round) {
     Vector mean = Vector::Zero(centre.size());
@@ -360,31 +497,71 @@ DiffusionFit fit_diffusion(const std::vector<DiffusionTrial>& trials, std::size_
     if (again.effective > sample.effective) sample = std::move(again);
     covariance = spread;
   }
-  const auto log_boundary = estimate(sample, confidence, [](const Vector& x) { return x[kBoundary]; });
-  if (sample.effective < 30 || log_boundary.interval.high - log_boundary.interval.low > std::log(20)) {
+  return sample;
+}
+
+}  // namespace
+
+DiffusionFit fit_diffusion(const std::vector<DiffusionTrial>& trials, std::size_t difficulties,
+                           std::uint64_t seed, int stream, const DiffusionOptions& options) {
+  DiffusionFit result;
+  const auto answers = std::count_if(trials.begin(), trials.end(), [](const auto& trial) {
+    return trial.outcome == DiffusionTrial::Outcome::answered;
+  });
+  if (answers < kFewestAnswers) {
+    result.statements.push_back(
+        {"diffusion-too-few", texts::phrase("statement.diffusion_too_few", {texts::plain(kFewestAnswers)})});
+    return result;
+  }
+  const bool likelihood = options.method == DiffusionOptions::Method::likelihood;
+  const Posterior posterior(trials, difficulties, options);
+  const auto [start, drifts] = start_of(trials, difficulties);
+  Mode mode;
+  if (likelihood)
+    mode = maximum(posterior, start, drifts);
+  else
+    mode.at = mode_from(posterior, posterior.unbounded(start, drifts));
+  random::Draws draws({seed, random::Stream::bootstrap, 2000, stream, 0});
+  const WeightedDraws sample =
+      likelihood ? normal_draws(mode, draws) : posterior_draws(posterior, mode.at, draws);
+  const auto log_boundary =
+      estimate(sample, options.confidence, [](const Vector& x) { return x[Posterior::kBoundary]; });
+  if (!mode.curved || sample.effective < 30 ||
+      log_boundary.interval.high - log_boundary.interval.low > std::log(20)) {
     result.statements.push_back(
         {"diffusion-not-determined", texts::phrase("statement.diffusion_not_determined")});
     return result;
   }
   DiffusionEstimates found;
   found.effective_draws = sample.effective;
-  found.boundary =
-      estimate(sample, confidence, [](const Vector& x) { return kDiffusionScale * std::exp(x[kBoundary]); });
-  found.nondecision_s =
-      estimate(sample, confidence, [](const Vector& x) { return std::exp(x[kNondecision]); });
-  found.contaminants =
-      estimate(sample, confidence, [](const Vector& x) { return 1 / (1 + std::exp(-x[kContaminants])); });
-  for (std::size_t i = 0; i < difficulties; ++i)
-    found.drift.push_back(estimate(sample, confidence, [i](const Vector& x) {
-      return kDiffusionScale * x[static_cast<Eigen::Index>(kFirstDrift + i)];
-    }));
+  found.log_likelihood = posterior.log_likelihood(mode.at);
+  const double reach = normal_quantile(0.5 + options.confidence / 2);
+  // each number rises with one parameter and depends on no other
+  const auto add = [&](const auto& of) {
+    if (!likelihood) return estimate(sample, options.confidence, of);
+    const double value = of(mode.at);
+    Vector up = mode.at, down = mode.at;
+    const Vector sd = mode.covariance.diagonal().cwiseSqrt();
+    up += reach * sd, down -= reach * sd;
+    return Estimate{value, {of(down), of(up), options.confidence}};
+  };
+  const auto of_shared = [&](double Shared::*which, double scale = 1) {
+    return add([&posterior, which, scale](const Vector& x) { return scale * posterior.shared(x).*which; });
+  };
+  found.boundary = of_shared(&Shared::boundary, kDiffusionScale);
+  found.nondecision_s = of_shared(&Shared::nondecision_s);
+  found.contaminants = of_shared(&Shared::contaminants);
+  found.start = of_shared(&Shared::start);
+  found.drift_sd = of_shared(&Shared::drift_sd, kDiffusionScale);
+  found.nondecision_range_s = of_shared(&Shared::range_s);
+  const auto first = posterior.first_drift();
+  for (Eigen::Index k = first; k < posterior.size(); ++k)
+    found.drift.push_back(add([k](const Vector& x) { return kDiffusionScale * x[k]; }));
   for (const auto& x : equally_weighted(sample, draws.uniform())) {
-    DiffusionDraw one{kDiffusionScale * std::exp(x[kBoundary]),
-                      std::exp(x[kNondecision]),
-                      1 / (1 + std::exp(-x[kContaminants])),
-                      {}};
-    for (std::size_t i = 0; i < difficulties; ++i)
-      one.drift.push_back(kDiffusionScale * x[static_cast<Eigen::Index>(kFirstDrift + i)]);
+    const auto at = posterior.shared(x);
+    DiffusionDraw one{kDiffusionScale * at.boundary, at.nondecision_s, at.contaminants, at.start,
+                      kDiffusionScale * at.drift_sd, at.range_s, {}};
+    for (Eigen::Index k = first; k < posterior.size(); ++k) one.drift.push_back(kDiffusionScale * x[k]);
     found.draws.push_back(std::move(one));
   }
   result.estimates = std::move(found);
@@ -430,7 +607,8 @@ std::vector<Stratum> strata_of(const std::vector<DiffusionTrial>& trials) {
 
 /// The probability of an answer of this kind by `time_s` under the parameters of one draw.
 double answered_by(const DiffusionDraw& at, const Stratum& stratum, bool correct, double time_s) {
-  const Diffusion d{at.drift[stratum.difficulty] / kDiffusionScale, at.boundary / kDiffusionScale, 0.5};
+  const Diffusion d{at.drift[stratum.difficulty] / kDiffusionScale, at.boundary / kDiffusionScale, at.start,
+                    at.drift_sd / kDiffusionScale, at.nondecision_range_s};
   const double ever = correct ? upper_probability(d) : 1 - upper_probability(d);
   const double decided =
       std::isinf(time_s) ? ever : std::exp(log_distribution(d, correct, time_s - at.nondecision_s));
@@ -526,12 +704,16 @@ Expected expected_of(const Stratum& stratum, const std::vector<Bin>& bins, const
   return result;
 }
 
-/// The parameters of a draw, moved by a small step along one of them.
+/// The parameters of a draw, moved by a small step along one of them: six shared ones, then the drifts.
+constexpr std::size_t kSharedMoves = 6;
 DiffusionDraw moved(DiffusionDraw at, std::size_t which, double step) {
   if (which == 0) at.boundary *= 1 + step;
   if (which == 1) at.nondecision_s *= 1 + step;
   if (which == 2) at.contaminants = std::max(at.contaminants + step, 0.0);
-  if (which > 2) at.drift[which - 3] += kDiffusionScale * step;
+  if (which == 3) at.start += step;
+  if (which == 4) at.drift_sd *= 1 + step;
+  if (which == 5) at.nondecision_range_s *= 1 + step;
+  if (which >= kSharedMoves) at.drift[which - kSharedMoves] += kDiffusionScale * step;
   return at;
 }
 
@@ -584,7 +766,8 @@ PredictedAnswers predicted(const DiffusionDraw& at, const Stratum& stratum, bool
 
 DiffusionCheck check_diffusion(const std::vector<DiffusionTrial>& trials, const DiffusionEstimates& fitted,
                                std::uint64_t seed, int stream) {
-  DiffusionDraw at{fitted.boundary.value, fitted.nondecision_s.value, fitted.contaminants.value, {}};
+  DiffusionDraw at{fitted.boundary.value, fitted.nondecision_s.value, fitted.contaminants.value, fitted.start.value,
+                   fitted.drift_sd.value, fitted.nondecision_range_s.value, {}};
   for (const auto& drift : fitted.drift) at.drift.push_back(drift.value);
   const auto strata = strata_of(trials);
   std::vector<std::vector<Bin>> bins;
@@ -595,12 +778,14 @@ DiffusionCheck check_diffusion(const std::vector<DiffusionTrial>& trials, const 
     expected.push_back(expected_of(stratum, bins.back(), at));
     rows += expected.back().size;
   }
-  const std::size_t parameters = 3 + at.drift.size();
+  const std::size_t parameters = kSharedMoves + at.drift.size();
   Matrix jacobian = Matrix::Zero(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(parameters));
   Eigen::Index row = 0;
   for (std::size_t s = 0; s < strata.size(); ++s) {
     const auto& cells = expected[s];
     for (std::size_t k = 0; k < parameters; ++k) {
+      const auto fixed = [](const Estimate& one) { return one.interval.low == one.interval.high; };
+      if ((k == 2 && fixed(fitted.contaminants)) || (k == 3 && fixed(fitted.start))) continue;
       constexpr double step = 1e-4;
       const auto up = cells.joined(probabilities(moved(at, k, step), strata[s], bins[s])),
                  down = cells.joined(probabilities(moved(at, k, -step), strata[s], bins[s]));

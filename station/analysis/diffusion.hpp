@@ -39,15 +39,35 @@ struct DiffusionTrial {
 /// The parameters of one draw from the posterior distribution.
 struct DiffusionDraw {
   double boundary = 0, nondecision_s = 0;
-  double contaminants = 0;    ///< proportion of trials that were no decision
-  std::vector<double> drift;  ///< one for each difficulty
+  double contaminants = 0;           ///< proportion of trials that were no decision
+  double start = 0.5;                ///< relative start point, from wrong (0) to right (1)
+  double drift_sd = 0;               ///< of the drift between trials, s = 0.1
+  double nondecision_range_s = 0;    ///< the non-decision time varies from nondecision_s to this much more
+  std::vector<double> drift;         ///< one for each difficulty
+};
+
+/// What a fit estimates besides boundary, non-decision time and drifts, and how. The report fits contaminants
+/// only, because a session has too few trials for the others.
+struct DiffusionOptions {
+  bool contaminants = true;         ///< false: every trial was a decision
+  bool start = false;               ///< false: the process starts half-way
+  bool drift_varies = false;        ///< a standard deviation of the drift between trials
+  bool nondecision_varies = false;  ///< a range of the non-decision time between trials
+  enum class Method {
+    posterior,   ///< medians and central intervals of the posterior distribution
+    likelihood,  ///< the maximum of the likelihood, best of five starts, without priors; Wald intervals
+  } method = Method::posterior;
+  double confidence = 0.95;
 };
 
 struct DiffusionEstimates {
-  Estimate boundary, nondecision_s, contaminants;  ///< posterior medians and central intervals
-  std::vector<Estimate> drift;                     ///< one for each difficulty
-  std::vector<DiffusionDraw> draws;                ///< draws of equal weight
-  double effective_draws = 0;                      ///< number of independent draws that they are worth
+  Estimate boundary, nondecision_s;
+  std::vector<Estimate> drift;  ///< one for each difficulty
+  /// what the options ask for; else 0, 0.5, 0 and 0
+  Estimate contaminants, start, drift_sd, nondecision_range_s;
+  std::vector<DiffusionDraw> draws;  ///< draws of equal weight (Method::likelihood: normally distributed)
+  double effective_draws = 0;        ///< number of independent draws that they are worth
+  double log_likelihood = 0;         ///< at the mode, without priors; densities per s
 };
 
 struct DiffusionFit {
@@ -55,8 +75,7 @@ struct DiffusionFit {
   std::vector<Statement> statements;            ///< the reason
 };
 
-/// Fits a diffusion between two boundaries, which starts half-way, to all trials of one condition: correct
-/// and wrong answers with their times, answers that came too late or too early as what they are (censored),
+/// Fits a diffusion between two boundaries to all trials of one condition: correct and wrong answers with their times, answers that came too late or too early as what they are (censored),
 /// and a mixture with trials that were no decision. Boundary and non-decision time are shared by all
 /// difficulties; each difficulty has a drift of its own. Times are never trimmed: the mixture takes the place
 /// of an exclusion rule, which would change the shape of the distribution that is fitted.
@@ -65,12 +84,13 @@ struct DiffusionFit {
 /// looks away). Their times are uniform from 0 to twice the deadline; without a deadline, up to the longest
 /// time of the condition. Priors: uniform in the logarithm of the boundary and in
 /// the non-decision time above 0; normal with SD 1 per s (s = 0.1) for drifts; Beta(1, 19), mean 5 %, for the
-/// proportion of contaminants.
+/// proportion of contaminants; Beta(2, 2) for the start; half-normal with SD 0.2 per s (s = 0.1) for the
+/// drift's standard deviation, and with SD 0.2 s for the range of the non-decision time.
 ///
 /// The posterior distribution is sampled by adaptive importance sampling from a multivariate t distribution
 /// around its mode. `seed` makes the result reproducible.
 DiffusionFit fit_diffusion(const std::vector<DiffusionTrial>& trials, std::size_t difficulties,
-                           std::uint64_t seed, int stream, double confidence = 0.95);
+                           std::uint64_t seed, int stream, const DiffusionOptions& options = {});
 
 /// The quantiles of response times that a check compares.
 constexpr std::array<double, 5> kPredictedQuantiles{0.1, 0.3, 0.5, 0.7, 0.9};

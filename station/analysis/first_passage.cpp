@@ -166,28 +166,134 @@ double log_tail_without_factor(const Seen& d, double t) {
   return log_short_tail(d, t);
 }
 
+/// The same functions for one drift and no delay.
+double log_density_of(const Seen& d, double drift_sd, double t) {
+  const double a2 = d.separation * d.separation;
+  const double v = d.drift_away, z = d.distance, variance = drift_sd * drift_sd, spread = 1 + variance * t;
+  return (variance * z * z - 2 * v * z - v * v * t) / (2 * spread) - 0.5 * std::log(spread) +
+         log_driftless(d.relative, d.opposite, t / a2) - std::log(a2);
+}
+
+double log_distribution_of(const Seen& d, double t) {
+  const double factor = -d.drift_away * d.distance;
+  if (t < kShortDistribution * d.separation * d.separation) return factor + log_short_distribution(d, t);
+  return factor + log_difference(log_ever(d), log_long_tail(d, t));
+}
+
+double log_tail_of(const Seen& d, double t) {
+  return -d.drift_away * d.distance + (t > 0 ? log_tail_without_factor(d, t) : log_ever(d));
+}
+
+/// Logarithm of the mean of exp(g(drift)) over the drifts of a diffusion; g belongs to a probability that
+/// concerns the time t. The trapezoidal rule converges exponentially: its step follows from where the
+/// integrand, continued into the complex plane, grows (like that of a normal distribution with the variance 1
+/// / (t + 1 / drift_sd^2)) or has its poles (at i pi / boundary).
+template <class G>
+double over_drifts(const Diffusion& d, double t, const G& g) {
+  if (d.drift_sd == 0) return g(d.drift);
+  const double precision = 1 / (d.drift_sd * d.drift_sd), root = std::sqrt(std::max(t, 0.0) + precision);
+  const double scaled = root / d.boundary;
+  double step = 0.7 / root;
+  if (scaled < 2.9)
+    step = std::min(step, 2 * kPi * kPi / (d.boundary * (36 + kPi * kPi / 2 * scaled * scaled)));
+  const auto term = [&](double i) {
+    const double v = d.drift + i * step;
+    return g(v) - 0.5 * (i * step) * (i * step) * precision;
+  };
+  // the integrand has one peak; climb to it with steps that double, then halve
+  double peak = 0, top = term(0);
+  for (double stride = 1; stride >= 1;) {
+    const double up = term(peak + stride), down = term(peak - stride);
+    if (up > top)
+      peak += stride, top = up, stride *= 2;
+    else if (down > top)
+      peak -= stride, top = down, stride *= 2;
+    else
+      stride = stride > 1 ? std::floor(stride / 2) : 0;
+  }
+  if (top == kNever) return kNever;
+  double sum = 1;
+  for (const double direction : {1.0, -1.0})
+    for (int i = 1; i < 100000; ++i) {
+      const double below = term(peak + direction * i) - top;
+      sum += std::exp(below);
+      if (below < -kNegligible) break;
+    }
+  return top + std::log(sum * step / (d.drift_sd * std::sqrt(2 * kPi)));
+}
+
+constexpr double kNodes[] = {0.1252334085114689, 0.3678314989981802, 0.5873179542866175,
+                             0.7699026741943047, 0.9041172563704749, 0.9815606342467192};
+constexpr double kWeights[] = {0.2491470458134028, 0.2334925365383548, 0.2031674267230659,
+                               0.1600783285433462, 0.1069393259953184, 0.0471753363865118};
+
+/// Logarithm of the mean of exp(g(s)) over the start's delays, for the time t: s runs from t - delay_range_s to
+/// t. Before the process starts, g is `before`. Gauss-Legendre with 12 nodes in panels in which the integrand
+/// changes by a factor of about e^5 at most; `distance` is that from the start to the boundary.
+template <class G>
+double over_delays(const Diffusion& d, double t, double distance, double before, const G& g) {
+  if (d.delay_range_s == 0) return t > 0 ? g(t) : before;
+  const double low = t - d.delay_range_s, end = std::max(low, 0.0), z2 = distance * distance;
+  double total = low < 0 ? before + std::log(std::min(-low, d.delay_range_s)) : kNever;
+  const double v = std::fabs(d.drift), variance = d.drift_sd * d.drift_sd;
+  // the fastest fall of the integrand at long times, and when nothing can have arrived
+  const double fall = 0.5 * (v * v + kPi * kPi / (d.boundary * d.boundary) +
+                             variance * (1 + variance * z2 + 2 * v * distance));
+  const double nothing = kNegligible + 10 + v * distance + variance * z2 / 2;
+  for (double high = t; high > end;) {
+    if (z2 / (2 * high) > nothing) {
+      if (before > kNever)
+        return log_sum(total, before + std::log(high - end)) - std::log(d.delay_range_s);
+      if (z2 / (2 * high) > 700 + nothing || g(high) + std::log(high) < total - kNegligible) break;
+    }
+    const double from = std::max({end, high / 2, 1 / (1 / high + 10 / z2), high - 5 / fall});
+    const double half = 0.5 * (high - from), middle = 0.5 * (high + from);
+    double values[12], top = kNever;
+    for (int i = 0; i < 6; ++i) {
+      values[2 * i] = g(middle + half * kNodes[i]);
+      values[2 * i + 1] = g(middle - half * kNodes[i]);
+      top = std::max({top, values[2 * i], values[2 * i + 1]});
+    }
+    if (top > kNever) {
+      double sum = 0;
+      for (int i = 0; i < 12; ++i) sum += kWeights[i / 2] * std::exp(values[i] - top);
+      total = log_sum(total, top + std::log(half * sum));
+    }
+    if (!(from < high)) break;
+    high = from;
+  }
+  return total - std::log(d.delay_range_s);
+}
+
 }  // namespace
 
 double log_density(const Diffusion& diffusion, bool upper, double time_s) {
   if (!(time_s > 0)) return kNever;
   const auto d = seen_from(diffusion, upper);
-  const double a2 = d.separation * d.separation;
-  return -d.drift_away * d.distance - d.drift_away * d.drift_away * time_s / 2 +
-         log_driftless(d.relative, d.opposite, time_s / a2) - std::log(a2);
+  return over_delays(diffusion, time_s, d.distance, kNever,
+                     [&](double t) { return log_density_of(d, diffusion.drift_sd, t); });
 }
 
 double log_distribution(const Diffusion& diffusion, bool upper, double time_s) {
   if (!(time_s > 0)) return kNever;
-  const auto d = seen_from(diffusion, upper);
-  const double u = time_s / (d.separation * d.separation), factor = -d.drift_away * d.distance;
-  if (u < kShortDistribution) return factor + log_short_distribution(d, time_s);
-  return factor + log_difference(log_ever(d), log_long_tail(d, time_s));
+  auto d = seen_from(diffusion, upper);
+  return over_delays(diffusion, time_s, d.distance, kNever, [&](double t) {
+    return over_drifts(diffusion, t, [&](double drift) {
+      d.drift_away = upper ? -drift : drift;
+      return log_distribution_of(d, t);
+    });
+  });
 }
 
 double log_tail(const Diffusion& diffusion, bool upper, double time_s) {
-  const auto d = seen_from(diffusion, upper);
-  const double factor = -d.drift_away * d.distance;
-  return factor + (time_s > 0 ? log_tail_without_factor(d, time_s) : log_ever(d));
+  auto d = seen_from(diffusion, upper);
+  const auto of = [&](double t) {
+    return over_drifts(diffusion, t, [&](double drift) {
+      d.drift_away = upper ? -drift : drift;
+      return log_tail_of(d, t);
+    });
+  };
+  return over_delays(diffusion, time_s, d.distance, time_s <= 0 || time_s < diffusion.delay_range_s ? of(0) : kNever, of);
 }
 
 double log_survival(const Diffusion& diffusion, double time_s) {
@@ -197,8 +303,11 @@ double log_survival(const Diffusion& diffusion, double time_s) {
 }
 
 double upper_probability(const Diffusion& diffusion) {
-  const auto d = seen_from(diffusion, true);
-  return std::exp(-d.drift_away * d.distance + log_ever(d));
+  auto d = seen_from(diffusion, true);
+  return std::exp(over_drifts(diffusion, 0, [&](double drift) {
+    d.drift_away = -drift;
+    return -d.drift_away * d.distance + log_ever(d);
+  }));
 }
 
 }  // namespace turnpoint::analysis

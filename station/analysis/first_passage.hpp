@@ -4,21 +4,26 @@ namespace turnpoint::analysis {
 
 /// A diffusion between two boundaries, in the scaling s = 1: noise with a standard deviation of 1 after 1 s.
 /// It starts at `start` x `boundary` above the lower boundary (0), drifts towards the upper one (`boundary`)
-/// at `drift` per s, and is absorbed at the boundary that it meets first.
+/// at `drift` per s, and is absorbed at the boundary that it meets first. Between trials, the drift may vary
+/// (normal distribution), and before the process starts a further time may pass (uniform distribution).
 struct Diffusion {
-  double drift = 0;     ///< per s, any finite number
-  double boundary = 1;  ///< separation of the boundaries, above 0
-  double start = 0.5;   ///< relative start point, above 0 and below 1
+  double drift = 0;         ///< per s, any finite number
+  double boundary = 1;      ///< separation of the boundaries, above 0
+  double start = 0.5;       ///< relative start point, above 0 and below 1
+  double drift_sd = 0;      ///< standard deviation of the drift between trials, 0 or more
+  double delay_range_s = 0; ///< the start is delayed by a time between 0 and this, 0 or more
 };
 
 /// Logarithm of the density (1/s) of being absorbed at the upper or lower boundary at `time_s`; -infinity for
 /// times of 0 or less. Uses the series for short or for long times, whichever needs fewer terms (Navarro &
-/// Fuss 2009). The relative error of the density is below 1e-8 where it exceeds 1e-30, that of its logarithm
-/// below 1e-6 elsewhere.
+/// Fuss 2009). The drift's variability is in closed form (Tuerlinckx 2004, Behav. Res. Methods 36:702-716),
+/// that of the delay by Gauss-Legendre quadrature. The relative error of the density is below 1e-8 where it
+/// exceeds 1e-30, that of its logarithm below 1e-6 elsewhere.
 double log_density(const Diffusion& diffusion, bool upper, double time_s);
 
 /// Logarithm of the probability of having been absorbed at this boundary by `time_s` (Blurton, Kesselmeier &
-/// Gondan 2012 for short times, the series of sines for long ones). The same accuracy.
+/// Gondan 2012 for short times, the series of sines for long ones; the drift's variability by the trapezoidal
+/// rule, that of the delay as above). The same accuracy.
 double log_distribution(const Diffusion& diffusion, bool upper, double time_s);
 
 /// Logarithm of the probability of being absorbed at this boundary after `time_s`. The same accuracy.

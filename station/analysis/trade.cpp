@@ -179,8 +179,9 @@ Group collect(const std::vector<TrialRecord>& trials, const TradeOptions& option
 
 /// Fits the diffusion model, and describes the answers of each difficulty.
 void fill_cells(Group& group, InstructionResult& result, int stream, const TradeOptions& options) {
-  auto fitted =
-      fit_diffusion(group.decisions, group.difficulty.size(), options.seed, stream, options.confidence);
+  DiffusionOptions how;
+  how.confidence = options.confidence;
+  auto fitted = fit_diffusion(group.decisions, group.difficulty.size(), options.seed, stream, how);
   result.statements = std::move(fitted.statements);
   group.diffusion = std::move(fitted.estimates);
   if (group.diffusion) {

@@ -5,10 +5,15 @@ test_first_passage.cpp has 500 of them. One row in 25 is also compared with the 
 
 The columns: drift, boundary, start, time, then the natural logarithms of the density at the lower boundary, of its
 distribution, of its tail, and of the survival; below -1e5 a logarithm is written as -1e9.
+
+first_passage_table.py varied [SETS [SEED]] prints rows with variability: drift, boundary, start, time, standard deviation of
+the drift, range of the delay, then the same four logarithms. The averages over drifts and delays are taken by quadrature,
+twice with different steps; the test has the first 19 rows.
 """
 import random
 import sys
 
+import numpy as np
 from mpmath import mp, mpf, erfc, exp, inf, log, pi, quad, sin, sqrt
 
 
@@ -100,5 +105,61 @@ def main(sets=500, seed=20):
         print("    {" + ", ".join([repr(float(x)) for x in (v, a, w, t)] + [written(x) for x in (f, below, tail, tail + other)]) + "},")
 
 
+def nodes(edges, count=24):
+    """Places and weights of Gauss-Legendre's rule between these edges."""
+    x, w = np.polynomial.legendre.leggauss(count)
+    for low, high in zip(edges, edges[1:]):
+        for one, weight in zip(x, w):
+            yield low + (high - low) * (mpf(float(one)) + 1) / 2, mpf(float(weight)) * (high - low) / 2
+
+
+def averaged(v, a, w, t, sd, delay, panels):
+    """Density, distribution and tail at the lower boundary, and survival, averaged over drifts and delays."""
+    drifts = [(v, mpf(1))]
+    if sd > 0:
+        reach = sd * (9 + 2 * sd * a)
+        drifts = [(x, weight * exp(-((x - v) / sd) ** 2 / 2) / (sd * sqrt(2 * pi)))
+                  for x, weight in nodes([v - reach + 2 * reach * i / panels for i in range(panels + 1)])]
+    times = [(t, mpf(1))]
+    if delay > 0:
+        low = max(t - delay, mpf(0))
+        first = low if low > 0 else t / 10**4
+        edges = [first * (t / first) ** (mpf(i) / panels) for i in range(panels + 1)]
+        times = [(x, weight / delay) for x, weight in nodes(([mpf(0)] if low == 0 else []) + edges)]
+    sums = [mpf(0)] * 4
+    for drift, by_drift in drifts:
+        if delay > t:
+            before = by_drift * (delay - t) / delay
+            sums[2] += before * ever(drift, a, w)
+            sums[3] += before
+        for time, by_time in times:
+            below, tail = both(drift, a, w, time)
+            _, other = both(-drift, a, 1 - w, time)
+            for i, value in enumerate((density(drift, a, w, time), below, tail, tail + other)):
+                sums[i] += by_drift * by_time * value
+    return sums
+
+
+def varied(sets=60, seed=21):
+    draw = random.Random(seed)
+    mp.dps = 40
+    for i in range(int(sets)):
+        kind = "both" if i % 10 == 9 else "drift" if i % 2 == 0 else "delay"
+        v, a = draw.uniform(-4, 4), 10 ** draw.uniform(-0.3, 0.5)
+        w = draw.choice([0.5, draw.uniform(0.1, 0.9)])
+        t = a * a * 10 ** draw.uniform(-1.2, 0.7)
+        sd = 0.0 if kind == "delay" else 10 ** draw.uniform(-1.5, 0.1)
+        delay = 0.0 if kind == "drift" else t * 10 ** draw.uniform(-1.5, 0.3)
+        panels = {"drift": 24, "delay": 6, "both": 6}[kind]
+        values = [mpf(x) for x in (v, a, w, t, sd, delay)]
+        sums = averaged(*values, panels)
+        for one, again in zip(sums, averaged(*values, panels + panels // 2)):
+            assert abs(one / again - 1) < mpf(10) ** -10, (kind, values, one, again)
+        print("    {" + ", ".join([repr(x) for x in (v, a, w, t, sd, delay)] + [written(x) for x in sums]) + "},", flush=True)
+
+
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    if sys.argv[1:2] == ["varied"]:
+        varied(*sys.argv[2:])
+    else:
+        main(*sys.argv[1:])

@@ -370,7 +370,7 @@ TEST_CASE("What the check predicts is what the model's own samples show", "[anal
   rnd::Draws draws({8, rnd::Stream::observer, 0, 0, 0});
   const auto trials = simulated(kAccuracy, 0.9, kCells[0], {4000, 4000, 4000}, draws);
   DiffusionEstimates truth;
-  truth.boundary.value = kAccuracy, truth.nondecision_s.value = kTer;
+  truth.boundary.value = kAccuracy, truth.nondecision_s.value = kTer, truth.start = {0.5, {0.5, 0.5, 0.95}};
   for (const double drift : kDrifts) truth.drift.push_back({drift, {}});
   const auto check = check_diffusion(trials, truth, 1, 1);
   REQUIRE(check.difficulties.size() == 3);
@@ -445,11 +445,13 @@ GroupShares group_shares(int people, int studies, int first) {
 
 }  // namespace
 
-// TURNPOINT_GROUP_STUDIES=1000 prints the shares for 8 and for 20 people.
+// TURNPOINT_GROUP_STUDIES=1000 prints the shares for 8 and for 20 people; TURNPOINT_GROUP_FIRST=50 begins at that
+// study, and TURNPOINT_GROUP_PEOPLE=20 takes one size of group, so that a run can be made in parts.
 TEST_CASE(
     "A group's effects on the diffusion's parameters hold the truth, and none is claimed that is not there",
     "[analysis][diffusion]") {
-  const int studies = number_from("TURNPOINT_GROUP_STUDIES", 0);
+  const int studies = number_from("TURNPOINT_GROUP_STUDIES", 0),
+            first = number_from("TURNPOINT_GROUP_FIRST", 0), only = number_from("TURNPOINT_GROUP_PEOPLE", 0);
   if (studies == 0) {
     const auto shares = group_shares(5, 5, 0);
     CHECK(shares.claimed[0] >= 4);
@@ -457,7 +459,8 @@ TEST_CASE(
     return;
   }
   for (const int people : {8, 20}) {
-    const auto shares = group_shares(people, studies, 0);
+    if (only > 0 && people != only) continue;
+    const auto shares = group_shares(people, studies, first);
     const auto percent = [&](int count) { return 100.0 * count / shares.studies; };
     std::cout << people << " people: covered, boundary " << percent(shares.held[0]) << " %, time outside "
               << percent(shares.held[1]) << " %, drift " << percent(shares.held[2])

@@ -1,8 +1,11 @@
-"""Turnpoint in Python: the data of the station as pandas frames, and its physics library.
+"""Turnpoint in Python: the data of the station as pandas frames, the fits of its report, and its physics library.
 
     import turnpoint
     study = turnpoint.read("lab.sqlite", protocol="boundary-constant")
     study.trials.groupby("level").correct.mean()
+
+    from turnpoint import analysis
+    analysis.speed_accuracy(times_s, correct, condition).differences
 
     from turnpoint import physics
     plate = physics.aluminium_plate()
