@@ -51,7 +51,7 @@ class Staircase:
         if not levels:
             return {}
         mean = sum(levels) / len(levels)
-        sd = math.sqrt(max(0.0, sum(level * level for level in levels) / len(levels) - mean * mean))
+        sd = math.sqrt(sum((level - mean) ** 2 for level in levels) / (len(levels) - 1))
         count = len(self.reversals)
         return {"threshold": {"mean": mean, "sd": sd, "basis": f"reversals {first + 1} to {count} of {count}"}}
 

@@ -593,6 +593,7 @@ std::vector<Stratum> strata_of(const std::vector<DiffusionTrial>& trials) {
     stratum.difficulty = trial.difficulty;
     stratum.deadline_s = trial.deadline_s;
     stratum.window_s = trial.deadline_s ? 2 * *trial.deadline_s : longest;
+    stratum.early_s = std::max(stratum.early_s, trial.early_s);
     if (trial.outcome == Outcome::answered)
       stratum.times[trial.correct ? 1 : 0].push_back(trial.time_s);
     else if (trial.outcome == Outcome::late)

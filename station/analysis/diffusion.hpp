@@ -34,6 +34,7 @@ struct DiffusionTrial {
   /// early to be accepted the time from which answers are accepted
   double time_s = 0;
   std::optional<double> deadline_s;
+  double early_s = 0;  ///< time from which answers are accepted
 };
 
 /// The parameters of one draw from the posterior distribution.

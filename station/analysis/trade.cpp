@@ -130,6 +130,7 @@ Group collect(const std::vector<TrialRecord>& trials, const TradeOptions& option
     const double difficulty = difficulty_of(trial);
     DiffusionTrial decision;
     decision.deadline_s = trial.deadline_s;
+    decision.early_s = trial.anticipation_s;
     if (trial.outcome == Outcome::timeout && trial.deadline_s) {
       decision.outcome = DiffusionTrial::Outcome::late;
       decision.time_s = *trial.deadline_s;

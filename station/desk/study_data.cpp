@@ -151,6 +151,8 @@ PersonData data_of(const std::string& person, const std::vector<Found>& sessions
   auto& all = data.all;
   std::vector<records::BlockRecord> blocks;
   int trials = 0, first_block = 0;
+  // The numbers of someone with one session are those of its report.
+  if (!sessions.empty()) all.seed = sessions.front().session.start.seed;
   for (const auto& found : sessions) {
     auto stored = store::read_session(found.database, found.session.session_id);
     add_own(found.database, stored, protocol, data);

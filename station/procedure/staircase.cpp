@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -68,14 +69,14 @@ std::map<std::string, Estimate> Staircase::estimates() const {
   if (reversals_.size() < discarded + 2) return {};
   const std::size_t first = discarded + (reversals_.size() - discarded) % 2;
   const bool logs = spec_.scale != Scale::linear;
-  double sum = 0, squares = 0;
-  const auto n = static_cast<double>(reversals_.size() - first);
-  for (std::size_t i = first; i < reversals_.size(); ++i) {
-    const double value = logs ? std::log(reversals_[i]) : reversals_[i];
-    sum += value, squares += value * value;
-  }
-  const double mean = sum / n;
-  const double sd = std::sqrt(std::max(0.0, (squares - n * mean * mean) / (n - 1)));
+  std::vector<double> values(reversals_.begin() + static_cast<std::ptrdiff_t>(first), reversals_.end());
+  if (logs)
+    for (double& value : values) value = std::log(value);
+  const auto n = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double squares = 0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  const double sd = std::sqrt(squares / (n - 1));
   Estimate estimate;
   estimate.mean = estimate.mode = logs ? std::exp(mean) : mean;
   estimate.sd = logs ? estimate.mean * sd : sd;

@@ -334,10 +334,6 @@ std::string trade_section(const Summary& summary) {
                    ? ", and suits few errors only, up to 10 % (Bruyer &amp; Brysbaert 2011)"
                    : "") +
               ". Do not read its differences as differences of ability.</p>\n";
-  if (several && shows(summary.data, "bis"))
-    html +=
-        "<p class=\"soft\">The balanced integration score (BIS) standardises accuracy and time over all "
-        "participants and conditions, so one session has none. The report of the study has it.</p>\n";
   for (const auto& entry : summary.trade.instructions) {
     for (auto statement : entry.statements) {
       if (!entry.instruction.empty())

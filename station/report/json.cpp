@@ -369,7 +369,9 @@ std::string to_json(const Summary& summary) {
   json["repeated_trials"] = repeats_json(summary.data.repeats);
   json["trend_response_time_s"] = trend_json(summary.fatigue.response_time_s);
   json["trend_proportion_correct"] = trend_json(summary.fatigue.proportion_correct);
-  json["statements"] = value(summary.fatigue.statements);
+  auto statements = summary.trade.statements;
+  statements.insert(statements.end(), summary.fatigue.statements.begin(), summary.fatigue.statements.end());
+  json["statements"] = value(statements);
   return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 

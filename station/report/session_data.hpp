@@ -148,8 +148,8 @@ SessionData part_of(const SessionData& data, std::size_t part);
 
 /// True if the report contains this part: "psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime",
 /// "response-signal" or "trace". If the protocol does not choose the parts, the report contains all of them,
-/// with two exceptions: d' only for yes/no tasks and where `deciding` has a model, and the diffusion model only for
-/// two answers that come without a response signal.
+/// with two exceptions: d' only for yes/no tasks and where `deciding` has a model, and the diffusion model
+/// only for two answers that come without a response signal.
 bool shows(const SessionData& data, const std::string& part);
 
 }  // namespace turnpoint::report

@@ -299,6 +299,8 @@ Summary summarise(const SessionData& data) {
   if (data.choices.size() <= 2) summary.bias = analysis::choice_bias(data.trials);
   summary.trade = analysis::trade(data.trials, trade_options(data));
   hide(data, summary.trade);
+  if (data.scored && summary.trade.instructions.size() > 1 && shows(data, "bis"))
+    summary.trade.statements.push_back({"bis-study", phrase("statement.bis_study")});
   if (shows(data, "psychometric")) summary.fits = fits_of(data);
   return summary;
 }

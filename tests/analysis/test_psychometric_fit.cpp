@@ -298,3 +298,17 @@ TEST_CASE("Trials without a signal determine the rate of false alarms", "[analys
   CHECK(posterior.intervals.guess->interval.low > 0.3);
   CHECK(posterior.intervals.guess->interval.high < 0.5);
 }
+
+TEST_CASE("an interval that ends at a bound says so, even if the best curve at the bound itself is hard to find", "[analysis]") {
+  FitOptions options;
+  options.function = Function::weibull;
+  options.scale = Scale::log10;
+  const auto fit = fit_psychometric(
+      {{0.051, 19, 4}, {0.087, 19, 14}, {0.137, 19, 11}, {0.243, 19, 16}, {0.432, 19, 19}, {0.68, 19, 18}}, options);
+  const auto drawn = bootstrap(fit, {});
+  // with this steep a slope the likelihood is still only 0.6 below its maximum
+  REQUIRE(drawn.slope);
+  CHECK(drawn.slope->interval.high > 30);
+  CHECK(drawn.slope->touches_high);
+  CHECK_FALSE(drawn.slope->touches_low);
+}

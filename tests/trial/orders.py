@@ -151,7 +151,7 @@ def call(turnpoint, *arguments):
 def exported(turnpoint, folder, path, seed):
     database = folder / "lab.sqlite"
     run = call(turnpoint, "run", path, "--rig", RIG, "--participant", "P01", "--db", database, "--headless",
-               "--observer", f"{OBSERVER},seed={seed},limit_s=120")
+               "--observer", f"{OBSERVER},seed={seed},limit_s=60")
     if run.returncode != 0:
         raise RuntimeError(f"seed {seed}: run: status {run.returncode}: {run.stderr.strip()[-300:]} {run.stdout.strip()[-300:]}")
     call(turnpoint, "export", "--db", database, "--out", folder / "csv")
