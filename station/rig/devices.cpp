@@ -1,7 +1,6 @@
 #include "station/rig/devices.hpp"
 
 #include <algorithm>
-#include <regex>
 #include <set>
 
 namespace turnpoint::rig {
@@ -10,7 +9,8 @@ using texts::phrase, texts::plain;
 
 using text::TableReader;
 
-std::string read_uri(TableReader& reader, const std::vector<std::string>& forms) {
+std::string read_uri(TableReader& reader) {
+  const auto& forms = reader.words("uri");
   const auto allowed = text::quoted_list(forms);
   const auto uri = reader.string("uri", allowed);
   if (uri.empty()) return uri;
@@ -50,38 +50,24 @@ void check_gpio(TableReader& reader, const std::string& uri, const std::vector<s
 namespace {
 
 std::optional<std::string> read_device(TableReader& file, const std::string& key,
-                                       const std::vector<std::string>& forms,
                                        const std::vector<std::string>& lines,
                                        const std::vector<std::string>& optional_lines = {}) {
   const auto* table = file.maybe_table(key);
   if (!table) return std::nullopt;
-  TableReader reader(*table, key, file.findings());
-  const auto uri = read_uri(reader, forms);
+  TableReader reader(*table, key, file.findings(), file.keys(key));
+  const auto uri = read_uri(reader);
   check_gpio(reader, uri, lines, optional_lines);
   reader.finish();
-  return uri;
-}
-
-std::string read_thermometer(TableReader& reader, const std::string& key) {
-  const auto allowed =
-      phrase("%1 or %2, such as %3; NAME@DEVICE if several have that name",
-             {plain("\"hwmon:NAME/tempN\""), plain("\"iio:NAME/temp\""), plain("\"hwmon:lm75/temp1\"")});
-  const auto uri = reader.string(key, allowed);
-  static const std::regex form("hwmon:[^/]+/temp[0-9]+|iio:[^/]+/temp[0-9a-z_]*");
-  const bool good = std::regex_match(uri, form);
-  if (!uri.empty() && !good)
-    reader.problem(key, phrase("\"%1\" does not name a temperature sensor", {plain(uri)}),
-                   phrase("allowed: %1", {allowed}));
   return uri;
 }
 
 std::optional<Thermometers> read_thermometers(TableReader& file) {
   const auto* table = file.maybe_table("temperature");
   if (!table) return std::nullopt;
-  TableReader reader(*table, "temperature", file.findings());
+  TableReader reader(*table, "temperature", file.findings(), file.keys("temperature"));
   Thermometers made;
-  made.plate_uri = read_thermometer(reader, "plate");
-  made.frame_uri = read_thermometer(reader, "frame");
+  made.plate_uri = reader.string("plate");
+  made.frame_uri = reader.string("frame");
   reader.finish();
   return made;
 }
@@ -89,19 +75,18 @@ std::optional<Thermometers> read_thermometers(TableReader& file) {
 }  // namespace
 
 void read_devices(TableReader& file, Rig& rig) {
-  if (!file.has("amplifier")) file.require("amplifier", phrase("add a table [amplifier] with uri"));
+  file.require("amplifier");
   rig.amplifier_uri =
-      read_device(file, "amplifier", {"sim:", "gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE"},
-                  {"enable"}, {"fault", "stop", "heartbeat", "active", "fault_active", "stop_active"})
+      read_device(file, "amplifier", {"enable"},
+                  {"fault", "stop", "heartbeat", "gate", "read_back", "active", "fault_active", "stop_active"})
           .value_or("");
-  rig.buttons_uri = read_device(file, "buttons", {"sim:", "gpio:left=LINE,right=LINE"}, {"left", "right"},
-                                {"third", "active", "hold_ms", "refractory_ms"});
-  rig.contact_uri = read_device(file, "contact", {"sim:", "gpio:line=LINE", "evdev:DEVICE"}, {"line"},
-                                {"active", "hold_ms", "refractory_ms"});
+  rig.buttons_uri =
+      read_device(file, "buttons", {"left", "right"}, {"third", "active", "hold_ms", "refractory_ms"});
+  rig.contact_uri = read_device(file, "contact", {"line"}, {"active", "hold_ms", "refractory_ms"});
   rig.trigger_lines_uri =
-      read_device(file, "trigger_lines", {"sim:", "gpio:bit0=LINE,bit1=LINE,strobe=LINE"}, {"bit0"},
+      read_device(file, "trigger_lines", {"bit0"},
                   {"bit1", "bit2", "bit3", "bit4", "bit5", "bit6", "bit7", "strobe", "pulse_ms"});
-  rig.touch_uri = read_device(file, "touch", {"sim:", "qt:", "evdev:DEVICE"}, {});
+  rig.touch_uri = read_device(file, "touch", {});
   rig.thermometers = read_thermometers(file);
 }
 

@@ -7,9 +7,9 @@
 
 namespace turnpoint::rig {
 
-/// Reads the key "uri" of a table. `forms` are the allowed forms, such as "sim:" and "alsa:DEVICE". Text must
+/// Reads the key "uri" of a table, whose allowed forms are declared, such as "sim:" and "alsa:DEVICE". Text must
 /// follow the scheme if the form has text after it.
-std::string read_uri(text::TableReader& reader, const std::vector<std::string>& forms);
+std::string read_uri(text::TableReader& reader);
 
 /// Checks a URI `gpio:name=LINE,name=LINE`; other schemes are accepted. It must contain all names in
 /// `needed`, may contain those in `optional`, and must contain no others.

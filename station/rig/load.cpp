@@ -6,6 +6,7 @@
 #include "station/rig/csv.hpp"
 #include "station/rig/devices.hpp"
 #include "station/rig/rig.hpp"
+#include "station/rig/rig_keys.hpp"
 #include "station/rig/spare_channels.hpp"
 #include "station/rig/surface.hpp"
 #include "station/terms/limits.hpp"
@@ -45,9 +46,7 @@ FrictionTable falling(const FrictionTable& table) {
 namespace {
 
 using text::Findings;
-using text::Range;
 using text::TableReader;
-using Ends = text::Range::Ends;
 constexpr double pi = 3.14159265358979323846;
 
 std::string beside(const std::string& path, const std::string& file) {
@@ -57,10 +56,7 @@ std::string beside(const std::string& path, const std::string& file) {
 
 void read_response(TableReader& reader, const std::string& rig_path, Transducer& transducer) {
   const auto file = reader.maybe_string("response_csv");
-  const auto um = reader.maybe_number("um_per_full_scale", {0, 1000, Ends::open_low, "um"});
-  if (reader.has("response_csv") == reader.has("um_per_full_scale"))
-    reader.findings().add(reader.place(), phrase("%1 needs exactly one response", {reader.title()}),
-                          phrase("give either \"um_per_full_scale\" or \"response_csv\""));
+  const auto um = reader.maybe_number("um_per_full_scale");
   if (um) transducer.m_per_full_scale = 1e-6 * *um;
   if (!file) return;
   const auto csv = beside(rig_path, *file);
@@ -79,13 +75,13 @@ void read_response(TableReader& reader, const std::string& rig_path, Transducer&
   }
 }
 
-Transducer read_transducer(const text::Value& table, const std::string& rig_path, Findings& findings) {
-  TableReader reader(table, titled("transducer", table), findings);
+Transducer read_transducer(const text::Value& table, const std::string& rig_path, TableReader& file) {
+  TableReader reader(table, titled("transducer", table), file.findings(), file.keys("transducer"));
   Transducer transducer;
-  transducer.name = reader.string("name", phrase("give the transducer a name, which messages use"));
-  transducer.channel = reader.integer("channel", 0, kLastChannel);
-  reader.require("band_kHz", phrase("give the usable band as %1 in kHz", {plain("[low, high]")}));
-  if (const auto band = reader.maybe_interval("band_kHz", {0, 1000, Ends::open_low, "kHz"})) {
+  transducer.name = reader.string("name");
+  transducer.channel = reader.integer("channel");
+  reader.require("band_kHz");
+  if (const auto band = reader.maybe_interval("band_kHz")) {
     transducer.low_Hz = 1e3 * band->first;
     transducer.high_Hz = 1e3 * band->second;
   }
@@ -110,7 +106,7 @@ void read_transducers(TableReader& file, Rig& rig) {
   std::set<std::string> names;
   std::set<int> channels;
   for (const auto* table : tables) {
-    rig.transducers.push_back(read_transducer(*table, rig.path, file.findings()));
+    rig.transducers.push_back(read_transducer(*table, rig.path, file));
     const auto& transducer = rig.transducers.back();
     if (!transducer.name.empty() && !names.insert(transducer.name).second)
       file.findings().add(table->place,
@@ -124,17 +120,17 @@ void read_transducers(TableReader& file, Rig& rig) {
 }
 
 void read_output(TableReader& file, Rig& rig) {
-  const auto* table = file.table("output", phrase("add a table [output] with uri and rate_Hz"));
+  const auto* table = file.table("output");
   if (!table) return;
-  TableReader reader(*table, "output", file.findings());
+  TableReader reader(*table, "output", file.findings(), file.keys("output"));
   auto& output = rig.output;
-  output.uri = read_uri(reader, {"null:", "wav:FILE", "alsa:DEVICE"});
-  output.rate_Hz = reader.integer("rate_Hz", 8000, 1536000);
-  output.bits = reader.integer("bits", 16, 32, 24);
-  output.period_frames = reader.integer("period_frames", 16, 65536, 384);
-  output.periods = reader.integer("periods", 2, 64, 4);
-  output.converter_delay_s = 1e-3 * reader.number("converter_delay_ms", {0, 100, Ends::closed, "ms"}, 0);
-  if (reader.has("device_channels")) output.device_channels = reader.integer("device_channels", 1, 64);
+  output.uri = read_uri(reader);
+  output.rate_Hz = reader.integer("rate_Hz");
+  output.bits = reader.integer("bits");
+  output.period_frames = reader.integer("period_frames");
+  output.periods = reader.integer("periods");
+  output.converter_delay_s = 1e-3 * reader.number("converter_delay_ms");
+  output.device_channels = reader.maybe_integer("device_channels").value_or(output.device_channels);
   if (const double period_s = static_cast<double>(output.period_frames) / std::max(output.rate_Hz, 1);
       output.rate_Hz > 0 && period_s > longest_period_s)
     reader.problem(
@@ -201,50 +197,40 @@ void read_friction(TableReader& file, Rig& rig) {
   static const text::Value empty;
   const auto* table = file.maybe_table("friction");
   rig.friction.stated = table != nullptr;
-  TableReader reader(table ? *table : empty, "friction", file.findings());
+  TableReader reader(table ? *table : empty, "friction", file.findings(), file.keys("friction"));
   auto& friction = rig.friction;
-  const Range pressure{0.01, 36, Ends::closed, "kPa"}, floor{0, 1, Ends::open_high};
-  const Range fingertip{0.1, 100, Ends::closed, "mm"};
-  const auto csv = reader.maybe_string("table_csv");
-  if (reader.has("table_csv")) {
-    for (const auto* key : {"model", "pressure_kPa", "floor"})
-      if (reader.take(key))
-        reader.problem(key,
-                       phrase("\"%1\" is not allowed together with \"%2\"", {plain(key), plain("table_csv")}),
-                       phrase("leave it out: the measured table replaces it"));
-    if (csv) read_friction_table(reader, *csv, rig);
-  } else {
-    reader.word("model", {"load-sharing"}, "load-sharing");
-    friction.pressure_Pa = 1e3 * reader.number("pressure_kPa", pressure, 5);
-    friction.floor = reader.number("floor", floor, 0.1);
+  if (const auto csv = reader.maybe_string("table_csv")) read_friction_table(reader, *csv, rig);
+  if (!reader.has("table_csv")) {
+    reader.word("model");
+    friction.pressure_Pa = 1e3 * reader.number("pressure_kPa");
+    friction.floor = reader.number("floor");
   }
-  friction.fingertip_m = 1e-3 * reader.number("fingertip_mm", fingertip, 10);
+  friction.fingertip_m = 1e-3 * reader.number("fingertip_mm");
   reader.finish();
 }
 
 void read_finger(TableReader& file, Rig& rig) {
   static const text::Value empty;
   const auto* table = file.maybe_table("finger");
-  TableReader reader(table ? *table : empty, "finger", file.findings());
-  const Range impedance{0, 1000, Ends::closed, "N s/m"}, phase{-90, 90, Ends::closed, "degrees"};
+  TableReader reader(table ? *table : empty, "finger", file.findings(), file.keys("finger"));
   constexpr double degree = pi / 180;
   auto& finger = rig.finger;
-  finger.impedance_Ns_per_m = reader.number("impedance_Ns_per_m", impedance, 55);
-  finger.impedance_sd_Ns_per_m = reader.number("impedance_sd_Ns_per_m", impedance, 15);
-  finger.phase_rad = degree * reader.number("phase_deg", phase, 0);
-  finger.phase_sd_rad = degree * reader.number("phase_sd_deg", {0, 90, Ends::closed, "degrees"}, 20);
-  finger.contact_m = 1e-3 * reader.number("contact_mm", {1, 30, Ends::closed, "mm"}, 8);
+  finger.impedance_Ns_per_m = reader.number("impedance_Ns_per_m");
+  finger.impedance_sd_Ns_per_m = reader.number("impedance_sd_Ns_per_m");
+  finger.phase_rad = degree * reader.number("phase_deg");
+  finger.phase_sd_rad = degree * reader.number("phase_sd_deg");
+  finger.contact_m = 1e-3 * reader.number("contact_mm");
   reader.finish();
 }
 
 void read_limits(TableReader& file, Rig& rig) {
-  const auto* table = file.table("limits", phrase("add a table [limits] with displacement_um"));
+  const auto* table = file.table("limits");
   if (!table) return;
-  TableReader reader(*table, "limits", file.findings());
-  rig.limits.displacement_m = 1e-6 * reader.number("displacement_um", {0, 1000, Ends::open_low, "um"});
-  rig.limits.continuous_s = reader.number("continuous_s", {0, 3600, Ends::open_low, "s"}, 30);
-  rig.limits.duty = reader.number("duty", {0, 1, Ends::open_low}, 0.8);
-  rig.limits.session_minutes = reader.number("session_minutes", {0, 1440, Ends::open_low, "minutes"}, 60);
+  TableReader reader(*table, "limits", file.findings(), file.keys("limits"));
+  rig.limits.displacement_m = 1e-6 * reader.number("displacement_um");
+  rig.limits.continuous_s = reader.number("continuous_s");
+  rig.limits.duty = reader.number("duty");
+  rig.limits.session_minutes = reader.number("session_minutes");
   reader.finish();
 }
 
@@ -255,12 +241,12 @@ Rig parse(const std::string& source, const std::string& path) {
   Findings findings;
   Rig rig;
   rig.path = path, rig.source = source, rig.sha256 = text::sha256(source);
-  TableReader file(document, "", findings);
-  file.word("format", {"friction-rig/1"});
-  rig.name = file.string("name", phrase("give the rig a name that people recognise"));
-  rig.reproduction = file.boolean("reproduction", "false");
-  if (const auto* surface = file.table("surface", phrase("a table %1", {plain("[surface]")})))
-    rig.surface = read_surface(*surface, findings);
+  TableReader file(document, "", findings, rig_keys());
+  file.word("format");
+  rig.name = file.string("name");
+  rig.reproduction = file.boolean("reproduction");
+  if (const auto* surface = file.table("surface"))
+    rig.surface = read_surface(*surface, file);
   read_transducers(file, rig);
   read_output(file, rig);
   check_bands(file, rig);

@@ -33,45 +33,39 @@ void check_spare(TableReader& reader, const std::string& key, int channel, const
 
 double highest_Hz(const Rig& rig) { return terms::kHighestShareOfRate * std::max(rig.output.rate_Hz, 8000); }
 
-Marker read_marker(const text::Value& table, const Rig& rig, text::Findings& findings) {
-  TableReader reader(table, "marker", findings);
+Marker read_marker(const text::Value& table, const Rig& rig, TableReader& file) {
+  TableReader reader(table, "marker", file.findings(), file.keys("marker"));
   Marker marker;
-  marker.channel = reader.integer("channel", 0, kLastChannel);
+  marker.channel = reader.integer("channel");
   check_spare(reader, "channel", marker.channel, rig);
-  const auto kind = reader.word("kind", {"pulse", "tone", "code"});
+  const auto kind = reader.word("kind");
   marker.kind = kind == "tone"   ? Marker::Kind::tone
                 : kind == "code" ? Marker::Kind::code
                                  : Marker::Kind::pulse;
-  // The code of an answer may be sent while an interval is played. It can then overlap the interval's code,
-  // and the drive adds the amplitudes of both.
-  const double most = kind == "code" ? 0.49 : 1;
-  marker.amplitude =
-      reader.number("amplitude", {0, most, Range::Ends::open_low}, kind == "code" ? 0.45 : 0.5);
-  const Range length = kind == "code" ? Range{0.2, 20, Range::Ends::closed, "ms"}
-                                      : Range{0, 1000, Range::Ends::open_low, "ms"};
-  marker.duration_s = 1e-3 * reader.number("duration_ms", length, 1);
+  marker.amplitude = reader.number("amplitude");
+  marker.duration_s = 1e-3 * reader.number("duration_ms");
   if (kind == "tone")
     marker.frequency_Hz = reader.number("frequency_Hz", {0, highest_Hz(rig), Range::Ends::open_low, "Hz"});
   reader.finish();
   return marker;
 }
 
-MaskingNoise read_noise(const text::Value& table, const Rig& rig, text::Findings& findings) {
-  TableReader reader(table, "noise", findings);
+MaskingNoise read_noise(const text::Value& table, const Rig& rig, TableReader& file) {
+  TableReader reader(table, "noise", file.findings(), file.keys("noise"));
   MaskingNoise noise;
-  noise.channel = reader.integer("channel", 0, kLastChannel);
+  noise.channel = reader.integer("channel");
   check_spare(reader, "channel", noise.channel, rig);
-  noise.rms = reader.number("rms", {0, 0.25, Range::Ends::open_low});
+  noise.rms = reader.number("rms");
   if (const auto band = reader.maybe_interval("band_Hz", {0, highest_Hz(rig), Range::Ends::open_low, "Hz"}))
     noise.low_Hz = band->first, noise.high_Hz = band->second;
   else if (!reader.has("band_Hz"))
     reader.defaulted("band_Hz", "[100, 8000]");
   if (const auto* signal = reader.maybe_table("signal")) {
-    TableReader tone(*signal, "noise.signal", findings);
+    TableReader tone(*signal, "noise.signal", file.findings(), reader.keys("signal"));
     noise.signal = MaskingNoise::Signal{};
     noise.signal->frequency_Hz =
         tone.number("frequency_Hz", {20, std::min(20e3, highest_Hz(rig)), Range::Ends::closed, "Hz"});
-    noise.signal->amplitude = tone.number("amplitude", {0, 0.5, Range::Ends::open_low});
+    noise.signal->amplitude = tone.number("amplitude");
     tone.finish();
   }
   reader.finish();
@@ -79,7 +73,7 @@ MaskingNoise read_noise(const text::Value& table, const Rig& rig, text::Findings
 }
 
 void read_loop(TableReader& reader, const Rig& rig, Capture& capture) {
-  capture.reference = reader.integer("reference", 0, 31);
+  capture.reference = reader.integer("reference");
   const auto& pick_ups = capture.pick_ups;
   if (capture.reference >= capture.channels)
     reader.problem("reference", phrase("channel %1 is not captured", {plain(capture.reference)}),
@@ -87,7 +81,7 @@ void read_loop(TableReader& reader, const Rig& rig, Capture& capture) {
   else if (std::find(pick_ups.begin(), pick_ups.end(), capture.reference) != pick_ups.end())
     reader.problem("reference", phrase("channel %1 is also in \"pickups\"", {plain(capture.reference)}),
                    phrase("use a channel of its own"));
-  capture.excitation_channel = reader.integer("excitation_channel", 0, kLastChannel);
+  capture.excitation_channel = reader.integer("excitation_channel");
   check_spare(reader, "excitation_channel", *capture.excitation_channel, rig);
 }
 
@@ -106,7 +100,7 @@ void check_captured(TableReader& reader, const std::string& key, int channel, co
 }
 
 void read_bridges(TableReader& reader, Capture& capture) {
-  const auto channels = reader.numbers("bridges", {0, 31, Range::Ends::closed});
+  const auto channels = reader.numbers("bridges");
   for (const double number : channels) {
     const int channel = static_cast<int>(number);
     const auto same = std::count(channels.begin(), channels.end(), number);
@@ -122,24 +116,21 @@ void read_bridges(TableReader& reader, Capture& capture) {
 }
 
 void read_marker_channel(TableReader& reader, const Rig& rig, Capture& capture) {
-  if (!reader.has("marker_channel")) {
-    reader.take("marker_channel");
-    return;
-  }
-  capture.marker_channel = reader.integer("marker_channel", 0, 31);
+  capture.marker_channel = reader.maybe_integer("marker_channel");
+  if (!capture.marker_channel) return;
   check_captured(reader, "marker_channel", *capture.marker_channel, capture);
   if (!rig.marker || rig.marker->kind != Marker::Kind::code)
     reader.problem("marker_channel", phrase("the rig has no marker with codes"),
                    phrase("add [marker] with %1, or leave this out", {plain("kind = \"code\"")}));
 }
 
-Sync read_sync(const text::Value& table, const Rig& rig, text::Findings& findings) {
-  TableReader reader(table, "sync", findings);
+Sync read_sync(const text::Value& table, const Rig& rig, TableReader& file) {
+  TableReader reader(table, "sync", file.findings(), file.keys("sync"));
   Sync sync;
-  sync.uri = read_uri(reader, {"sim:", "gpio:line=LINE", "capture:"});
+  sync.uri = read_uri(reader);
   check_gpio(reader, sync.uri, {"line"}, {"active"});
   if (sync.uri == "capture:") {
-    sync.channel = reader.integer("channel", 0, 31);
+    sync.channel = reader.integer("channel");
     if (!rig.capture)
       reader.problem("uri", phrase("the rig captures nothing"),
                      phrase("add [capture], or use %1", {plain("\"gpio:line=LINE\"")}));
@@ -150,13 +141,13 @@ Sync read_sync(const text::Value& table, const Rig& rig, text::Findings& finding
   return sync;
 }
 
-Capture read_capture(const text::Value& table, const Rig& rig, text::Findings& findings) {
-  TableReader reader(table, "capture", findings);
+Capture read_capture(const text::Value& table, const Rig& rig, TableReader& file) {
+  TableReader reader(table, "capture", file.findings(), file.keys("capture"));
   Capture capture;
-  capture.uri = read_uri(reader, {"sim:", "alsa:NAME"});
-  capture.channels = reader.integer("channels", 1, 32);
+  capture.uri = read_uri(reader);
+  capture.channels = reader.integer("channels");
   std::set<double> seen;
-  for (const double channel : reader.numbers("pickups", {0, 31, Range::Ends::closed})) {
+  for (const double channel : reader.numbers("pickups")) {
     if (channel != std::floor(channel) || channel >= capture.channels || !seen.insert(channel).second)
       reader.problem(
           "pickups",
@@ -166,43 +157,30 @@ Capture read_capture(const text::Value& table, const Rig& rig, text::Findings& f
   }
   const bool has_bridges = reader.has("bridges");
   if (has_bridges || capture.uri.starts_with("alsa:")) read_loop(reader, rig, capture);
-  if (has_bridges)
-    read_bridges(reader, capture);
-  else
-    reader.take("bridges");
+  if (has_bridges) read_bridges(reader, capture);
   read_marker_channel(reader, rig, capture);
   reader.finish();
   return capture;
 }
 
-/// A name of the kernel, which may not contain what separates names in messages and files.
-void check_name(TableReader& reader, const std::string& key, const std::string& name) {
-  if (name.find_first_of(" \t/,\"") == std::string::npos) return;
-  reader.problem(key, phrase("\"%1\" is not the name of a channel or trigger", {plain(name)}),
-                 phrase("a name without spaces, slashes and commas, such as \"voltage0-voltage1\""));
-}
-
-CellConverter read_converter(const text::Value& table, Rig& rig, text::Findings& findings) {
-  TableReader reader(table, "force_cells", findings);
+CellConverter read_converter(const text::Value& table, Rig& rig, TableReader& file) {
+  TableReader reader(table, "force_cells", file.findings(), file.keys("force_cells"));
   CellConverter converter;
-  converter.uri = read_uri(reader, {"iio:DEVICE"});
+  converter.uri = read_uri(reader);
   const std::array keys{"a", "b", "lateral"};
   for (std::size_t k = 0; k < keys.size(); ++k) {
     auto& name = converter.channels[k];
-    name = reader.string(keys[k], phrase("the name of a channel, such as \"voltage0-voltage1\""));
-    check_name(reader, keys[k], name);
+    name = reader.string(keys[k]);
     for (std::size_t other = 0; other < k; ++other)
       if (!name.empty() && converter.channels[other] == name)
         reader.problem(keys[k],
                        phrase("channel \"%1\" is also that of \"%2\"", {plain(name), plain(keys[other])}),
                        phrase("a channel of its own for each cell"));
   }
-  // Below 80 samples a second the contact of a finger is not seen in time; the grid has 1000 points a second.
-  converter.rate_Hz = reader.number("rate_Hz", {80, 1000, Range::Ends::closed, "Hz"});
-  converter.sampling_frequency = reader.maybe_number("sampling_frequency", {0, 1e9, Range::Ends::open_low});
+  converter.rate_Hz = reader.number("rate_Hz");
+  converter.sampling_frequency = reader.maybe_number("sampling_frequency");
   converter.trigger = reader.maybe_string("trigger").value_or("");
-  check_name(reader, "trigger", converter.trigger);
-  converter.delay_s = 1e-3 * reader.number("delay_ms", {0, 1000, Range::Ends::closed, "ms"}, 0);
+  converter.delay_s = 1e-3 * reader.number("delay_ms");
   reader.finish();
   if (!rig.capture || !rig.capture->uri.starts_with("alsa:"))
     reader.problem("uri", phrase("force cells on a converter need pick-ups on the card that plays"),
@@ -220,15 +198,15 @@ bool has_force_cells(const Rig& rig) {
 }
 
 void read_spare_channels(TableReader& file, Rig& rig) {
-  if (const auto* table = file.maybe_table("marker")) rig.marker = read_marker(*table, rig, file.findings());
-  if (const auto* table = file.maybe_table("noise")) rig.noise = read_noise(*table, rig, file.findings());
+  if (const auto* table = file.maybe_table("marker")) rig.marker = read_marker(*table, rig, file);
+  if (const auto* table = file.maybe_table("noise")) rig.noise = read_noise(*table, rig, file);
   if (const auto* table = file.maybe_table("capture"))
-    rig.capture = read_capture(*table, rig, file.findings());
+    rig.capture = read_capture(*table, rig, file);
   if (const auto* table = file.maybe_table("force_cells")) {
-    const auto converter = read_converter(*table, rig, file.findings());
+    const auto converter = read_converter(*table, rig, file);
     if (rig.capture) rig.capture->converter = converter;
   }
-  if (const auto* table = file.maybe_table("sync")) rig.sync = read_sync(*table, rig, file.findings());
+  if (const auto* table = file.maybe_table("sync")) rig.sync = read_sync(*table, rig, file);
 }
 
 int largest_trigger_code(const Rig& rig) {

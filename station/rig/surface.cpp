@@ -9,9 +9,6 @@ using texts::phrase, texts::plain;
 
 namespace {
 
-using text::Range;
-using Ends = text::Range::Ends;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Handbook values for common tempers. A rig used for research should state its own values. The yield strength
 // is only used to warn about a tension that the material cannot carry. expansion_per_K and modulus_per_K are
@@ -39,17 +36,15 @@ const Material* find_material(const std::string& name) {
 }
 
 void read_material(text::TableReader& reader, Surface& surface) {
-  const auto word = reader.maybe_word("material", materials());
+  const auto word = reader.maybe_word("material");
   surface.material = word.value_or("");
   const auto* filled = find_material(surface.material);
-  const auto from_material = [&](const char* key, const Range& range, double fallback) {
-    return filled ? reader.number(key, range, fallback) : reader.number(key, range);
+  const auto from_material = [&](const char* key, double fallback) {
+    return filled ? reader.number_or(key, fallback) : reader.number(key);
   };
-  surface.density_kg_m3 =
-      from_material("density_kg_m3", {1, 30000, Ends::closed, "kg/m3"}, filled ? filled->density_kg_m3 : 0);
-  surface.tension_Pa = reader.number("tension_Pa", {0, 1e12, Ends::closed, "Pa"});
-  const std::vector<std::string> words{"auto", "on", "off"};
-  const auto bending = reader.word("bending", words, "auto");
+  surface.density_kg_m3 = from_material("density_kg_m3", filled ? filled->density_kg_m3 : 0);
+  surface.tension_Pa = reader.number("tension_Pa");
+  const auto bending = reader.word("bending");
   surface.bending = bending == "on" ? Bending::on : bending == "off" ? Bending::off : Bending::automatic;
   if (surface.tension_Pa == 0 && surface.bending == Bending::off)
     reader.problem(
@@ -57,23 +52,15 @@ void read_material(text::TableReader& reader, Surface& surface) {
         phrase("\"bending\" is off although there is no tension, so nothing would hold the surface"),
         phrase("set \"tension_Pa\" above 0, or \"bending\" to \"auto\" or \"on\""));
   const bool needs_bending = surface.tension_Pa == 0 || surface.bending == Bending::on;
-  const Range modulus{1e-6, 2000, Ends::closed, "GPa"}, poisson{-1, 0.5, Ends::open_low};
   if (filled || needs_bending || reader.has("modulus_GPa")) {
-    surface.modulus_Pa = 1e9 * from_material("modulus_GPa", modulus, filled ? filled->modulus_GPa : 0);
-    surface.poisson = from_material("poisson", poisson, filled ? filled->poisson : 0);
+    surface.modulus_Pa = 1e9 * from_material("modulus_GPa", filled ? filled->modulus_GPa : 0);
+    surface.poisson = from_material("poisson", filled ? filled->poisson : 0);
   } else {
-    reader.take("modulus_GPa");
-    surface.poisson = reader.maybe_number("poisson", poisson);
+    surface.poisson = reader.maybe_number("poisson");
   }
   if (filled) surface.yield_Pa = 1e6 * filled->yield_MPa;
-  if (const auto yield = reader.maybe_number("yield_MPa", {0, 1e5, Ends::open_low, "MPa"}))
+  if (const auto yield = reader.maybe_number("yield_MPa"))
     surface.yield_Pa = 1e6 * *yield;
-}
-
-double read_quality_factor(text::TableReader& reader) {
-  const auto* value = reader.take("quality_factor");
-  if (value && value->kind == text::Value::Kind::number && value->number == infinity) return infinity;
-  return reader.number("quality_factor", {1, 1e9, Ends::closed, "(or inf: lossless)"});
 }
 
 void read_profile(const text::Value& list, text::TableReader& reader, Taper& taper) {
@@ -118,33 +105,20 @@ void check_length(const Surface& surface, text::TableReader& reader) {
                    phrase("the last point must be at \"length_mm\" or beyond"));
 }
 
-void read_taper(const text::Value& table, Surface& surface, text::Findings& findings) {
-  text::TableReader reader(table, "surface.taper", findings);
+void read_taper(text::TableReader& reader, Surface& surface) {
   auto& taper = surface.taper;
-  const auto slope = reader.maybe_number("slope", {0, 1, Ends::open_low});
-  const auto decay_mm = reader.maybe_number("decay_length_mm", {1, 1e6, Ends::closed, "mm"});
+  const auto slope = reader.maybe_number("slope");
+  const auto decay_mm = reader.maybe_number("decay_length_mm");
   const auto* profile = reader.take("profile_mm");
-  const int forms = reader.has("slope") + reader.has("decay_length_mm") + reader.has("profile_mm");
-  if (forms != 1)
-    findings.add(reader.place(), phrase("[surface.taper] has %1 forms", {plain(forms)}),
-                 phrase("give exactly one of \"slope\", \"decay_length_mm\" and \"profile_mm\""));
-  const Range half_width{0.5, 1000, Ends::closed, "mm"};
-  if (profile && reader.has("half_width_mm"))
-    reader.problem(
-        "half_width_mm",
-        phrase("\"%1\" is not allowed together with \"%2\"", {plain("half_width_mm"), plain("profile_mm")}),
-        phrase("leave it out: the profile already contains it"));
-  if (!profile) taper.half_width_m = 1e-3 * reader.number("half_width_mm", half_width);
-  reader.take("half_width_mm");
+  if (!profile) taper.half_width_m = 1e-3 * reader.number("half_width_mm");
   taper.slope = slope;
   if (decay_mm) taper.decay_length_m = 1e-3 * *decay_mm;
   if (profile) read_profile(*profile, reader, taper);
-  const Range sd_mm{0, 100, Ends::closed, "mm"};
-  surface.half_width_sd_m = 1e-3 * reader.maybe_number("half_width_sd_mm", sd_mm).value_or(0);
-  surface.slope_sd = reader.maybe_number("slope_sd", {0, 1}).value_or(0);
-  surface.decay_length_sd_m =
-      1e-3 * reader.maybe_number("decay_length_sd_mm", {0, 1e6, Ends::closed, "mm"}).value_or(0);
-  surface.clamp_line_sd_m = 1e-3 * reader.maybe_number("clamp_line_sd_mm", sd_mm).value_or(0);
+  const auto deviation = [&](const char* key) { return reader.maybe_number(key).value_or(0); };
+  surface.half_width_sd_m = 1e-3 * deviation("half_width_sd_mm");
+  surface.slope_sd = deviation("slope_sd");
+  surface.decay_length_sd_m = 1e-3 * deviation("decay_length_sd_mm");
+  surface.clamp_line_sd_m = 1e-3 * deviation("clamp_line_sd_mm");
   if (surface.clamp_line_sd_m > 0 && taper.decay_length_m)
     reader.problem("clamp_line_sd_mm", phrase("an exponential taper has no clamp line"),
                    phrase("use \"half_width_sd_mm\""));
@@ -154,27 +128,23 @@ void read_taper(const text::Value& table, Surface& surface, text::Findings& find
 
 /// Reads standard deviations, and the changes of the surface with temperature.
 void read_deviations(text::TableReader& reader, Surface& surface) {
-  const auto number = [&](const char* key, const Range& range) {
-    return reader.maybe_number(key, range).value_or(0);
-  };
-  surface.tension_sd_Pa = number("tension_sd_Pa", {0, 1e12, Ends::closed, "Pa"});
-  surface.thickness_sd_m = 1e-3 * number("thickness_sd_mm", {0, 100, Ends::closed, "mm"});
-  surface.density_sd_kg_m3 = number("density_sd_kg_m3", {0, 30000, Ends::closed, "kg/m3"});
-  surface.modulus_sd_Pa = 1e9 * number("modulus_sd_GPa", {0, 2000, Ends::closed, "GPa"});
-  surface.temperature_sd_K = number("temperature_sd_K", {0, 100, Ends::closed, "K"});
+  const auto number = [&](const char* key) { return reader.maybe_number(key).value_or(0); };
+  surface.tension_sd_Pa = number("tension_sd_Pa");
+  surface.thickness_sd_m = 1e-3 * number("thickness_sd_mm");
+  surface.density_sd_kg_m3 = number("density_sd_kg_m3");
+  surface.modulus_sd_Pa = 1e9 * number("modulus_sd_GPa");
+  surface.temperature_sd_K = number("temperature_sd_K");
   const auto* filled = find_material(surface.material);
-  const Range expansion{0, 1e-3, Ends::closed, "per K"}, softening{-0.02, 0.02, Ends::closed, "per K"};
   surface.expansion_per_K =
-      reader.maybe_number("expansion_per_K", expansion).value_or(filled ? filled->expansion_per_K : 0);
-  surface.modulus_per_K =
-      reader.maybe_number("modulus_per_K", softening).value_or(filled ? filled->modulus_per_K : 0);
+      reader.maybe_number("expansion_per_K").value_or(filled ? filled->expansion_per_K : 0);
+  surface.modulus_per_K = reader.maybe_number("modulus_per_K").value_or(filled ? filled->modulus_per_K : 0);
   if (surface.temperature_sd_K > 0 && surface.expansion_per_K == 0 && surface.modulus_per_K == 0)
     reader.problem("temperature_sd_K", phrase("nothing says how this surface changes with temperature"),
                    phrase("add \"expansion_per_K\" and \"modulus_per_K\""));
 }
 
 void read_plate_theory(text::TableReader& reader, Surface& surface) {
-  const auto word = reader.word("plate_theory", {"kirchhoff", "mindlin", "elastic", "auto"}, "kirchhoff");
+  const auto word = reader.word("plate_theory");
   surface.plate_theory = word == "mindlin"   ? PlateTheory::mindlin
                          : word == "elastic" ? PlateTheory::elastic
                          : word == "auto"    ? PlateTheory::automatic
@@ -194,21 +164,21 @@ std::vector<std::string> materials() {
   return names;
 }
 
-Surface read_surface(const text::Value& table, text::Findings& findings) {
-  text::TableReader reader(table, "surface", findings);
+Surface read_surface(const text::Value& table, text::TableReader& file) {
+  text::TableReader reader(table, "surface", file.findings(), file.keys("surface"));
   Surface surface;
   read_material(reader, surface);
-  surface.thickness_m = 1e-3 * reader.number("thickness_mm", {1e-3, 100, Ends::closed, "mm"});
-  surface.length_m = 1e-3 * reader.number("length_mm", {1, 1e5, Ends::closed, "mm"});
-  surface.quality_factor = read_quality_factor(reader);
-  surface.edges = reader.word("edges", {"supported", "clamped"}, "supported") == "clamped" ? Edges::clamped
-                                                                                           : Edges::supported;
+  surface.thickness_m = 1e-3 * reader.number("thickness_mm");
+  surface.length_m = 1e-3 * reader.number("length_mm");
+  surface.quality_factor = reader.number("quality_factor");
+  surface.edges = reader.word("edges") == "clamped" ? Edges::clamped : Edges::supported;
   read_plate_theory(reader, surface);
-  surface.wide_end =
-      reader.word("wide_end", {"left", "right"}, "left") == "left" ? WideEnd::left : WideEnd::right;
+  surface.wide_end = reader.word("wide_end") == "left" ? WideEnd::left : WideEnd::right;
   read_deviations(reader, surface);
-  if (const auto* taper = reader.table("taper", phrase("add a table %1", {plain("[surface.taper]")})))
-    read_taper(*taper, surface, findings);
+  if (const auto* taper = reader.table("taper")) {
+    text::TableReader inner(*taper, "surface.taper", file.findings(), reader.keys("taper"));
+    read_taper(inner, surface);
+  }
   reader.finish();
   return surface;
 }

@@ -5,6 +5,6 @@
 namespace turnpoint::rig {
 
 /// Reads the [surface] table with its [surface.taper].
-Surface read_surface(const text::Value& table, text::Findings& findings);
+Surface read_surface(const text::Value& table, text::TableReader& file);
 
 }  // namespace turnpoint::rig

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
+#include <stdexcept>
 #include <tuple>
 
 #include "station/text/number.hpp"
@@ -73,6 +75,57 @@ texts::Phrase suggestion(const std::string& word, const std::vector<std::string>
 TableReader::TableReader(const Value& table, std::string name, Findings& findings)
     : table_(&table), name_(std::move(name)), findings_(&findings) {}
 
+TableReader::TableReader(const Value& table, std::string name, Findings& findings, const Keys& keys)
+    : table_(&table), name_(std::move(name)), findings_(&findings), keys_(&keys) {}
+
+const Key& TableReader::declared(const std::string& key) const {
+  const auto found = keys_ != nullptr ? find(*keys_, key, *table_) : Found{};
+  if (found.key == nullptr) throw std::logic_error("the key \"" + path(key) + "\" is not declared");
+  return *found.key;
+}
+
+const Key& TableReader::declared(const std::string& key, Key::Kind kind) const {
+  const auto& found = declared(key);
+  if (found.kind == kind) return found;
+  for (const auto& form : found.forms)
+    if (form.kind == kind) return form;
+  throw std::logic_error("the key \"" + path(key) + "\" is declared as another kind of value");
+}
+
+const Range& TableReader::range(const std::string& key) const { return declared(key).range; }
+const std::vector<std::string>& TableReader::words(const std::string& key) const {
+  return declared(key).words;
+}
+const Keys& TableReader::keys(const std::string& key) const { return below(*keys_, key); }
+
+texts::Phrase TableReader::needed(const Key& key) const {
+  using Kind = Key::Kind;
+  switch (key.kind) {
+    case Kind::number:
+      return phrase("a number %1", {describe(key.range)});
+    case Kind::integer:
+      return phrase("a whole number %1", {describe(key.range)});
+    case Kind::word:
+    case Kind::uri:
+      return phrase("allowed: %1", {quoted_list(key.words)});
+    case Kind::numbers:
+    case Kind::integers:
+      return phrase("a list of numbers %1", {describe(key.range)});
+    case Kind::interval:
+      return phrase("%1, %2: %3", {plain("[low, high]"), describe(key.range), plain(key.help)});
+    case Kind::localised:
+      return phrase("write a text in each language: %1", {plain("{ en = \"...\" }")});
+    case Kind::texts:
+      return phrase("a list of texts: %1", {plain(key.help)});
+    case Kind::tables:
+      return phrase("add tables %1: %2", {plain("[[" + path(key.name) + "]]"), plain(key.help)});
+    case Kind::table:
+      return phrase("add a table %1: %2", {plain("[" + path(key.name) + "]"), plain(key.help)});
+    default:
+      return plain(key.help);
+  }
+}
+
 texts::Phrase TableReader::title() const {
   return name_.empty() ? phrase("the file") : plain("[" + name_ + "]");
 }
@@ -95,6 +148,7 @@ void TableReader::defaulted(const std::string& key, const std::string& value) {
 }
 
 const Value* TableReader::take(const std::string& key) {
+  if (keys_ != nullptr) declared(key);  // throws if it is not declared
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
   const auto* entry = table_->find(key);
   return entry ? &entry->value : nullptr;
@@ -106,6 +160,8 @@ const Value* TableReader::require(const std::string& key, const texts::Phrase& w
   return value;
 }
 
+const Value* TableReader::require(const std::string& key) { return require(key, needed(declared(key))); }
+
 bool TableReader::check_number(const Value& value, const std::string& key, const Range& range) {
   if (value.kind != Value::Kind::integer && value.kind != Value::Kind::number) {
     findings_->add(value.place, phrase("\"%1\" is %2", {plain(key), describe(value)}),
@@ -114,6 +170,7 @@ bool TableReader::check_number(const Value& value, const std::string& key, const
   }
   const double x = value.number;
   if (inside_range(x, range)) return true;
+  if (std::isinf(x) && x > 0 && keys_ != nullptr && declared(key).infinite) return true;
   const std::string shown = std::isnan(x)   ? "nan"
                             : std::isinf(x) ? (x < 0 ? "-inf" : "inf")
                                             : text::number(x);
@@ -137,6 +194,80 @@ double harmless(const Range& range) {
   return std::isfinite(range.high) ? range.high - 1 : 0;
 }
 }  // namespace
+
+std::optional<double> TableReader::maybe_number(const std::string& key) {
+  return maybe_number(key, declared(key, Key::Kind::number).range);
+}
+
+double TableReader::number(const std::string& key) {
+  const auto& known = declared(key, Key::Kind::number);
+  return known.fallback.empty() ? number(key, known.range)
+                                : number(key, known.range, read_number(known.fallback).value());
+}
+
+double TableReader::number_or(const std::string& key, double fallback) {
+  return number(key, declared(key, Key::Kind::number).range, fallback);
+}
+
+std::optional<int> TableReader::maybe_integer(const std::string& key) {
+  const auto& range = declared(key, Key::Kind::integer).range;
+  return maybe_integer(key, static_cast<int>(range.low), static_cast<int>(range.high));
+}
+
+int TableReader::integer(const std::string& key) {
+  const auto& known = declared(key, Key::Kind::integer);
+  const int low = static_cast<int>(known.range.low), high = static_cast<int>(known.range.high);
+  return known.fallback.empty() ? integer(key, low, high)
+                                : integer(key, low, high, std::stoi(known.fallback));
+}
+
+bool TableReader::boolean(const std::string& key) {
+  return boolean(key, declared(key, Key::Kind::boolean).fallback.c_str());
+}
+
+std::string TableReader::string(const std::string& key) {
+  const auto& known = declared(key);
+  return string(key, needed(known));
+}
+
+std::optional<std::string> TableReader::maybe_word(const std::string& key) {
+  return maybe_word(key, declared(key, Key::Kind::word).words);
+}
+
+std::string TableReader::word(const std::string& key) {
+  const auto& known = declared(key, Key::Kind::word);
+  return known.fallback.empty()
+             ? word(key, known.words)
+             : word(key, known.words, known.fallback.substr(1, known.fallback.size() - 2));
+}
+
+namespace {
+const Key& list_among(const Key& key) {
+  for (const auto& form : key.forms)
+    if (form.kind == Key::Kind::numbers) return form;
+  return key;
+}
+}  // namespace
+
+std::vector<double> TableReader::maybe_numbers(const std::string& key) {
+  const auto& known = list_among(declared(key));
+  return maybe_numbers(key, known.range, known.fewest);
+}
+
+std::vector<double> TableReader::numbers(const std::string& key) {
+  const auto& known = list_among(declared(key));
+  return numbers(key, known.range, known.fewest);
+}
+
+std::optional<std::pair<double, double>> TableReader::maybe_interval(const std::string& key) {
+  return maybe_interval(key, declared(key, Key::Kind::interval).range);
+}
+
+std::vector<std::string> TableReader::strings(const std::string& key) {
+  return strings(key, needed(declared(key)));
+}
+
+const Value* TableReader::table(const std::string& key) { return table(key, needed(declared(key))); }
 
 std::optional<double> TableReader::maybe_number(const std::string& key, const Range& range) {
   return number_from(take(key), key, range);
@@ -194,7 +325,14 @@ bool TableReader::boolean(const std::string& key, const char* fallback) {
 std::optional<std::string> TableReader::maybe_string(const std::string& key) {
   const auto* value = take(key);
   if (!value) return std::nullopt;
-  if (value->kind == Value::Kind::string && !value->string.empty()) return value->string;
+  if (value->kind == Value::Kind::string && !value->string.empty()) {
+    if (keys_ == nullptr) return value->string;
+    const auto& known = declared(key);
+    if (!known.pattern.empty() && !std::regex_match(value->string, std::regex(known.pattern)))
+      findings_->add(value->place, phrase("\"%1\" is \"%2\"", {plain(key), plain(value->string)}),
+                     phrase("allowed: %1", {plain(known.form)}));
+    return value->string;
+  }
   findings_->add(value->place,
                  phrase("\"%1\" is %2",
                         {plain(key), value->kind == Value::Kind::string ? plain("empty") : describe(*value)}),
@@ -329,11 +467,40 @@ std::vector<const Value*> TableReader::tables(const std::string& key) {
   return list;
 }
 
+void TableReader::check_groups() {
+  const auto count = [&](const std::vector<std::string>& names) {
+    return std::count_if(names.begin(), names.end(), [&](const auto& name) { return has(name); });
+  };
+  for (const auto& names : keys_->exactly_one)
+    if (const auto given = count(names); given != 1)
+      findings_->add(table_->place, phrase("%1 has %2 of %3", {title(), plain(given), quoted_list(names)}),
+                     phrase("give exactly one of them"));
+  for (const auto& names : keys_->at_least_one)
+    if (count(names) == 0)
+      findings_->add(table_->place, phrase("%1 has none of %2", {title(), quoted_list(names)}),
+                     phrase("give at least one of them"));
+}
+
 void TableReader::finish() {
+  if (keys_ != nullptr) check_groups();
   for (const auto& entry : table_->entries) {
+    const auto found = keys_ != nullptr ? find(*keys_, entry.key, *table_) : Found{};
+    if (found.key != nullptr && !found.fits) {
+      findings_->add(entry.place, phrase("\"%1\" has no effect in %2", {plain(entry.key), title()}),
+                     plain(condition_of(*found.key)));
+      continue;
+    }
     if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
-    auto known = known_;
+    if (found.key != nullptr && found.key != keys_->named.get()) {
+      // Nothing may be accepted that is not read.
+      if (findings_->problems.empty())
+        throw std::logic_error("the key \"" + path(entry.key) + "\" is declared, but not read");
+      continue;
+    }
+    auto known = keys_ != nullptr ? names_for(*keys_, *table_) : std::vector<std::string>{};
+    known.insert(known.end(), known_.begin(), known_.end());
     std::sort(known.begin(), known.end());
+    known.erase(std::unique(known.begin(), known.end()), known.end());
     findings_->add(entry.place, phrase("unknown key \"%1\" in %2", {plain(entry.key), title()}),
                    suggestion(entry.key, known));
   }

@@ -5,22 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "station/text/keys.hpp"
+#include "station/text/range.hpp"
 #include "station/text/toml.hpp"
 
 namespace turnpoint::text {
-
-/// The allowed range of a number in a file. `ends` says which ends are excluded (open). The unit appears only
-/// in messages ("mm").
-struct Range {
-  double low = 0, high = 0;
-  enum class Ends { closed, open_low, open_high, open } ends = Ends::closed;
-  const char* unit = "";
-};
-
-/// Describes a range for people: `from 0 to 1 mm`, `above 0 um`, ...
-texts::Phrase describe(const Range& range);
-/// True if the value is finite and within the range.
-bool inside_range(double value, const Range& range);
 
 /// Collects problems, so that a reader can report all of them at once, and the defaults that were used.
 struct Findings {
@@ -41,13 +30,18 @@ texts::Phrase quoted_list(const std::vector<std::string>& words);
 /// Says which of the known words `word` was probably meant to be: `did you mean "x"? known: a, b, c`.
 texts::Phrase suggestion(const std::string& word, const std::vector<std::string>& known);
 
-/// Reads one table key by key. Each getter marks its key as known; finish() reports all other keys and
-/// suggests the nearest known key for each. If a value has the wrong type or is out of range, the getter
-/// reports a problem and returns a valid value instead, so that reading can continue. The table must outlive
-/// the reader.
+/// Reads one table key by key. What the keys are is declared in `keys`; a getter takes range, words, default
+/// and whether the key is needed from there, and throws std::logic_error for a key that is not declared. If a
+/// value has the wrong type or is out of range, the getter reports a problem and returns a valid value
+/// instead, so that reading can continue. finish() reports all keys that are not declared or have no effect
+/// here, and suggests the nearest. The table and the keys must outlive the reader.
+///
+/// Getters with a range are for limits that depend on other values of the file, and number_or() is for
+/// defaults that do. Without `keys`, all getters take what they allow, and a getter marks its key as known.
 class TableReader {
  public:
   /// `name` is the dotted path that appears in messages and in the list of defaults; "" for the whole file.
+  TableReader(const Value& table, std::string name, Findings& findings, const Keys& keys);
   TableReader(const Value& table, std::string name, Findings& findings);
 
   /// Returns the raw value and marks the key as known; nullptr if the key is absent.
@@ -55,7 +49,27 @@ class TableReader {
   /// Like take(), but reports a problem if the key is absent. `what` is the part of the message that says
   /// what the key is for.
   const Value* require(const std::string& key, const texts::Phrase& what);
+  const Value* require(const std::string& key);
   bool has(const std::string& key) const { return table_->find(key) != nullptr; }
+
+  std::optional<double> maybe_number(const std::string& key);
+  double number(const std::string& key);
+  double number_or(const std::string& key, double fallback);
+  std::optional<int> maybe_integer(const std::string& key);
+  int integer(const std::string& key);
+  bool boolean(const std::string& key);
+  std::string string(const std::string& key);
+  std::optional<std::string> maybe_word(const std::string& key);
+  std::string word(const std::string& key);
+  std::vector<double> maybe_numbers(const std::string& key);
+  std::vector<double> numbers(const std::string& key);
+  std::optional<std::pair<double, double>> maybe_interval(const std::string& key);
+  std::vector<std::string> strings(const std::string& key);
+  const Value* table(const std::string& key);
+  /// The declared range and words of a key, and the keys of the table that it is.
+  const Range& range(const std::string& key) const;
+  const std::vector<std::string>& words(const std::string& key) const;
+  const Keys& keys(const std::string& key) const;
 
   std::optional<double> maybe_number(const std::string& key, const Range& range);
   double number(const std::string& key, const Range& range);
@@ -106,12 +120,17 @@ class TableReader {
   void finish();
 
  private:
+  const Key& declared(const std::string& key) const;
+  const Key& declared(const std::string& key, Key::Kind kind) const;
+  texts::Phrase needed(const Key& key) const;
+  void check_groups();
   bool check_number(const Value& value, const std::string& key, const Range& range);
   std::optional<double> number_from(const Value* value, const std::string& key, const Range& range);
 
   const Value* table_;
   std::string name_;
   Findings* findings_;
+  const Keys* keys_ = nullptr;
   std::vector<std::string> known_;
 };
 

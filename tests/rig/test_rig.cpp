@@ -122,8 +122,8 @@ TEST_CASE("invalid values in a rig file are refused, with what is allowed", "[ri
                  "it may extend at most to 0.45 of rate_Hz, which is 43.2 kHz"));
   CHECK(contains(problems("\"null:\"", "\"pulse:\""), "allowed: \"null:\", \"wav:FILE\" or \"alsa:DEVICE\""));
   CHECK(contains(problems("length_mm = 300", "length_mm = 500"), "before the end of the surface"));
-  CHECK(contains(problems("slope = 0.03", "slope = 0.03\ndecay_length_mm = 300"), "has 2 forms"));
-  CHECK(contains(problems("slope = 0.03", ""), "has 0 forms"));
+  CHECK(contains(problems("slope = 0.03", "slope = 0.03\ndecay_length_mm = 300"), "has 2 of \"slope\", \"decay_length_mm\" or \"profile_mm\""));
+  CHECK(contains(problems("slope = 0.03", ""), "has 0 of \"slope\""));
   CHECK(contains(problems("quality_factor = 30", "quality_factor = nan"), "\"quality_factor\" is nan"));
   CHECK(contains(problems("\"aluminium\"", "\"aluminum\""), "did you mean \"aluminium\"?"));
   CHECK(contains(problems("band_kHz = [14, 60]", "band_kHz = [60, 14]"), "the smaller first"));
