@@ -27,21 +27,24 @@ const char* word_for(store::ErrorKind kind) {
     case ErrorKind::corrupt:
     case ErrorKind::not_a_database:
       return "state.database_damaged";
+    case ErrorKind::other_machine:
+      return "state.database_elsewhere";
     default:
       return "state.database_unusable";
   }
 }
 
-StationState::Sign database_sign(const std::string& database, texts::Phrase& refusal) {
+StationState::Sign database_sign(const std::string& database, StationState& state) {
   const char* word = "state.database_unusable";
   try {
     store::require_recordable(database);
     return {"database", true, phrase("state.database_good")};
   } catch (const store::StoreError& error) {
     word = word_for(error.kind());
-    refusal = texts::phrase_of(error);
+    state.other_machine = error.kind() == store::ErrorKind::other_machine;
+    state.refusal = texts::phrase_of(error);
   } catch (const std::exception& error) {
-    refusal = texts::phrase_of(error);
+    state.refusal = texts::phrase_of(error);
   }
   return {"database", false, phrase(word)};
 }
@@ -50,7 +53,7 @@ StationState::Sign database_sign(const std::string& database, texts::Phrase& ref
 
 StationState station_state(const std::string& database) {
   StationState state;
-  state.signs.push_back(database_sign(database, state.refusal));
+  state.signs.push_back(database_sign(database, state));
   const auto disk = system::read_disk(std::filesystem::absolute(database).parent_path().string());
   const bool roomy = session::judged(disk).verdict == records::Verdict::passed;
   state.signs.push_back({"disk", roomy,

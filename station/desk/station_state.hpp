@@ -15,6 +15,8 @@ struct StationState {
     texts::Phrase says;  ///< a few words
   };
   std::string station;  ///< the name under which it records
+  /// true if the database was recorded on another machine, and somebody has to say what happened
+  bool other_machine = false;
   std::vector<Sign> signs;
   /// why no session can be recorded, as a sentence; says nothing if one can
   texts::Phrase refusal;

@@ -49,6 +49,7 @@ ConstantStimuli::ConstantStimuli(const Spec& spec, const Context& context, const
   random::Draws draws({key.seed, random::Stream::level_order, key.block, key.attempt, 0});
   queue_ = items(draws);
   order(queue_, draws);
+  for (const auto& item : queue_) ++left_[kind_of(item)];
   total_ = static_cast<int>(queue_.size());
 }
 
@@ -90,18 +91,27 @@ bool ConstantStimuli::in_repeat(std::size_t at) const {
 std::vector<Candidate> ConstantStimuli::candidates() const {
   if (!next()) return {};
   if (spec_.shuffle == Shuffle::none) return {{choice(0)}};
+  // This is called for each trial, and a list may be long: the search ends once all kinds of items are known.
   std::vector<Candidate> all;
+  std::map<Kind, std::size_t> known;
+  const auto look = [&](std::size_t at) -> Candidate& {
+    const auto [found, is_new] = known.try_emplace(kind_of(queue_[at]), all.size());
+    if (is_new) all.push_back({choice(at - position_), at - position_, 0, left_.at(found->first)});
+    return all[found->second];
+  };
+  const bool in_block = spec_.shuffle == Shuffle::within_block;
   std::vector<bool> soon(spec_.values.size());  // the values that the present repeat still has
-  std::map<std::pair<std::size_t, std::vector<std::size_t>>, std::size_t> known;
-  for (auto at = position_; at < queue_.size(); ++at) {
-    const auto& item = queue_[at];
-    if (in_repeat(at)) soon[item.value] = true;
-    if (!soon[item.value]) continue;
-    const auto [found, is_new] = known.try_emplace({item.value, item.balance}, all.size());
-    if (is_new) all.push_back({choice(at - position_), at - position_, 0, 0});
-    ++all[found->second].in_all;
-    all[found->second].in_repeat += in_repeat(at) ? 1 : 0;
+  auto at = position_;
+  for (; at < queue_.size() && in_repeat(at) && known.size() < (in_block ? left_.size() : queue_.size()); ++at) {
+    ++look(at).in_repeat;
+    soon[queue_[at].value] = true;
   }
+  if (in_block)
+    for (auto& candidate : all) candidate.in_repeat = candidate.in_all;
+  const auto kinds = static_cast<std::size_t>(
+      std::ranges::count_if(left_, [&](const auto& left) { return soon[left.first.first]; }));
+  for (; at < queue_.size() && known.size() < kinds; ++at)
+    if (soon[queue_[at].value]) look(at);
   return all;
 }
 
@@ -133,6 +143,7 @@ std::optional<Proposal> ConstantStimuli::next() const {
 
 void ConstantStimuli::record(Answer answer) {
   auto item = queue_[position_++];
+  if (const auto left = left_.find(kind_of(item)); --left->second == 0) left_.erase(left);
   if (spec_.stop.right && answer != Answer::none) answers_.push_back(answer == Answer::one);
   if (answer != Answer::none || context_.unanswered_are_data) {
     ++recorded_;
@@ -144,6 +155,7 @@ void ConstantStimuli::record(Answer answer) {
   const auto left = queue_.size() - position_;
   const auto offset = left == 0 ? 0 : 1 + draws.below(left);
   if (left > 0) item.repeat = queue_[position_ + offset - 1].repeat;
+  ++left_[kind_of(item)];
   queue_.insert(queue_.begin() + static_cast<std::ptrdiff_t>(position_ + offset), item);
 }
 

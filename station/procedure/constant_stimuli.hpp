@@ -1,5 +1,7 @@
 #pragma once
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "station/procedure/procedure.hpp"
@@ -28,6 +30,8 @@ class ConstantStimuli : public Procedure {
     std::size_t value = 0, repeat = 0;
     std::vector<std::size_t> balance;
   };
+  using Kind = std::pair<std::size_t, std::vector<std::size_t>>;  ///< value and levels of the balanced factors
+  static Kind kind_of(const Item& item) { return {item.value, item.balance}; }
   std::vector<Item> items(random::Draws& draws) const;
   bool in_repeat(std::size_t at) const;
   void order(std::vector<Item>& items, random::Draws& draws) const;
@@ -37,6 +41,7 @@ class ConstantStimuli : public Procedure {
   random::Key key_;
   std::vector<Item> queue_;
   std::size_t position_ = 0;
+  std::map<Kind, int> left_;  ///< how many items of each kind are still to come
   /// the answers so far; kept only if the protocol sets Stop::right and Stop::of_last
   std::vector<bool> answers_;
   int recorded_ = 0, requeued_ = 0, total_ = 0;

@@ -62,6 +62,7 @@ void require_recordable(const std::string& path) {
                       path, place, std::generic_category().message(errno)));
   if (!exists) return;
   auto database = open_reader(path);
+  require_own_machine(database, machine_identity());
   if (std::filesystem::file_size(path) <= kQuickToRead_B) check_pages(database);
   list_sessions(database);
 }

@@ -9,6 +9,7 @@
 
 #include "station/session/planned_session.hpp"
 #include "station/setup/prepare.hpp"
+#include "station/store/open.hpp"
 #include "station/store/backup.hpp"
 #include "station/store/session_log.hpp"
 #include "station/store/station.hpp"
@@ -207,6 +208,48 @@ TEST_CASE("the start page says how old the last good backup is", "[start]") {
   CHECK(aged(6.9)["hours"] == 165);
   CHECK(aged(7.1)["state"] == "old");
   CHECK(aged(-1)["state"] == "ahead");
+}
+
+TEST_CASE("a database of another machine is asked about, and either answer lets sessions begin", "[start]") {
+  if (store::machine_identity().empty()) return;  // such a machine is never taken for another one
+  StartPage start;
+  std::filesystem::copy_file(kSource + "/protocols/friction-training.toml", start.folder / "0.toml");
+  const auto path = start.folder / "lab.sqlite";
+  records::SessionStart session;
+  session.participant = "P01", session.station_id = "bench-1";
+  store::SessionLog::begin(path, session, {}).finish(records::SessionStatus::stopped, "");
+  const auto id = store::read_station(path).database_id;
+  {
+    auto writer = store::open_writer(path, store::IfMissing::fail);
+    store::move_station(writer.database, "of another board");
+  }
+  start.open();
+  REQUIRE(start.comes([&] { return start.page->other_machine(); }));
+  CHECK(start.page->station() == "bench-1");
+  CHECK_FALSE(start.page->may_begin());
+
+  SECTION("a name that is not possible changes nothing and says why") {
+    start.page->nameCopy("bench 2");
+    CHECK(start.page->other_machine());
+    CHECK_FALSE(start.page->problems().empty());
+    CHECK(store::read_station(path).machine == "of another board");
+  }
+  SECTION("it was replaced") {
+    start.page->replaceMachine();
+    REQUIRE(start.comes([&] { return !start.page->other_machine(); }));
+    CHECK(store::read_station(path).name == "bench-1");
+    CHECK(store::read_station(path).database_id == id);
+    start.checks.let_go();
+    CHECK(start.comes([&] { return start.page->may_begin(); }));
+  }
+  SECTION("it is a copy") {
+    start.page->nameCopy(" bench-2 ");
+    REQUIRE(start.comes([&] { return !start.page->other_machine(); }));
+    CHECK(start.page->station() == "bench-2");
+    CHECK(store::read_station(path).database_id != id);
+    start.checks.let_go();
+    CHECK(start.comes([&] { return start.page->may_begin(); }));
+  }
 }
 
 TEST_CASE("the operator begins a session that comes too early only with a reason, which the session gets",

@@ -43,7 +43,7 @@ Rectangle {
             id: page
             /// Height of everything except the list of protocols and the summary, which need about five lines
             /// each.
-            readonly property real fixed: header.height + interrupted.height + footer.height + 2 * look.margin + 4 * root.gap
+            readonly property real fixed: header.height + interrupted.height + machine.height + footer.height + 2 * look.margin + 4 * root.gap
             width: wholePage.width
             height: Math.max(root.height, fixed + (root.tall ? 16 : 8) * look.textBody)
             Item {
@@ -75,9 +75,22 @@ Rectangle {
                 operating: root.operating
             }
 
+            OtherMachine {
+                id: machine
+                anchors { left: parent.left; right: parent.right; top: interrupted.bottom; margins: look.margin; topMargin: visible ? root.gap : 0 }
+                theme: look
+                texts: texts
+                operating: root.operating
+                onReplaced: button => {
+                    replacing.opener = button
+                    replacing.open()
+                }
+                onCopied: naming.open("")
+            }
+
             Item {
                 id: body
-                anchors { left: parent.left; right: parent.right; top: interrupted.bottom; bottom: footer.top; margins: look.margin; topMargin: root.gap; bottomMargin: root.gap }
+                anchors { left: parent.left; right: parent.right; top: machine.bottom; bottom: footer.top; margins: look.margin; topMargin: root.gap; bottomMargin: root.gap }
             }
             ProtocolList {
                 id: list
@@ -129,6 +142,30 @@ Rectangle {
         keepText: texts.text("operator.begin_early")
         cancelText: texts.text("operator.cancel")
         onAccepted: text => root.operating.beginEarly(text)
+    }
+
+    ConfirmDialog {
+        id: replacing
+        objectName: "replacing"
+        anchors.fill: parent
+        theme: look
+        texts: texts
+        title: texts.text("operator.replaced_title")
+        text: texts.fill("operator.replaced_text", root.operating.station)
+        keepText: texts.text("operator.cancel")
+        confirmText: texts.text("operator.replaced_do")
+        onConfirmed: root.operating.replaceMachine()
+    }
+    EntryDialog {
+        id: naming
+        objectName: "naming"
+        anchors.fill: parent
+        theme: look
+        title: texts.text("operator.copy_title")
+        help: texts.fill("operator.copy_help", root.operating.station)
+        keepText: texts.text("operator.copy_do")
+        cancelText: texts.text("operator.cancel")
+        onAccepted: text => root.operating.nameCopy(text)
     }
 
     ParticipantEntry {

@@ -254,6 +254,21 @@ void OperatorController::prepare(const std::string& early) {
       &OperatorController::refuse);
 }
 
+void OperatorController::replaceMachine() { name_station({"", store::Whose::moved}); }
+
+void OperatorController::nameCopy(const QString& name) { name_station({name.trimmed().toStdString()}); }
+
+void OperatorController::name_station(const store::StationName& how) {
+  if (preparing_) return;
+  forget_refusal();
+  try {
+    store::name_station(request_.database, how);
+  } catch (const std::exception& error) {
+    return refuse({texts::phrase_of(error)});
+  }
+  refresh();
+}
+
 void OperatorController::resume() {
   if (interrupted_) resumeSession(QString::fromStdString(interrupted_->session_id));
 }

@@ -13,6 +13,7 @@
 #include "station/desk/station_state.hpp"
 #include "station/session/session.hpp"
 #include "station/setup/prepare.hpp"
+#include "station/store/station.hpp"
 #include "station/ui/operator/check_protocol.hpp"
 #include "station/ui/platform/newest_job.hpp"
 
@@ -64,6 +65,8 @@ class OperatorController : public QObject {
   /// until it was read
   Q_PROPERTY(QVariantList signs READ signs NOTIFY changed)
   Q_PROPERTY(QString station READ station NOTIFY changed)  ///< the name under which the station records
+  /// whether the database was recorded on another machine, and somebody has to say what happened
+  Q_PROPERTY(bool otherMachine READ other_machine NOTIFY changed)
   Q_PROPERTY(bool mayBegin READ may_begin NOTIFY changed)
   Q_PROPERTY(bool preparing READ preparing NOTIFY changed)
   Q_PROPERTY(QString rig READ rig CONSTANT)
@@ -102,6 +105,7 @@ class OperatorController : public QObject {
   QVariantMap backup() const;
   QVariantList signs() const;
   QString station() const { return QString::fromStdString(state_.station); }
+  bool other_machine() const { return state_.other_machine; }
   bool may_begin() const;
   bool preparing() const { return preparing_; }
   QString rig() const { return QString::fromStdString(request_.rig); }
@@ -122,6 +126,10 @@ class OperatorController : public QObject {
   Q_INVOKABLE void begin();
   /// Prepares the session although it begins too early. The reason is stored with it.
   Q_INVOKABLE void beginEarly(const QString& reason);
+  /// Says that this machine replaces the one on which the database was recorded.
+  Q_INVOKABLE void replaceMachine();
+  /// Says that the database is a copy, and gives the station of this copy its own name.
+  Q_INVOKABLE void nameCopy(const QString& name);
   /// Continues the newest interrupted session.
   Q_INVOKABLE void resume();
   Q_INVOKABLE void resumeSession(const QString& session_id);
@@ -141,6 +149,7 @@ class OperatorController : public QObject {
   void check_live();
   void refuse_live(std::vector<texts::Phrase> reasons);
   void look_at_station();
+  void name_station(const store::StationName& how);
   void stay();
   bool refuses() const;
   void fail(std::vector<texts::Phrase> problems);
