@@ -133,12 +133,11 @@ std::optional<double> first_mode_frequency_Hz(const Surface& surface, const MapO
 }
 
 // Finds the frequency for the two-dimensional field by Newton steps. Their slope comes from the first mode,
-// which is cheap to solve. Each step reduces the error about a hundredfold, so the result of the last step,
-// of a tenth of a millimetre at most, is right to about a micrometre and need not be checked by another
-// solution.
+// which is cheap to solve. Each step reduces the error about a hundredfold, so the result of the last step
+// need not be checked by another solution.
 std::optional<double> field_frequency_Hz(const Surface& surface, const MapOptions& options, double x,
                                          double f) {
-  constexpr double last_step_m = 1e-4;
+  constexpr double last_step_m = 2e-5;
   for (int i = 0; i < 12; ++i) {
     const double aside = 1e-4 * f;
     const auto at = edge_at(surface, options, f, Model::modes);

@@ -29,18 +29,9 @@ constexpr double slope_shift = 0.1;      // shift of an edge, divided by |W'|^3
 // On a clamped plate, the transverse shape of `mode` is exact only at the cut-off, so its phase drifts
 // between the drive edge and the cut-off.
 constexpr double plate_drift = 1.5e-3;  // phase error in radians, divided by k times the turning point's x
-// Of Mindlin's plate, `mode` has the shapes at the drive edge and at the turning point. Its phase error is 0
-// if these are one place, and grows with the square of the relative difference between their half-widths: by
-// the first number at the drive edge, and by the second for each radian on the way. The bounds are twice the
-// largest errors found on random plates with straight sides, which do not depend on the slope
-// (planner_test.cpp).
-constexpr double thick_phase = 2.6e-2, thick_drift = 2.2e-4, thick_least_phase = 2e-3;
 constexpr double plate_piston = 0.9;    // amplitude of higher modes for a piston drive, at any slope
 // cut-off half-width of the second symmetric mode divided by that of the first
 constexpr double plate_second_mode = 2.3246;
-// Below this ratio, no second mode propagates or is trapped near the drive edge, also with the margin that a
-// thick plate needs; the slope up to which Mindlin's plates were tried.
-constexpr double no_second_mode = 2.1, gentle_slope = 0.15;
 constexpr double plate_shift = 1.2e-3;  // shift of an edge, which occurs on every taper
 // Tension makes a boundary layer along clamped sides, whose width does not follow W. The shape that `mode`
 // uses, however, has at every W the layer that belongs to the cut-off half-width. This value is added to
@@ -156,19 +147,11 @@ double bound_plate(ModeBound& bound, const Surface& surface, double f, double ne
   const Dispersion dispersion(surface);
   const double cut = dispersion.cut_off_half_width_m(f), ratio = taper.half_width_m(0) / cut;
   const double x0 = taper.position_m(cut).value_or(taper.length_m());
-  double coupled = coupling * std::max(taper_is.before, taper_is.at_turning * ratio) +
-                   coupling * taper_is.bend + (surface.drive == DriveShape::piston ? plate_piston : 0);
-  const double radians = dispersion.wavenumber_per_m(f) * x0;
-  double drift = plate_drift * radians;
-  const bool straight = std::holds_alternative<LinearTaper>(surface.taper);
-  if (surface.theory == PlateTheory::mindlin && straight && surface.drive == DriveShape::cosine &&
-      ratio < no_second_mode && taper_is.steepest < gentle_slope) {
-    const double widening = (ratio - 1) * (ratio - 1);
-    coupled = thick_least_phase + thick_phase * widening;
-    drift = thick_drift * widening * radians;
-  }
+  const double coupled = coupling * std::max(taper_is.before, taper_is.at_turning * ratio) +
+                         coupling * taper_is.bend + (surface.drive == DriveShape::piston ? plate_piston : 0);
   bound.resonance = coupled > 0 && ratio > plate_second_mode ? plate_amplification(surface, taper, f) : 1;
   const double modes = coupled * bound.resonance;
+  const double drift = plate_drift * dispersion.wavenumber_per_m(f) * x0;
   bound.shape = std::min(largest, modes + drift + equation);
   // phase error of the first mode at the drive edge
   const double phase = coupled + taper_is.bend + 1.5 * drift;

@@ -12,7 +12,6 @@
 #include "physics/edge_feature.hpp"
 #include "physics/gate.hpp"
 #include "physics/map_bounds.hpp"
-#include "physics/modal_field.hpp"
 #include "physics/mode_bound.hpp"
 #include "physics/modes_bound.hpp"
 
@@ -33,15 +32,6 @@ constexpr double membrane_resonance = 5e-4, plate_resonance = 6e-4;
 // shift of an edge relative to the cut-off half-width, divided by the error of `modes`; larger with a quality
 // factor of the wave below 30, because the field is then less steep at its edges
 constexpr double edge_share = 0.8, lossy_edge_share = 1.2, lossy_below = 30;
-// A solution of fewer functions than `modes`, with which `mode` of a clamped plate is compared. Its errors
-// are those of |v| and of the phase at the drive edge, where only one mode propagates: twice the largest that
-// were found on random plates (planner_test.cpp), and more under tension.
-constexpr double sparse_shape = 3e-3, sparse_phase = 2e-3, sparse_tension = 5;
-// The comparison costs a third of `modes`. It is made only where it can help: if the bound that is known
-// before it is at most so many times the tolerance.
-constexpr double worth_comparing = 60;
-// half-width of the drive edge over that of the cut-off, below which the second mode does not propagate
-constexpr double second_mode_free = 2.1;
 
 // The profile of one model: logarithms of |v| at the probe points, and the positions of its maximum and edge.
 struct Probe {
@@ -57,9 +47,9 @@ std::vector<double> probe_points(const Surface& surface) {
   return x;
 }
 
-Probe probe(const Surface& surface, const Edge& edge, std::unique_ptr<CentreLine> line) {
+Probe probe(const Surface& surface, const Edge& edge, double f, Model model) {
   Probe p;
-  p.line = std::move(line);
+  p.line = make_centre_line(surface, f, model);
   std::vector<std::complex<double>> v(probes + 1);
   p.ln.resize(probes + 1);
   p.peak = p.line->last_peak_m();
@@ -150,7 +140,7 @@ struct Reference {
 };
 
 Reference reference(const Surface& surface, const Edge& edge, double f) {
-  Probe mode = probe(surface, edge, make_centre_line(surface, f, Model::mode));
+  Probe mode = probe(surface, edge, f, Model::mode);
   const double conditioning = mode.line->drive_conditioning(wavenumber_per_m(surface, f));
   const auto bound = mode_bound(surface, f, conditioning, mode.peak);
   const bool uncertain_peak = mode.peak && peak_is_shallow(surface, f, *mode.peak);
@@ -267,47 +257,11 @@ RungEstimate compared_mode_estimate(const Surface& surface, const PlanRequest& r
                                     const Reference& reference) {
   RungEstimate e = profile_estimate(surface, request, reference, Model::mode);
   const RungEstimate modes = modes_estimate(surface, request, reference);
-  const Difference d =
-      compare(surface, request, reference.edge, reference.mode,
-              probe(surface, reference.edge, make_centre_line(surface, reference.f, Model::modes)));
+  const Difference d = compare(surface, request, reference.edge, reference.mode,
+                               probe(surface, reference.edge, reference.f, Model::modes));
   e.amplitude_bound = std::min(e.amplitude_bound, modes.amplitude_bound + d.amplitude);
   e.level_bound_dB = std::min(e.level_bound_dB, modes.level_bound_dB + probe_margin * d.level_dB);
   return e;
-}
-
-// True if `mode` of this plate can be compared with a sparse solution: only the first mode propagates, so
-// that no resonance of another one is missed.
-bool sparse_comparison_applies(const Surface& surface, const PlanRequest& request) {
-  if (!modes_bound_applies(surface) || !Dispersion(surface).clamped_bending()) return false;
-  return std::all_of(request.tones.begin(), request.tones.end(), [&surface](const Tone& tone) {
-    return half_width_m(surface, 0) < second_mode_free * cut_off_half_width_m(surface, tone.frequency_Hz);
-  });
-}
-
-// Bounds the error of `mode` by a sparse solution of the two-dimensional field: the difference between the
-// two plus the error of the sparse solution.
-RungEstimate sparsely_compared_mode(const Surface& surface, const PlanRequest& request,
-                                    const std::vector<Reference>& references) {
-  const bool thick = surface.theory == PlateTheory::mindlin;
-  ModalResolution sparse;
-  sparse.degree = 5;
-  sparse.spare_functions = thick ? 1 : 2;
-  const double tension = surface.tension_Pa > 0 ? sparse_tension : 1;
-  RungEstimate all;
-  for (const Reference& one : references) {
-    RungEstimate e = profile_estimate(surface, request, one, Model::mode);
-    const Difference d =
-        compare(surface, request, one.edge, one.mode,
-                probe(surface, one.edge, make_modal_line(surface, one.f, Losses::kept, sparse)));
-    const bool drive = request.normalise != Normalise::peak;
-    const double phase = tension * sparse_phase * one.conditioning;
-    e.amplitude_bound =
-        std::min(e.amplitude_bound, d.amplitude + tension * sparse_shape + (drive ? phase : 0));
-    e.level_bound_dB = std::min(e.level_bound_dB, probe_margin * d.level_dB + 8.686 * phase);
-    e.reason = "first transverse mode with loss, compared with a sparse two-dimensional field";
-    merge(all, e);
-  }
-  return all;
 }
 
 RungEstimate estimate_with(const Surface& surface, const PlanRequest& request,
@@ -347,12 +301,6 @@ bool inside(const RungEstimate& e, const Tolerance& tolerance) {
   return e.usable && (!tolerance.boundary_m || e.boundary_bound_m <= *tolerance.boundary_m) &&
          (!tolerance.amplitude || e.amplitude_bound <= *tolerance.amplitude) &&
          (!tolerance.level_dB || e.level_bound_dB <= *tolerance.level_dB);
-}
-
-Tolerance scaled(Tolerance tolerance, double factor) {
-  for (auto* one : {&tolerance.amplitude, &tolerance.level_dB})
-    if (*one) **one *= factor;
-  return tolerance;
 }
 
 void check(const Surface& surface, const PlanRequest& request) {
@@ -410,15 +358,6 @@ PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {
   auto& rungs = choice.considered;
   auto chosen = std::find_if(rungs.begin(), rungs.end(),
                              [&](const RungEstimate& e) { return inside(e, request.tolerance); });
-  if ((chosen == rungs.end() || chosen->model == Model::modes) &&
-      sparse_comparison_applies(surface, request)) {
-    const auto mode =
-        std::find_if(rungs.begin(), rungs.end(), [](const auto& e) { return e.model == Model::mode; });
-    if (mode != rungs.end() && inside(*mode, scaled(request.tolerance, worth_comparing))) {
-      *mode = sparsely_compared_mode(surface, request, references);
-      if (inside(*mode, request.tolerance)) chosen = mode;
-    }
-  }
   if (chosen == rungs.end() && modes_bound_applies(surface)) {
     chosen = std::find_if(rungs.begin(), rungs.end(), [](const auto& e) { return e.model == Model::modes; });
     for (const auto comparison : {Comparison::coarser, Comparison::finer}) {

@@ -190,8 +190,8 @@ TEST_CASE(
       const double f = solve_frequency_Hz(surface, options, 0.15).value();
       const auto line = make_centre_line(surface, f, Model::modes);
       CAPTURE(name, surface.taper.index(), by_mode, f);
-      CHECK(std::abs(edge_position_m(surface, f, *line, options).value() - 0.15) < 1e-6);
-      CHECK(solve_frequency_Hz(surface, options, 0.15, by_mode).value() == Approx(f).epsilon(1e-7));
+      CHECK(std::abs(edge_position_m(surface, f, *line, options).value() - 0.15) < 1e-7);
+      CHECK(solve_frequency_Hz(surface, options, 0.15, by_mode).value() == Approx(f).epsilon(1e-9));
       CHECK((f == by_mode) == (options.edge.kind == Edge::Kind::turning));
     }
   }
