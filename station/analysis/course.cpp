@@ -149,6 +149,22 @@ std::optional<Estimate> post_error_slowing(const std::vector<TrialRecord>& trial
   return student_mean(gaps_s);
 }
 
+std::optional<Estimate> repetition(const std::vector<TrialRecord>& trials, const std::string& condition) {
+  const auto counts = [&](const TrialRecord& trial) {
+    return trial.type == TrialType::experimental && trial.outcome == Outcome::answered &&
+           trial.instruction == condition && trial.response && trial.right_choice;
+  };
+  std::vector<double> gaps;
+  for (std::size_t i = 1; i < trials.size(); ++i) {
+    const auto &before = trials[i - 1], &now = trials[i];
+    if (before.block_index != now.block_index || !counts(before) || !counts(now)) continue;
+    gaps.push_back((*now.response == *before.response) - (*now.right_choice == *before.response));
+  }
+  constexpr std::size_t kFewestPairs = 20;
+  if (gaps.size() < kFewestPairs) return std::nullopt;
+  return student_mean(gaps);
+}
+
 OutcomeCounts count_outcomes(const std::vector<TrialRecord>& trials) {
   OutcomeCounts counts;
   for (const auto& trial : trials) {

@@ -75,6 +75,13 @@ Fatigue fatigue(const std::vector<TrialRecord>& trials);
 std::optional<Estimate> post_error_slowing(const std::vector<TrialRecord>& trials,
                                            const std::string& condition);
 
+/// How much more often a condition's answers repeat the answer of the previous trial than the right answers do
+/// (a share from -1 to 1, with a 95 % interval by Student's t): above 0 for people who repeat themselves,
+/// below 0 for those who alternate, whatever the order of the stimuli. Takes pairs of answered experimental
+/// trials of one block and condition that follow each other. Empty with fewer than 20 pairs. `trials` are in
+/// the order of presentation.
+std::optional<Estimate> repetition(const std::vector<TrialRecord>& trials, const std::string& condition);
+
 struct OutcomeCounts {
   int presented = 0, answered = 0, timeouts = 0, anticipations = 0, aborted = 0, faults = 0;
 };

@@ -67,8 +67,9 @@ double log_driftless(double relative, double opposite, double u) {
     double sum = w;
     for (int k = 1; k < 40; ++k) {
       const double up = w + 2 * k, down = 2 * k - w;  // |w - 2k|
-      sum += up * std::exp(-(up * up - w * w) / (2 * u)) - down * std::exp(-(down * down - w * w) / (2 * u));
-      if ((down * down - w * w) / (2 * u) > kNegligible + 10) break;
+      const double nearer = (down * down - w * w) / (2 * u);
+      if (nearer > kNegligible) break;
+      sum += up * std::exp(-(up * up - w * w) / (2 * u)) - down * std::exp(-nearer);
     }
     if (w > 0.5 && opposite < 1e-3) {
       // w (k = 0) and the term -(w - 2) of k = -1 almost cancel; write both around 1
@@ -222,14 +223,18 @@ double over_drifts(const Diffusion& d, double t, const G& g) {
   return top + std::log(sum * step / (d.drift_sd * std::sqrt(2 * kPi)));
 }
 
+/// Half of the places and weights of Gauss-Legendre's rules with 6 and with 12 nodes.
+constexpr double kFewNodes[] = {0.2386191860831969, 0.6612093864662645, 0.9324695142031521};
+constexpr double kFewWeights[] = {0.4679139345726910, 0.3607615730481386, 0.1713244923791704};
 constexpr double kNodes[] = {0.1252334085114689, 0.3678314989981802, 0.5873179542866175,
                              0.7699026741943047, 0.9041172563704749, 0.9815606342467192};
 constexpr double kWeights[] = {0.2491470458134028, 0.2334925365383548, 0.2031674267230659,
                                0.1600783285433462, 0.1069393259953184, 0.0471753363865118};
 
 /// Logarithm of the mean of exp(g(s)) over the start's delays, for the time t: s runs from t - delay_range_s to
-/// t. Before the process starts, g is `before`. Gauss-Legendre with 12 nodes in panels in which the integrand
-/// changes by a factor of about e^5 at most; `distance` is that from the start to the boundary.
+/// t. Before the process starts, g is `before`. Gauss-Legendre in panels in which the integrand changes by a
+/// factor of about e^5 at most, with fewer nodes where it changes little; `distance` is that from the start to
+/// the boundary.
 template <class G>
 double over_delays(const Diffusion& d, double t, double distance, double before, const G& g) {
   if (d.delay_range_s == 0) return t > 0 ? g(t) : before;
@@ -248,15 +253,19 @@ double over_delays(const Diffusion& d, double t, double distance, double before,
     }
     const double from = std::max({end, high / 2, 1 / (1 / high + 10 / z2), high - 5 / fall});
     const double half = 0.5 * (high - from), middle = 0.5 * (high + from);
+    const bool flat = z2 / 2 * (1 / from - 1 / high) + fall * (high - from) < 1.5 && high < 1.5 * from;
+    const auto* nodes = flat ? kFewNodes : kNodes;
+    const auto* weights = flat ? kFewWeights : kWeights;
+    const int pairs = flat ? 3 : 6;
     double values[12], top = kNever;
-    for (int i = 0; i < 6; ++i) {
-      values[2 * i] = g(middle + half * kNodes[i]);
-      values[2 * i + 1] = g(middle - half * kNodes[i]);
+    for (int i = 0; i < pairs; ++i) {
+      values[2 * i] = g(middle + half * nodes[i]);
+      values[2 * i + 1] = g(middle - half * nodes[i]);
       top = std::max({top, values[2 * i], values[2 * i + 1]});
     }
     if (top > kNever) {
       double sum = 0;
-      for (int i = 0; i < 12; ++i) sum += kWeights[i / 2] * std::exp(values[i] - top);
+      for (int i = 0; i < 2 * pairs; ++i) sum += weights[i / 2] * std::exp(values[i] - top);
       total = log_sum(total, top + std::log(half * sum));
     }
     if (!(from < high)) break;

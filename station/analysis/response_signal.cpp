@@ -12,6 +12,7 @@ namespace turnpoint::analysis {
 namespace {
 
 constexpr int kAsymptotes = 120, kRates = 60, kIntercepts = 72;
+constexpr std::size_t kFewestLags = 3;
 constexpr double kHighestAsymptote = 8, kLowestRate = 0.3, kHighestRate = 40;
 // The priors keep the estimates of few trials from running away: with 56 trials at each of six lags, a flat
 // prior gave a median asymptote of 3.1 for 2.5, and maximum likelihood 2.7.
@@ -105,13 +106,10 @@ std::optional<Estimate> exponential(std::optional<Estimate> logarithm) {
                    interval.confidence}};
 }
 
-void fit(SpeedAccuracyCurve& curve, double scale) {
+/// `longest_s`: the highest intercept.
+void fit(SpeedAccuracyCurve& curve, double scale, double longest_s) {
   std::vector<LagLikelihood> likelihoods;
-  double longest_s = 0;
-  for (const auto& point : curve.points) {
-    likelihoods.emplace_back(point.counts, scale);
-    longest_s = std::max(longest_s, point.time_s);
-  }
+  for (const auto& point : curve.points) likelihoods.emplace_back(point.counts, scale);
   Profile asymptotes(0, kHighestAsymptote, kAsymptotes),
       rates(std::log(kLowestRate), std::log(kHighestRate), kRates), intercepts(0, longest_s, kIntercepts);
   std::vector<double> reached(likelihoods.size());
@@ -130,6 +128,12 @@ void fit(SpeedAccuracyCurve& curve, double scale) {
       }
     }
   }
+  curve.profiles = {asymptotes.height, rates.height, intercepts.height};
+  for (std::size_t i = 0; i < asymptotes.height.size(); ++i)
+    curve.profiles[0][i] += 0.5 * std::pow(asymptotes.at(static_cast<double>(i)) / kAsymptoteSd, 2);
+  for (std::size_t i = 0; i < rates.height.size(); ++i)
+    curve.profiles[1][i] +=
+        0.5 * std::pow((rates.at(static_cast<double>(i)) - std::log(kRateMiddle)) / kRateSd, 2);
   curve.asymptote = estimate_of(asymptotes, LowEnd::zero);
   curve.rate_per_s = exponential(estimate_of(rates, LowEnd::open));
   curve.intercept_s = estimate_of(intercepts, LowEnd::zero);
@@ -151,14 +155,22 @@ SpeedAccuracyCurve curve_of(const std::string& condition,
          : yes                           ? n.false_alarms
                                          : n.correct_rejections);
     }
-    point.d_prime = detect(at_lag, {}, detecting, positive, 0).front().d_prime;
+    auto levels = detect(at_lag, {}, detecting, positive);
+    point.d_prime = levels.back().d_prime;
+    levels.pop_back();
     curve.points.push_back(point);
+    curve.by_level.push_back(std::move(levels));
   }
-  if (curve.points.size() < 3) {
+  if (std::all_of(curve.by_level.begin(), curve.by_level.end(),
+                  [](const auto& levels) { return levels.size() < 2; }))
+    curve.by_level.clear();
+  if (curve.points.size() < kFewestLags)
     curve.statements.push_back({"lags-too-few", texts::phrase("statement.lags_too_few")});
-    return curve;
-  }
-  fit(curve, detecting == Detecting::forced_choice ? std::numbers::sqrt2 : 1);
+  return curve;
+}
+
+/// Says which parameters the answers do not determine.
+void name_missing(SpeedAccuracyCurve& curve) {
   texts::Phrase missing;
   const auto name = [&missing](const auto& estimate, const char* what) {
     if (estimate) return;
@@ -171,7 +183,18 @@ SpeedAccuracyCurve curve_of(const std::string& condition,
   if (!missing.values.empty())
     curve.statements.push_back(
         {"curve-undetermined", texts::phrase("statement.curve_undetermined", {missing})});
-  return curve;
+}
+
+/// The p value of the model in which both curves share this parameter.
+std::optional<double> p_of_shared(const SpeedAccuracyCurve& a, const SpeedAccuracyCurve& b,
+                                  std::size_t parameter) {
+  const auto &first = a.profiles[parameter], &second = b.profiles[parameter];
+  if (first.empty() || second.empty()) return std::nullopt;
+  double shared = -INFINITY;
+  for (std::size_t i = 0; i < first.size(); ++i) shared = std::max(shared, first[i] + second[i]);
+  const double own = *std::max_element(first.begin(), first.end()) +
+                     *std::max_element(second.begin(), second.end());
+  return std::erfc(std::sqrt(std::max(own - shared, 0.0)));  // chi squared with 1 df of 2 (own - shared)
 }
 
 }  // namespace
@@ -192,6 +215,15 @@ std::vector<SpeedAccuracyCurve> response_signal(const std::vector<TrialRecord>& 
   for (const auto& condition : conditions_of(trials, order))
     if (conditions.count(condition))
       curves.push_back(curve_of(condition, conditions[condition], detecting, positive));
+  // one range of intercepts for all conditions, so that their curves can be compared
+  double longest_s = 0;
+  for (const auto& curve : curves)
+    for (const auto& point : curve.points) longest_s = std::max(longest_s, point.time_s);
+  for (auto& curve : curves)
+    if (curve.points.size() >= kFewestLags) {
+      fit(curve, detecting == Detecting::forced_choice ? std::numbers::sqrt2 : 1, longest_s);
+      name_missing(curve);
+    }
   return curves;
 }
 
@@ -211,7 +243,8 @@ std::vector<CurveDifference> curve_differences(const std::vector<SpeedAccuracyCu
     for (std::size_t j = i + 1; j < curves.size(); ++j) {
       const auto &a = curves[i], &b = curves[j];
       all.push_back({a.condition, b.condition, of(a.asymptote, b.asymptote), of(a.intercept_s, b.intercept_s),
-                     exponential(of(logarithm(a.rate_per_s), logarithm(b.rate_per_s)))});
+                     exponential(of(logarithm(a.rate_per_s), logarithm(b.rate_per_s))), p_of_shared(a, b, 0),
+                     p_of_shared(a, b, 1), p_of_shared(a, b, 2)});
     }
   return all;
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,15 +28,25 @@ struct SpeedAccuracyCurve {
   /// the intercept uniform from 0 to the longest time_s. An end of an interval that the data do not determine
   /// is infinite. A parameter is empty if neither end is determined; a statement says so.
   std::optional<Estimate> asymptote, rate_per_s, intercept_s;
+  /// d' of each absolute level at each lag, if there are two levels or more: in the order of `points`, then
+  /// ascending; without the entries for all levels together
+  std::vector<std::vector<Detection>> by_level;
   std::vector<Statement> statements;
+  /// the height of the best curve with each value of asymptote, log rate and intercept, in nats above that of
+  /// the parameter's own prior; empty without a fit
+  std::array<std::vector<double>, 3> profiles;
 };
 
 /// How the curve differs between two conditions. The intervals come from those of the two curves (MOVER;
-/// Donner & Zou 2002); an end is infinite if an end of these is. Empty if a curve lacks the parameter.
+/// Donner & Zou 2002); an end is infinite if an end of these is. Empty if a curve lacks the parameter. The p
+/// values compare nested models: that with one asymptote (rate, intercept) for both curves and everything else
+/// free, against two curves of their own, by chi squared with one degree of freedom for twice the difference
+/// of the heights. Empty if a curve was not fitted.
 struct CurveDifference {
   std::string first, second;
   std::optional<Estimate> asymptote, intercept_s;  ///< second minus first
   std::optional<Estimate> rate_ratio;              ///< second divided by first
+  std::optional<double> asymptote_p, rate_p, intercept_p;
 };
 
 /// Returns the sensitivity d'(t) at a time on the curve with these three parameters.

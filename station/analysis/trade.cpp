@@ -31,6 +31,7 @@ struct Group {
   std::vector<Cell> answered;  ///< all answers
   std::vector<Cell> cells;     ///< those whose times the exclusion rule keeps
   std::vector<DiffusionTrial> decisions;
+  std::vector<bool> late_half;  ///< of each decision: whether it is in the second half of its block
   std::optional<DiffusionEstimates> diffusion;
 };
 
@@ -118,7 +119,16 @@ Group collect(const std::vector<TrialRecord>& trials, const TradeOptions& option
     return trial.difficulty.value_or(trial.level ? std::abs(*trial.level) : 0);
   };
   std::map<double, Cell> cells;
-  std::map<double, std::vector<DiffusionTrial>> decisions;
+  struct Decision {
+    DiffusionTrial trial;
+    bool late_half;
+  };
+  std::map<double, std::vector<Decision>> decisions;
+  std::map<int, std::pair<int, int>> block_ends;  // numbers of the first and the last trial
+  for (const auto& trial : trials) {
+    auto [end, added] = block_ends.try_emplace(trial.block_index, trial.trial_index, trial.trial_index);
+    end->second.second = trial.trial_index;
+  }
   std::vector<double> times;
   std::vector<bool> correct;
   for (const auto& trial : trials) {
@@ -128,17 +138,19 @@ Group collect(const std::vector<TrialRecord>& trials, const TradeOptions& option
     result.timeouts += trial.outcome == Outcome::timeout;
     result.anticipations += trial.outcome == Outcome::anticipation;
     const double difficulty = difficulty_of(trial);
+    const auto [first, last] = block_ends[trial.block_index];
+    const bool late_half = 2 * trial.trial_index > first + last;
     DiffusionTrial decision;
     decision.deadline_s = trial.deadline_s;
     decision.early_s = trial.anticipation_s;
     if (trial.outcome == Outcome::timeout && trial.deadline_s) {
       decision.outcome = DiffusionTrial::Outcome::late;
       decision.time_s = *trial.deadline_s;
-      decisions[difficulty].push_back(decision);
+      decisions[difficulty].push_back({decision, late_half});
     } else if (trial.outcome == Outcome::anticipation && trial.anticipation_s > 0) {
       decision.outcome = DiffusionTrial::Outcome::early;
       decision.time_s = trial.anticipation_s;
-      decisions[difficulty].push_back(decision);
+      decisions[difficulty].push_back({decision, late_half});
     }
     if (trial.outcome != Outcome::answered || !trial.correct || !trial.response_time_s) continue;
     ++result.answered;
@@ -147,14 +159,15 @@ Group collect(const std::vector<TrialRecord>& trials, const TradeOptions& option
     correct.push_back(*trial.correct);
     decision.correct = *trial.correct;
     decision.time_s = *trial.response_time_s;
-    decisions[difficulty].push_back(decision);
+    decisions[difficulty].push_back({decision, late_half});
   }
   Group group;
   for (auto& [difficulty, cell] : cells) {
     group.difficulty.push_back(difficulty);
-    for (auto& decision : decisions[difficulty]) {
+    for (auto& [decision, late_half] : decisions[difficulty]) {
       decision.difficulty = group.answered.size();
       group.decisions.push_back(decision);
+      group.late_half.push_back(late_half);
     }
     group.answered.push_back(std::move(cell));
   }
@@ -178,6 +191,26 @@ Group collect(const std::vector<TrialRecord>& trials, const TradeOptions& option
   return group;
 }
 
+/// The boundary in the second half of the blocks minus that in the first half.
+std::optional<Estimate> late_boundary(const Group& group, int stream, const TradeOptions& options) {
+  std::vector<DiffusionTrial> halves[2];
+  for (std::size_t i = 0; i < group.decisions.size(); ++i)
+    halves[group.late_half[i]].push_back(group.decisions[i]);
+  DiffusionOptions how;
+  how.confidence = options.confidence;
+  std::vector<double> gaps;
+  for (const int late : {0, 1}) {
+    const auto fit = fit_diffusion(halves[late], group.difficulty.size(), options.seed,
+                                   100 * (late + 1) + stream, how);
+    if (!fit.estimates) return std::nullopt;
+    gaps.resize(fit.estimates->draws.size());
+    for (std::size_t i = 0; i < gaps.size(); ++i)
+      gaps[i] += (late ? 1 : -1) * fit.estimates->draws[i].boundary;
+  }
+  const double middle = quantile(gaps, 0.5);
+  return Estimate{middle, percentile_interval(std::move(gaps), options.confidence)};
+}
+
 /// Fits the diffusion model, and describes the answers of each difficulty.
 void fill_cells(Group& group, InstructionResult& result, int stream, const TradeOptions& options) {
   DiffusionOptions how;
@@ -195,6 +228,7 @@ void fill_cells(Group& group, InstructionResult& result, int stream, const Trade
     result.drift = Estimate{middle, percentile_interval(std::move(drifts), options.confidence)};
     result.difficulties = group.difficulty;
     result.check = check_diffusion(group.decisions, *group.diffusion, options.seed, stream);
+    if (options.halves) result.late_boundary = late_boundary(group, stream, options);
   }
   for (std::size_t i = 0; i < group.cells.size(); ++i) {
     if (group.cells[i].empty()) continue;
@@ -328,6 +362,7 @@ Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options)
     entry.instruction = name;
     groups.push_back(collect(trials, options, entry));
     entry.post_error_s = post_error_slowing(trials, name);
+    entry.repetition = repetition(trials, name);
     fill_cells(groups.back(), entry, static_cast<int>(groups.size()), options);
   }
   std::vector<const DiffusionCheck*> checks;

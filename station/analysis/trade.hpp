@@ -39,6 +39,10 @@ struct InstructionResult {
   std::optional<DiffusionCheck> check;   ///< what the fit predicts, for each of `difficulties`
   std::vector<double> difficulties;      ///< ascending
   std::optional<Estimate> post_error_s;  ///< post_error_slowing()
+  std::optional<Estimate> repetition;    ///< repetition()
+  /// boundary of the diffusion in the second half of each block minus that in the first half (`late_half`);
+  /// each half has a fit of its own
+  std::optional<Estimate> late_boundary;
   std::vector<Statement> statements;
 };
 
@@ -71,6 +75,7 @@ struct TradeOptions {
   int replicates = 1000;
   double confidence = 0.95;
   std::uint64_t seed = 1;
+  bool halves = false;  ///< fits both halves of the blocks, for InstructionResult::late_boundary
 };
 
 /// Analyses speed and accuracy by condition. The diffusion model is fitted to all difficulties of a condition

@@ -134,13 +134,25 @@ PosteriorFit psychometric(const Numbers& level, const std::vector<int>& trials, 
 }
 
 /// A function of first_passage.hpp for each time.
-py::array first_passage(const std::string& what, const Numbers& times_s, const Flags& upper, const Diffusion& d) {
-  Numbers values(times_s.size());
-  for (std::size_t i = 0; i < values.size(); ++i)
-    values[i] = what == "density"        ? log_density(d, upper[i], times_s[i])
-                : what == "distribution" ? log_distribution(d, upper[i], times_s[i])
-                : what == "tail"         ? log_tail(d, upper[i], times_s[i])
-                                         : log_survival(d, times_s[i]);
+py::array first_passage(const std::string& what, const py::array_t<double>& times_s,
+                        const py::array_t<bool>& upper, const Diffusion& d) {
+  const auto times = times_s.unchecked<1>();
+  const auto sides = upper.unchecked<1>();
+  Numbers values(static_cast<std::size_t>(times.shape(0)));
+  const auto fill = [&](const auto& of) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto k = static_cast<py::ssize_t>(i);
+      values[i] = of(static_cast<bool>(sides(k)), times(k));
+    }
+  };
+  if (what == "density")
+    fill([&](bool up, double time_s) { return log_density(d, up, time_s); });
+  else if (what == "distribution")
+    fill([&](bool up, double time_s) { return log_distribution(d, up, time_s); });
+  else if (what == "tail")
+    fill([&](bool up, double time_s) { return log_tail(d, up, time_s); });
+  else
+    fill([&](bool, double time_s) { return log_survival(d, time_s); });
   return physics::python::array(std::move(values));
 }
 
@@ -230,8 +242,8 @@ void add_diffusion(py::module_& module) {
         auto fit = diffusion(times_s, correct, difficulty, deadlines_s, earliest_s, difficulties, options, seed);
         return std::pair(std::move(fit.estimates), sentences(fit.statements));
       });
-  module.def("first_passage", [](const std::string& what, const Numbers& times_s, const Flags& upper, double drift,
-                                 double boundary, double start, double drift_sd, double delay_range_s) {
+  module.def("first_passage", [](const std::string& what, const py::array_t<double>& times_s,
+                                 const py::array_t<bool>& upper, double drift, double boundary, double start, double drift_sd, double delay_range_s) {
     return first_passage(what, times_s, upper,
                          {drift / kDiffusionScale, boundary / kDiffusionScale, start, drift_sd / kDiffusionScale,
                           delay_range_s});
@@ -265,6 +277,9 @@ void add_speed_accuracy(py::module_& module) {
       .add("nondecision_s", &I::nondecision_s, "time outside the decision, s")
       .add("drift", &I::drift, "mean drift rate over difficulties, per s, s = 0.1")
       .add("contaminants", &I::contaminants, "proportion of trials that were no decision")
+      .add("post_error_s", &I::post_error_s, "slower after an error than before it, s (Dutilh et al. 2012)")
+      .add("repetition", &I::repetition,
+           "share of answers that repeat the last one minus the share of right answers that would; None without choices")
       .add("cells", &I::cells, "by difficulty")
       .add("statements", spoken<I>, "remarks, as in the report");
   Shown<Difference>(module, "Difference", "The second condition minus the first one.")

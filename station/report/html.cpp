@@ -156,7 +156,9 @@ constexpr MeasureRow kRows[] = {
     {"Share of trials that were no decision (0 to 1)", "", "ez", &Result::contaminants},
     {"LISAS (s)", "LISAS", "lisas", &Result::lisas_s},
     {"Inverse efficiency (s)", "inverse efficiency", "ies", &Result::inverse_efficiency_s},
-    {"Slower after an error than before it (s)", "", "", &Result::post_error_s}};
+    {"Slower after an error than before it (s)", "", "", &Result::post_error_s},
+    {"Answers that repeat the last answer, more than right ones would (share)", "", "", &Result::repetition},
+    {"Boundary, second half of the blocks \u2212 first half (s = 0.1)", "", "ez", &Result::late_boundary}};
 
 bool has(const MeasureRow& row, const Summary& summary) {
   return *row.part == '\0' || shows(summary.data, row.part);

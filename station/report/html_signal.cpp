@@ -27,11 +27,30 @@ std::string curve_difference_table(const Summary& summary) {
   if (differences.empty()) return "";
   std::string html =
       "<table><tr><th>Difference</th><th>Asymptote (d\u2032)</th><th>Ratio of rates (no unit)</th>"
-      "<th>Intercept (s)</th></tr>";
+      "<th>Intercept (s)</th><th>p if only the asymptote is shared</th><th>rate shared</th>"
+      "<th>intercept shared</th></tr>";
+  const auto p_cell = [](const std::optional<double>& p) {
+    return "<td class=\"n\">" + (p ? number(*p) : std::string("\u2013")) + "</td>";
+  };
   for (const auto& pair : differences)
     html += "<tr><td>" + escaped(name_of(pair.second)) + " \u2212 " + escaped(name_of(pair.first)) + "</td>" +
-            cell(pair.asymptote) + cell(pair.rate_ratio) + cell(pair.intercept_s) + "</tr>";
+            cell(pair.asymptote) + cell(pair.rate_ratio) + cell(pair.intercept_s) + p_cell(pair.asymptote_p) + p_cell(pair.rate_p) + p_cell(pair.intercept_p) +
+            "</tr>";
   return html + "</table>\n";
+}
+
+/// d' by lag and difficulty; "" if there are not two levels or more.
+std::string level_table(const Summary& summary) {
+  std::string html;
+  for (const auto& curve : summary.curves)
+    for (std::size_t i = 0; i < curve.by_level.size(); ++i)
+      for (const auto& level : curve.by_level[i])
+        html += "<tr><td>" + escaped(name_of(curve.condition)) + "</td><td class=\"n\">" +
+                number(curve.points[i].lag_s) + "</td><td class=\"n\">" + number(level.level.value_or(0)) +
+                "</td>" + cell(level.d_prime) + "</tr>";
+  if (html.empty()) return html;
+  return "<table><tr><th>Condition</th><th>Signal after (s)</th><th>" + escaped(summary.data.level_label) +
+         ", without sign</th><th>d\u2032 (standard deviations)</th></tr>" + html + "</table>\n";
 }
 
 std::string lag_table(const Summary& summary) {
@@ -93,7 +112,7 @@ std::string signal_section(const Summary& summary) {
       "<h2>Accuracy at the response signal</h2>\n" + picture(signal_figure(summary)) + curve_table(summary);
   html += curve_difference_table(summary);
   for (const auto& curve : summary.curves) html += notes(curve.statements);
-  return html + lag_table(summary) +
+  return html + lag_table(summary) + level_table(summary) +
          "<p class=\"soft\">Only answers within the window after the signal are used. The curve is "
          "d\u2032(t) = asymptote (1 \u2212 exp(\u2212rate (t \u2212 intercept))); t is the mean response "
          "time at a lag, so it includes the time that people need to answer the signal. Each lag has its own "
@@ -105,7 +124,8 @@ std::string signal_section(const Summary& summary) {
          "mean "
          "response time. With few trials a rate is drawn towards 3 per second. An end that the answers do "
          "not "
-         "determine is named as such. d\u2032 at "
+         "determine is named as such. The p values compare the model in which both conditions share one "
+         "parameter with two curves of their own (chi squared, one degree of freedom). d\u2032 at "
          "each lag has the log-linear correction and the interval of Gourevitch and Galanter.</p>\n";
 }
 

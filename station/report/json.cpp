@@ -87,6 +87,8 @@ Json instruction_json(const analysis::InstructionResult& entry) {
   json["lisas_s"] = value(entry.lisas_s);
   json["inverse_efficiency_s"] = value(entry.inverse_efficiency_s);
   json["post_error_slowing_s"] = value(entry.post_error_s);
+  json["repetition"] = value(entry.repetition);
+  json["late_boundary"] = value(entry.late_boundary);
   json["deciles_s"] = entry.times ? Json(entry.times->deciles_s) : Json(nullptr);
   json["difficulties"] = Json::array();
   for (const auto& cell : entry.cells)
@@ -317,14 +319,20 @@ std::string to_json(const Summary& summary) {
   json["response_signal"] = Json::array();
   for (const auto& curve : summary.curves) {
     auto lags = Json::array();
-    for (const auto& point : curve.points)
+    for (const auto& point : curve.points) {
+      auto levels = Json::array();
+      if (!curve.by_level.empty())
+        for (const auto& level : curve.by_level[lags.size()])
+          levels.push_back({{"level", value(level.level)}, {"d_prime", value(level.d_prime)}});
       lags.push_back({{"after_s", value(point.lag_s)},
                       {"response_time_s", value(point.time_s)},
                       {"hits", point.counts.hits},
                       {"misses", point.counts.misses},
                       {"false_alarms", point.counts.false_alarms},
                       {"correct_rejections", point.counts.correct_rejections},
-                      {"d_prime", value(point.d_prime)}});
+                      {"d_prime", value(point.d_prime)},
+                      {"levels", levels}});
+    }
     json["response_signal"].push_back({{"condition", curve.condition},
                                        {"asymptote", value(curve.asymptote)},
                                        {"rate_per_s", value(curve.rate_per_s)},
@@ -336,6 +344,9 @@ std::string to_json(const Summary& summary) {
     json["response_signal_differences"].push_back({{"first", pair.first},
                                                    {"second", pair.second},
                                                    {"asymptote", value(pair.asymptote)},
+                                                   {"asymptote_p", value(pair.asymptote_p)},
+                                                   {"rate_p", value(pair.rate_p)},
+                                                   {"intercept_p", value(pair.intercept_p)},
                                                    {"rate_ratio", value(pair.rate_ratio)},
                                                    {"intercept_s", value(pair.intercept_s)}});
   json["discrimination"] = Json::array();

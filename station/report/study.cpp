@@ -136,6 +136,8 @@ void add_measures(const Summary& summary, StudyPerson& person) {
     measures.add(entry.instruction, "LISAS", "s", entry.lisas_s);
     measures.add(entry.instruction, "inverse efficiency", "s", entry.inverse_efficiency_s);
     if (data.scored) measures.add(entry.instruction, "post-error slowing", "s", entry.post_error_s);
+    if (data.scored) measures.add(entry.instruction, "repetition of answers", "", entry.repetition);
+    measures.add(entry.instruction, "boundary, late minus early in a block", "s = 0.1", entry.late_boundary);
   }
   for (const auto& detection : summary.detections)
     if (!detection.level) {

@@ -297,7 +297,9 @@ Summary summarise(const SessionData& data) {
   for (std::size_t part = 0; part < count; ++part) add_levels(part_of(data, part), summary);
   if (data.design == Design::adjustment || judges(data.design)) return summary;
   if (data.choices.size() <= 2) summary.bias = analysis::choice_bias(data.trials);
-  summary.trade = analysis::trade(data.trials, trade_options(data));
+  auto how = trade_options(data);
+  how.halves = shows(data, "ez");
+  summary.trade = analysis::trade(data.trials, how);
   hide(data, summary.trade);
   if (data.scored && summary.trade.instructions.size() > 1 && shows(data, "bis"))
     summary.trade.statements.push_back({"bis-study", phrase("statement.bis_study")});

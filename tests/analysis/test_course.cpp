@@ -96,6 +96,31 @@ TEST_CASE("Traces show each procedure's trials in the order of presentation, wit
   CHECK(counts.answered == 5);
 }
 
+TEST_CASE("People who repeat their answers are found, and a run of equal stimuli does not look like them",
+          "[analysis]") {
+  for (const double habit : {0.0, 0.2}) {
+    turnpoint::random::Draws draws({15, turnpoint::random::Stream::observer, 0, 0, 0});
+    std::vector<TrialRecord> trials;
+    int right = 0, last = 0, repeated = 0;
+    for (int i = 0; i < 4000; ++i) {
+      if (draws.uniform() < 0.3) right = 1 - right;  // stimuli come in runs
+      TrialRecord trial;
+      trial.right_choice = right;
+      trial.response = draws.uniform() < 0.8 ? right : 1 - right;
+      if (draws.uniform() < habit) trial.response = last;
+      repeated += *trial.response == last;
+      last = *trial.response;
+      trials.push_back(trial);
+    }
+    const auto found = repetition(trials, "");
+    REQUIRE(found);
+    CHECK(repeated > 2200);  // the plain share is above a half for both
+    CHECK((found->interval.low > 0) == (habit > 0));
+    CHECK((habit > 0 || found->value < 0.03));
+    CHECK_FALSE(repetition(trials, "another"));
+  }
+}
+
 TEST_CASE("Post-error slowing is found, and a session that becomes slower and worse does not look like it",
           "[analysis]") {
   for (const double slowing_s : {0.0, 0.08}) {

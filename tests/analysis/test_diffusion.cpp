@@ -11,6 +11,7 @@
 #include "station/analysis/first_passage.hpp"
 #include "station/analysis/group.hpp"
 #include "station/analysis/quantile.hpp"
+#include "station/analysis/trade.hpp"
 #include "tests/analysis/first_passage_table.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/diffusion.hpp"
@@ -152,6 +153,23 @@ TEST_CASE("The first-passage density, distribution, tail and survival agree with
   }
 }
 
+TEST_CASE("With variability of drift and delay, the first-passage functions agree with quadrature in mpmath",
+          "[analysis][diffusion]") {
+  for (const auto& [drift, boundary, start, time, sd, delay, density, distribution, tail, survival] :
+       turnpoint::tests::kFirstPassageVaried) {
+    INFO("drift " << drift << ", boundary " << boundary << ", start " << start << ", time " << time << ", sd "
+                  << sd << ", delay " << delay);
+    const Diffusion lower{drift, boundary, start, sd, delay};
+    CHECK(std::fabs(log_density(lower, false, time) - density) < 1e-8);
+    CHECK(std::fabs(log_distribution(lower, false, time) - distribution) < 1e-8);
+    CHECK(std::fabs(log_tail(lower, false, time) - tail) < 1e-8);
+    CHECK(std::fabs(log_survival(lower, time) - survival) < 1e-8);
+    // negative control: half as much variability is something else
+    const Diffusion less{drift, boundary, start, sd / 2, delay / 2};
+    CHECK(std::fabs(log_density(less, false, time) - density) > 1e-7);
+  }
+}
+
 TEST_CASE("The first-passage functions are never NaN, and agree with each other", "[analysis][diffusion]") {
   for (const double drift : {-30.0, -1.0, -1e-9, 0.0, 1e-300, 0.3, 5.0, 30.0})
     for (const double boundary : {0.05, 0.5, 1.0, 10.0})
@@ -235,6 +253,32 @@ TEST_CASE("Trimmed times and dropped late answers are what broke the intervals: 
   REQUIRE((all && answered));
   CHECK(holds(all->boundary.interval, kSpeed));
   CHECK(answered->boundary.interval.high < kSpeed);
+}
+
+TEST_CASE("Caution that wears off within a block is found, and blocks that differ do not look like it",
+          "[analysis][diffusion]") {
+  for (const bool wears_off : {true, false}) {
+    rnd::Draws draws({9, rnd::Stream::observer, 0, 0, 0});
+    std::vector<TrialRecord> trials;
+    for (int i = 0; i < 480; ++i) {
+      const int block = i / 120;
+      const bool late = i % 120 >= 60;
+      const double boundary = wears_off ? (late ? 0.09 : 0.15) : (block % 2 == 0 ? 0.09 : 0.15);
+      const auto decision = sample_decision({0.2, boundary, kTer}, draws);
+      TrialRecord trial;
+      trial.trial_index = i, trial.block_index = block;
+      trial.difficulty = 1, trial.correct = decision.correct, trial.response_time_s = decision.time_s;
+      trials.push_back(trial);
+    }
+    TradeOptions options;
+    options.replicates = 20;
+    CHECK_FALSE(trade(trials, options).instructions.front().late_boundary);
+    options.halves = true;
+    const auto found = trade(trials, options).instructions.front().late_boundary;
+    REQUIRE(found);
+    if (wears_off) CHECK(found->interval.high < -0.03);
+    CHECK(holds(found->interval, wears_off ? -0.06 : 0));
+  }
 }
 
 TEST_CASE(

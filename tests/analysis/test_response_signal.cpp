@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "station/analysis/group.hpp"
 #include "station/analysis/quantile.hpp"
 #include "station/random/draws.hpp"
 #include "tests/support/catch.hpp"
@@ -167,6 +168,89 @@ TEST_CASE("the curve's estimates are hardly biased, and its intervals hold the t
       CHECK(std::fabs(found[i].bias_in_se(values[i])) < 0.25);
       CHECK(found[i].coverage() > 0.92);
     }
+  }
+}
+
+namespace {
+
+/// The share of pairs of sessions in which each nested model (asymptote, rate, intercept shared) is rejected.
+std::array<double, 3> rejected(const Truth& a, const Truth& b, int first, int sets) {
+  std::array<double, 3> shares{};
+  for (int i = first; i < first + sets; ++i) {
+    Draws draws({static_cast<std::uint64_t>(i), turnpoint::random::Stream::observer, 1, 0, 0});
+    auto trials = session(a, 56, draws);
+    for (auto& trial : trials) trial.instruction = "a";
+    for (auto& trial : session(b, 56, draws)) {
+      trials.push_back(trial);
+      trials.back().instruction = "b";
+    }
+    const auto pair = curve_differences(response_signal(trials, {}, Detecting::sides, 1)).front();
+    shares[0] += *pair.asymptote_p < 0.05, shares[1] += *pair.rate_p < 0.05;
+    shares[2] += *pair.intercept_p < 0.05;
+  }
+  for (auto& share : shares) share /= sets;
+  return shares;
+}
+
+}  // namespace
+
+// TURNPOINT_NESTED_SETS=300 prints the shares.
+TEST_CASE("a model in which two conditions share a parameter is seldom rejected if they do, and more often if not",
+          "[analysis]") {
+  const int sets = number_from("TURNPOINT_NESTED_SETS", 0);
+  const Truth base{2.5, 4, 0.3};
+  if (sets == 0) {
+    for (const double share : rejected(base, base, 0, 20)) CHECK(share <= 0.25);  // 6 of 20: 1 in 3000 runs
+    CHECK(rejected(base, {1.2, 4, 0.3}, 0, 10)[0] > 0.25);
+    CHECK(rejected(base, {2.5, 4, 0.55}, 0, 10)[2] > 0.5);
+    return;
+  }
+  constexpr Truth kOthers[] = {{2.5, 4, 0.3}, {1.5, 4, 0.3}, {2.5, 10, 0.3}, {2.5, 4, 0.5}};
+  for (const auto& other : kOthers) {
+    const auto shares = rejected(base, other, 0, sets);
+    std::cout << "asymptote " << other.asymptote << ", rate " << other.rate_per_s << ", intercept "
+              << other.intercept_s << ": rejected, one asymptote " << 100 * shares[0] << " %, one rate "
+              << 100 * shares[1] << " %, one intercept " << 100 * shares[2] << " %" << std::endl;
+  }
+}
+
+// TURNPOINT_CURVE_STUDIES=1000 prints the coverage for eight people.
+TEST_CASE("the asymptote of eight people holds the truth", "[analysis]") {
+  const int given = number_from("TURNPOINT_CURVE_STUDIES", 0), studies = given == 0 ? 8 : given;
+  int held = 0;
+  std::vector<double> means;
+  for (int study = 0; study < studies; ++study) {
+    Draws draws({static_cast<std::uint64_t>(study), turnpoint::random::Stream::observer, 2, 0, 0});
+    std::vector<PersonMeasure> measures;
+    for (int person = 0; person < 8; ++person) {
+      const Truth truth{2.5 + 0.4 * draws.normal(), 4 * std::exp(0.2 * draws.normal()), 0.3};
+      const auto curve = response_signal(session(truth, 56, draws), {}, Detecting::sides, 1).front();
+      if (curve.asymptote)
+        measures.push_back({std::to_string(person), "", "asymptote", "", curve.asymptote->value});
+    }
+    const auto mean = group_means(measures).front().mean;
+    held += holds(mean, 2.5), means.push_back(mean->value);
+  }
+  if (given != 0)
+    std::cout << "asymptote of eight people, truth 2.5: median " << quantile(means, 0.5) << ", covered "
+              << 100.0 * held / studies << " % of " << studies << std::endl;
+  CHECK(held >= (given == 0 ? 6 : 0.9 * studies));
+}
+
+TEST_CASE("d' is given by level, if there are two or more", "[analysis]") {
+  Draws draws({6, turnpoint::random::Stream::observer, 0, 0, 0});
+  auto trials = session({2.5, 4, 0.3}, 200, draws);
+  CHECK(response_signal(trials, {}, Detecting::sides, 1).front().by_level.empty());
+  for (std::size_t i = 0; i < trials.size(); i += 4)
+    for (std::size_t k = i; k < i + 2; ++k) {
+      *trials[k].level *= 2;
+      trials[k].response = draws.uniform() < 0.02 ? 1 - *trials[k].right_choice : *trials[k].right_choice;
+    }
+  const auto curve = response_signal(trials, {}, Detecting::sides, 1).front();
+  REQUIRE(curve.by_level.size() == 6);
+  for (const auto& levels : curve.by_level) {
+    REQUIRE(levels.size() == 2);
+    CHECK(levels[0].d_prime->value < levels[1].d_prime->value);
   }
 }
 
