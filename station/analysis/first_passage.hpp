@@ -24,7 +24,8 @@ double log_density(const Diffusion& diffusion, bool upper, double time_s);
 /// Logarithm of the probability of having been absorbed at this boundary by `time_s` (Blurton, Kesselmeier &
 /// Gondan 2012 for short times, the series of sines for long ones; the drift's variability by the trapezoidal
 /// rule, that of the delay as above). The same accuracy for a standard deviation of the drift up to 2 per s and
-/// drifts up to 10 per s; beyond them, with a start next to a boundary, it can be lost.
+/// drifts up to 10 per s (tests/python compares random sets with averages by numpy); it was not shown for
+/// larger ones.
 double log_distribution(const Diffusion& diffusion, bool upper, double time_s);
 
 /// Logarithm of the probability of being absorbed at this boundary after `time_s`. The same accuracy.

@@ -269,12 +269,9 @@ std::unique_ptr<Made, Free> made(int (*allocate)(Made**)) {
   return std::unique_ptr<Made, Free>(object);
 }
 
-// The card of alsa:hw:CARD=NAME,DEV=0 and of alsa:plughw:CARD=NAME,DEV=0 is hw:CARD=NAME.
 std::unique_ptr<snd_ctl_t, Free> open_card(const std::string& uri) {
-  constexpr std::string_view scheme = "alsa:", converted = "plug";
-  if (!uri.starts_with(scheme)) return nullptr;
-  auto name = uri.substr(scheme.size(), uri.find(',') - scheme.size());
-  if (name.starts_with("plughw:")) name.erase(0, converted.size());
+  const auto name = card_of(uri);
+  if (name.empty()) return nullptr;
   const QuietAlsa quiet;
   snd_ctl_t* opened = nullptr;
   if (snd_ctl_open(&opened, name.c_str(), SND_CTL_READONLY) < 0) return nullptr;
@@ -315,6 +312,14 @@ std::string values_of(snd_ctl_t* card, snd_ctl_elem_info_t* info, const snd_ctl_
 }
 
 }  // namespace
+
+std::string card_of(const std::string& device_uri) {
+  constexpr std::string_view scheme = "alsa:", converted = "plug";
+  if (!device_uri.starts_with(scheme)) return "";
+  auto name = device_uri.substr(scheme.size(), device_uri.find(',') - scheme.size());
+  if (name.starts_with("plughw:")) name.erase(0, converted.size());
+  return name;
+}
 
 std::optional<bool> card_switch(const std::string& output_uri, const std::string& name) {
   const auto levels = mixer_levels(output_uri);

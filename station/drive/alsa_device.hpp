@@ -66,6 +66,10 @@ AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name,
 /// no such switch, or it cannot be read. Changes nothing.
 std::optional<bool> card_switch(const std::string& output_uri, const std::string& name);
 
+/// Returns alsa-lib's name for the card of a device: hw:CARD=NAME for alsa:hw:CARD=NAME,DEV=0 and for
+/// alsa:plughw:CARD=NAME,DEV=0; "" if the device is not `alsa:`.
+std::string card_of(const std::string& device_uri);
+
 /// Reads the mixer of the sound card behind a device `alsa:...`: each level, switch and choice that somebody
 /// can set, by its name (with its index if there are several of that name), as the values of its channels:
 /// "207, 207", "on", "Line 1". Leaves out what the card changes by itself. Returns nothing if the device is

@@ -125,9 +125,8 @@ std::vector<Check> judged(const CellReading& reading) {
 
 std::map<std::string, std::string> mixer_levels(const rig::Rig& rig) {
   auto levels = drive::mixer_levels(rig.output.uri).value_or(std::map<std::string, std::string>{});
-  if (!rig.capture || rig.capture->uri == rig.output.uri) return levels;
-  const auto captured = drive::mixer_levels(rig.capture->uri);
-  if (captured && *captured != levels)
+  if (!rig.capture || drive::card_of(rig.capture->uri) == drive::card_of(rig.output.uri)) return levels;
+  if (const auto captured = drive::mixer_levels(rig.capture->uri))
     for (const auto& [control, values] : *captured) levels["capture: " + control] = values;
   return levels;
 }

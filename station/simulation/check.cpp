@@ -131,6 +131,13 @@ void add_visit(const std::vector<Estimate>& estimates, Check& check) {
   check.trials = spread_of(trials);
 }
 
+/// How many sessions of this length are simulated to see how long runs become: fewer of very long ones, which
+/// the bound of the share then says.
+int runs_sessions(double trials) {
+  constexpr double most_trials = 200'000;
+  return static_cast<int>(std::clamp(most_trials / std::max(1.0, trials), 20.0, 200.0));
+}
+
 /// Simulates sessions in which one trial of ten is not answered, and counts those in which runs of trials
 /// were longer than the protocol allows. Trials that come again can make a run longer, so hardly any limit is
 /// certain.
@@ -386,7 +393,8 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
     const auto& finish = options.steps.finish;
     estimate(*protocol, options.sessions, stop, options.steps, check);
     if (stop.stop_requested()) throw protocol::Abandoned();
-    check_runs(*protocol, std::min(200, options.sessions.value_or(200)), stop, options.steps, check);
+    check_runs(*protocol, std::min(runs_sessions(check.trials.median), options.sessions.value_or(kMostSessions)), stop,
+               options.steps, check);
     if (check.problems.empty()) {
       if (options.finger) check.finger = shares(check.survey, *rig);
       if (options.sound) check.sound = loudest(check.survey, *rig, stop, options.steps);

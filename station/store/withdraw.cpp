@@ -218,18 +218,23 @@ std::vector<Tombstone> new_tombstones(const Withdrawal& withdrawal) {
 }
 
 // A row of `meta` with this key says that sessions were deleted, but not yet from the free pages of the file
-// and from its copies. Whoever follows tombstones next then completes this.
+// and from its copies. Its value is the folder of the backups; "" for none. Whoever follows tombstones next, with
+// a folder of backups if that withdrawal had one, completes it.
 constexpr const char* kErasing = "erasing";
 
-bool is_erasing(Database& database) {
-  return Statement(database, "SELECT 1 FROM meta WHERE key = ?").bind(kErasing).step();
+/// True if a withdrawal was interrupted that can be completed with this folder of backups.
+bool can_complete(Database& database, const std::string& backup_directory) {
+  Statement row(database, "SELECT 1 FROM meta WHERE key = ? AND (value = '' OR ? <> '')");
+  return row.bind(kErasing, backup_directory).step();
 }
 
 /// Writes the tombstones (the marks of withdrawals), and deletes the sessions and codes that they withdraw.
 void remove_sessions(Database& database, const std::vector<Tombstone>& tombstones,
-                     const std::vector<Bearer>& bearers) {
+                     const std::vector<Bearer>& bearers, const std::string& backup_directory) {
   SealedTransaction transaction(database);
-  Statement(database, "INSERT OR REPLACE INTO meta VALUES (?, 'yes')").bind(kErasing).run();
+  Statement(database, "INSERT INTO meta VALUES (?1, ?2) ON CONFLICT (key) DO UPDATE SET value = ?2 WHERE value = ''")
+      .bind(kErasing, backup_directory)
+      .run();
   for (const auto& stone : tombstones) {
     Statement(database, "INSERT INTO tombstone VALUES (?,?,?,?,?)")
         .bind(stone.session_id, stone.salt, stone.participant_sha256, stone.withdrawn_realtime_ns,
@@ -292,7 +297,7 @@ void carry_out(const std::string& path, Database& database, Withdrawal& withdraw
   // throws if a folder cannot be read, before anything is deleted
   copies_of(path, database, backup_directory, ids);
   database.execute("PRAGMA secure_delete = ON");
-  remove_sessions(database, tombstones, withdrawal.bearers);
+  remove_sessions(database, tombstones, withdrawal.bearers, backup_directory);
   scrub(database);
   try {
     if (!backup_directory.empty()) backup(path, {backup_directory, 0});
@@ -300,7 +305,9 @@ void carry_out(const std::string& path, Database& database, Withdrawal& withdraw
     note_copies(withdrawal, copies);
     remove_copies(copies, backup_directory);
     SealedTransaction transaction(database);
-    Statement(database, "DELETE FROM meta WHERE key = ?").bind(kErasing).run();
+    Statement(database, "DELETE FROM meta WHERE key = ? AND (value = '' OR ? <> '')")
+        .bind(kErasing, backup_directory)
+        .run();
     transaction.commit();
   } catch (const StoreError& error) {
     throw StoreError(error.kind(), fmt::format("withdraw: the sessions were removed from the database, but "
@@ -390,7 +397,8 @@ Withdrawal follow_tombstones(const std::string& name, const std::vector<Tombston
   {
     auto reader = open_reader(path);
     if (const auto follow = following(reader, tombstones);
-        follow.tombstones.empty() && follow.withdrawal.bearers.empty() && !is_erasing(reader))
+        follow.tombstones.empty() && follow.withdrawal.bearers.empty() &&
+            !can_complete(reader, backup_directory))
       return {};
   }
   auto writer = open_writer(path, IfMissing::fail);

@@ -17,10 +17,12 @@ using Kind = Key::Kind;
 struct Json {
   std::string scalar;  ///< as it is written; "" for an object or a list
   bool is_list = false;
-  std::vector<std::pair<std::string, Json>> members;  ///< without names in a list
+  std::string name = {};            ///< of a member of an object
+  std::vector<Json> members = {};
 
-  Json& add(const std::string& name, Json value) {
-    members.emplace_back(name, std::move(value));
+  Json& add(const std::string& key, Json value) {
+    value.name = key;
+    members.push_back(std::move(value));
     return *this;
   }
 };
@@ -34,8 +36,8 @@ std::string in_quotes(const std::string& text) {
   return quoted + "\"";
 }
 
-Json word(const std::string& text) { return {in_quotes(text), false, {}}; }
-Json written(const std::string& scalar) { return {scalar, false, {}}; }
+Json word(const std::string& text) { return {in_quotes(text)}; }
+Json written(const std::string& scalar) { return {scalar}; }
 Json amount(double value) {
   return written(value == std::floor(value) && std::fabs(value) < 1e15
                      ? std::to_string(static_cast<long long>(value))
@@ -56,8 +58,8 @@ Json list_of_words(const std::vector<std::string>& words) {
 std::string on_one_line(const Json& json) {
   if (!json.scalar.empty()) return json.scalar;
   std::string line;
-  for (const auto& [name, value] : json.members)
-    line += (line.empty() ? "" : ", ") + (json.is_list ? "" : in_quotes(name) + ": ") + on_one_line(value);
+  for (const auto& member : json.members)
+    line += (line.empty() ? "" : ", ") + (json.is_list ? "" : in_quotes(member.name) + ": ") + on_one_line(member);
   return json.is_list ? "[" + line + "]" : "{" + line + "}";
 }
 
@@ -67,10 +69,10 @@ std::string rendered(const Json& json, std::size_t indent, std::size_t before = 
   if (!json.scalar.empty() || indent + before + line.size() <= width) return line;
   std::string lines = json.is_list ? "[" : "{";
   for (std::size_t i = 0; i < json.members.size(); ++i) {
-    const auto& [name, value] = json.members[i];
-    const auto start = json.is_list ? "" : in_quotes(name) + ": ";
+    const auto& member = json.members[i];
+    const auto start = json.is_list ? "" : in_quotes(member.name) + ": ";
     lines += (i == 0 ? "\n" : ",\n") + std::string(indent + 1, ' ') + start +
-             rendered(value, indent + 1, start.size());
+             rendered(member, indent + 1, start.size());
   }
   return lines + "\n" + std::string(indent, ' ') + (json.is_list ? "]" : "}");
 }

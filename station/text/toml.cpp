@@ -16,7 +16,7 @@ using texts::phrase, texts::plain;
 
 namespace {
 
-constexpr std::size_t most_items = 10'000;
+constexpr std::size_t most_items = 10'000;  // of a list, and keys of a table
 constexpr std::size_t most_parts = 16;  // of a key
 constexpr int most_levels = 100;        // of lists and inline tables inside each other
 
@@ -281,15 +281,12 @@ class Reader {
   void list(Part& part, int level) {
     ++at_;
     for (skip_blank_lines(); here() != ']'; skip_blank_lines()) {
-      auto& item = part.parts.emplace_back();
+      auto& item = added(part);
       item.name = std::to_string(part.parts.size() - 1);
       item.line = line_;
       item.key_place = place();
       value(item, level + 1);
       item.key = item.value;
-      if (part.parts.size() > most_items)
-        throw BadInput({{part.scalar.place, phrase("a list of more than %1 items", {plain(most_items)}),
-                         phrase("at most %1", {plain(most_items)})}});
       skip_blank_lines();
       if (here() == ',')
         ++at_;
@@ -481,7 +478,7 @@ class Reader {
     }
     if (const auto* other = parent->find(names.names.back()))
       defined_twice(names, names.names.size() - 1, *other);
-    auto& part = parent->parts.emplace_back();
+    auto& part = added(*parent);
     part.name = names.names.back(), part.line = at_line;
     part.key = {names.spans.front().begin, names.spans.back().end};
     part.key_place = names.places.back();
@@ -502,8 +499,19 @@ class Reader {
         phrase("every key and every table once"));
   }
 
-  static Part& dotted(Part& parent, const std::string& name, int at_line, const Place& key_place) {
-    auto& made = parent.parts.emplace_back();
+  /// Adds a part to a list or a table. Keys are searched for one after the other, so a table is no longer than
+  /// a list may be.
+  Part& added(Part& parent) {
+    if (parent.parts.size() >= most_items) {
+      const bool list = parent.kind == Part::Kind::array || parent.kind == Part::Kind::table_array;
+      throw BadInput({{place(), phrase(list ? "a list of more than %1 items" : "a table of more than %1 keys", {plain(most_items)}),
+                       phrase("at most %1", {plain(most_items)})}});
+    }
+    return parent.parts.emplace_back();
+  }
+
+  Part& dotted(Part& parent, const std::string& name, int at_line, const Place& key_place) {
+    auto& made = added(parent);
     made.kind = Part::Kind::dotted, made.name = name, made.line = at_line, made.key_place = key_place;
     return made;
   }
@@ -537,17 +545,14 @@ class Reader {
                                         : part->kind == Part::Kind::dotted && part->prefix.empty());
     if (!open) defined_twice(names, names.names.size() - 1, *part);
     if (fresh) {
-      part = &parent->parts.emplace_back();
+      part = &added(*parent);
       part->name = names.names.back(), part->line = at_line, part->key_place = names.places.back();
       part->scalar.place = began;
     }
     if (of_list) {
       part->kind = Part::Kind::table_array;
       const auto count = part->parts.size();
-      if (count >= most_items)
-        throw BadInput({{part->scalar.place, phrase("a list of more than %1 items", {plain(most_items)}),
-                         phrase("at most %1", {plain(most_items)})}});
-      part = &part->parts.emplace_back();
+      part = &added(*part);
       part->name = std::to_string(count);
     }
     part->kind = Part::Kind::table;

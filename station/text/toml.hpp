@@ -76,7 +76,7 @@ struct Part {
 
 /// Reads TOML 1.0. Returns the table of the whole file, as it is written. `path` is the file name that
 /// messages show. Throws BadInput with the place of the first mistake, of a list with more than 10 000 items,
-/// or of a key with more than 16 parts.
+/// a table with more than 10 000 keys, or a key with more than 16 parts.
 Part parts_of(std::string_view source, const std::string& path);
 
 /// Returns what a part says, without how it is written.

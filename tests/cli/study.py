@@ -128,7 +128,10 @@ class Study(unittest.TestCase):
         self.assertAlmostEqual(effect["difference"]["value"], statistics.mean(gaps), 9)
         self.assertLess(effect["difference"]["interval"]["low"], effect["difference"]["value"])
         report = json.loads(self.call(["report", "--db", "lab0.sqlite", "--participant", "P01", "--json"]))
-        self.assertNotIn("BIS", json.dumps(report))  # one session cannot standardise over participants
+        # One session cannot standardise over participants: it has no score and says so.
+        said = report.pop("statements")
+        self.assertNotIn("BIS", json.dumps(report))
+        self.assertIn("so one session has none", " ".join(statement["text"] for statement in said))
 
     def test_lme4_finds_the_same_groups(self):
         out = subprocess.run(["Rscript", os.path.join(SCRIPTS, "study.R"), "tables"], cwd=self.folder, capture_output=True, text=True,

@@ -105,6 +105,46 @@ class Diffusion(unittest.TestCase):
         without = analysis.diffusion(times_s[kept], correct[kept], difficulty=difficulty[kept], method="likelihood")
         self.assertLess(without.boundary.high, fit.boundary.value)
 
+    def test_variability_is_the_mean_over_drifts_and_delays(self):
+        # The functions without variability are compared with mpmath in test_analysis; here numpy averages them.
+        # TURNPOINT_VARIED_SETS=300 for more.
+        draws, sets = np.random.default_rng(5), int(os.environ.get("TURNPOINT_VARIED_SETS", "25"))
+        nodes, weights = np.polynomial.legendre.leggauss(40)
+        compared = 0
+        for i in range(2 * sets):
+            by_delay, upper = i % 2 == 1, bool(draws.integers(2))
+            what = str(draws.choice(["density", "distribution", "tail"]))
+            boundary = np.exp(draws.uniform(np.log(0.3 if by_delay else 0.1), np.log(4)))  # for s = 1
+            edge = 10 ** draws.uniform(-6, -1)
+            start = draws.uniform(0.03, 0.97) if by_delay else draws.choice([draws.uniform(0.03, 0.97), edge, 1 - edge])
+            drift, sd = draws.uniform(-8, 8), draws.uniform(0.02, 2)
+            time_s = boundary ** 2 * np.exp(draws.uniform(np.log(0.02), np.log(8)))
+            common = {"boundary": 0.1 * boundary, "start": start, "what": what}
+            if by_delay:
+                range_s = np.exp(draws.uniform(np.log(0.005), 0))
+                edges = np.geomspace(max(time_s - range_s, 1e-6 * time_s), time_s, 120)
+                half, middle = (edges[1:] - edges[:-1]) / 2, (edges[1:] + edges[:-1]) / 2
+                at = (middle[:, None] + half[:, None] * nodes).ravel()
+                given = dict(drift=0.1 * drift, drift_sd=0.1 * sd, **common)
+                values = np.exp(analysis.first_passage(at, upper, **given))
+                mean = (values * (half[:, None] * weights).ravel()).sum()
+                if what == "tail" and time_s < range_s:  # the process has not begun
+                    mean += (range_s - time_s + edges[0]) * np.exp(analysis.first_passage([1e-300], upper, **given))[0]
+                mean /= range_s
+                found = analysis.first_passage([time_s], upper, delay_range_s=range_s, **given)[0]
+            else:
+                away = 10 * sd + 1.2 * sd * sd * boundary + 1
+                drifts = np.linspace(drift - away, drift + away, 801)
+                values = [analysis.first_passage([time_s], upper, drift=0.1 * v, **common)[0] for v in drifts]
+                normal = np.exp(-0.5 * ((drifts - drift) / sd) ** 2) / (sd * np.sqrt(2 * np.pi))
+                mean = (np.exp(values) * normal).sum() * (drifts[1] - drifts[0])
+                found = analysis.first_passage([time_s], upper, drift=0.1 * drift, drift_sd=0.1 * sd, **common)[0]
+            self.assertFalse(np.isnan(found))
+            if mean > 1e-30:
+                compared += 1
+                self.assertAlmostEqual(np.exp(found) / mean, 1, delta=1e-8, msg=f"{what}, {upper}, {drift}, {sd}, {time_s}, {common}")
+        self.assertGreater(compared, sets)
+
     def test_start_and_variabilities_are_found_again(self):
         rng = np.random.default_rng(7)
         t, upper = sampled(rng, 4000, 1.5, 1.3, 0.3, start=0.35, step_s=1e-3)

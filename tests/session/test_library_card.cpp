@@ -132,7 +132,8 @@ void use_plugin(const TemporaryFolder& folder) {
   std::ofstream(path) << "pcm_type.looped { lib \"" << LIBRARY_CARD_PLUGIN << "\" }\n"
                       << "pcm.looped { type looped }\n"
                       << "ctl_type.looped { lib \"" << LIBRARY_CARD_PLUGIN << "\" }\n"
-                      << "ctl.looped { type looped }\n";
+                      << "ctl.looped { type looped }\n"
+                      << "ctl.another { type looped }\n";
   ::setenv("ALSA_CONFIG_PATH", path.c_str(), 1);
 }
 
@@ -238,6 +239,16 @@ TEST_CASE("the mixer's levels belong to a calibration", "[session][alsa][mixer]"
   CHECK(check().verdict == records::Verdict::passed);
   CHECK(session::judged(session::read_mixer(rig)).verdict == records::Verdict::not_possible);
 
+  SECTION("another card that captures counts, even if its mixer is equal") {
+    CHECK(drive::card_of("alsa:plughw:CARD=X,DEV=1") == drive::card_of("alsa:hw:CARD=X,DEV=0"));
+    auto two = rig;
+    two.capture = rig::Capture{"alsa:another", 5, {1}, 0, 2, {}};
+    const auto both = session::mixer_levels(two);
+    CHECK(both.size() == 2 * levels.size());
+    CHECK(both.at("capture: Mic,1") == "10, 12");
+    two.capture->uri = "alsa:looped,1";
+    CHECK(session::mixer_levels(two) == levels);
+  }
   SECTION("a level that was changed is named with both values") {
     card.controls[0].values = {207, 180};
     CHECK(check().verdict == records::Verdict::failed);

@@ -10,9 +10,10 @@
 
 #include "station/store/backup.hpp"
 #include "station/store/export.hpp"
+#include "station/store/open.hpp"
+#include "station/store/seal.hpp"
 #include "station/store/merge.hpp"
 #include "station/store/read.hpp"
-#include "station/store/seal.hpp"
 #include "station/store/session_log.hpp"
 #include "station/store/station.hpp"
 #include "station/store/verify.hpp"
@@ -399,6 +400,32 @@ TEST_CASE("a withdrawal that arrives from elsewhere takes all sessions of the pe
   CHECK(sample::failure([&] { sample::session(a, 1, at_station("P01", "a")); }).first == ErrorKind::refused);
   CHECK(follow_tombstones(a, stones).sessions.empty());
   CHECK(sample::raw(a).integer("SELECT count(*) FROM tombstone") == 3);
+}
+
+TEST_CASE("a withdrawal that was interrupted is completed once its folder of backups is given", "[store]") {
+  TemporaryFolder folder;
+  const auto a = folder / "a.sqlite", dir = folder / "backups";
+  sample::session(a, 3, at_station("P01", "a"));
+  const auto kept = sample::session(a, 2, at_station("P02", "a"));
+  backup(a, {dir, 9});
+  withdraw(a, {"P01", "a", "", ""});
+  auto reader = sample::raw(a);
+  const auto stones = list_tombstones(reader);
+  {  // as if the backups had not been reached
+    auto writer = open_writer(a, IfMissing::fail);
+    SealedTransaction transaction(writer.database);
+    Statement(writer.database, "INSERT INTO meta VALUES ('erasing', ?)").bind(dir).run();
+    transaction.commit();
+  }
+  const auto unfinished = [&] { return sample::raw(a).integer("SELECT count(*) FROM meta WHERE key = 'erasing'") == 1; };
+  CHECK(follow_tombstones(a, stones).removed_copies.empty());
+  CHECK(unfinished());
+  CHECK(follow_tombstones(a, stones, dir).removed_copies.size() == 1);
+  CHECK_FALSE(unfinished());
+  CHECK(follow_tombstones(a, stones, dir).removed_copies.empty());
+  CHECK(verify(a).good());
+  CHECK(backups_in(dir, a).size() == 1);
+  CHECK(list_sessions(a).front().session_id == kept);
 }
 
 TEST_CASE("a tombstone that names another station or another person than its session deletes nothing",

@@ -221,3 +221,27 @@ TEST_CASE("the reader gives each value, with its place", "[text]") {
   CHECK(list.items[0].boolean);
   CHECK(list.items[1].kind == Value::Kind::date);
 }
+
+TEST_CASE("a table or a list is at most 10 000 long, and the longest is read at once", "[text]") {
+  const auto keys = [](int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) text += "a" + std::to_string(i) + "=1\n";
+    return text;
+  };
+  const auto tables = [](int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) text += "[a" + std::to_string(i) + ".b]\n";
+    return text;
+  };
+  const auto list = [](int count) {
+    std::string text = "a=[0";
+    for (int i = 1; i < count; ++i) text += ",0";
+    return text + "]";
+  };
+  CHECK(accepted(keys(10'000)));
+  CHECK_FALSE(accepted(keys(10'001)));
+  CHECK(accepted(tables(10'000)));
+  CHECK_FALSE(accepted(tables(10'001)));
+  CHECK(accepted(list(10'000)));
+  CHECK_FALSE(accepted(list(10'001)));
+}

@@ -224,14 +224,17 @@ TEST_CASE("a database of another machine is asked about, and either answer lets 
     store::move_station(writer.database, "of another board");
   }
   start.open();
-  REQUIRE(start.comes([&] { return start.page->other_machine(); }));
+  start.checks.let_go();
+  REQUIRE(start.comes([&] { return start.page->other_machine() && !start.page->checking(); }));
   CHECK(start.page->station() == "bench-1");
   CHECK_FALSE(start.page->may_begin());
+  CHECK(start.page->problems().isEmpty());  // the page asks instead
 
   SECTION("a name that is not possible changes nothing and says why") {
+    const auto before = start.page->problems().size();
     start.page->nameCopy("bench 2");
+    REQUIRE(start.comes([&] { return start.page->problems().size() > before; }));
     CHECK(start.page->other_machine());
-    CHECK_FALSE(start.page->problems().empty());
     CHECK(store::read_station(path).machine == "of another board");
   }
   SECTION("it was replaced") {
@@ -239,7 +242,6 @@ TEST_CASE("a database of another machine is asked about, and either answer lets 
     REQUIRE(start.comes([&] { return !start.page->other_machine(); }));
     CHECK(store::read_station(path).name == "bench-1");
     CHECK(store::read_station(path).database_id == id);
-    start.checks.let_go();
     CHECK(start.comes([&] { return start.page->may_begin(); }));
   }
   SECTION("it is a copy") {
@@ -247,7 +249,6 @@ TEST_CASE("a database of another machine is asked about, and either answer lets 
     REQUIRE(start.comes([&] { return !start.page->other_machine(); }));
     CHECK(start.page->station() == "bench-2");
     CHECK(store::read_station(path).database_id != id);
-    start.checks.let_go();
     CHECK(start.comes([&] { return start.page->may_begin(); }));
   }
 }

@@ -78,19 +78,20 @@ def first_passage(times_s, upper, *, drift, boundary, start=0.5, drift_sd=0.0, d
                   what="density") -> np.ndarray:
     """Natural logarithm of a function of the first passage of a diffusion, for each time.
 
-    times_s: s, from the start of the decision. upper: which boundary.
+    times_s: s, from the start of the decision. upper: which boundary, once or for each time.
     what: "density" (1/s) of arriving at this boundary at the time, "distribution": the probability of
         having arrived there by then, "tail": of arriving there later, "survival": of having arrived nowhere.
     drift, boundary, drift_sd: for s = 0.1, drifts per s. delay_range_s: the start is delayed by up to this time, s.
 
-    The relative error is below 1e-8 where the value exceeds 1e-30 (Navarro & Fuss 2009; Blurton, Kesselmeier & Gondan 2012;
-    Tuerlinckx 2004)."""
+    The relative error is below 1e-8 where the value exceeds 1e-30 and drift_sd is at most 0.2 per s (Navarro & Fuss
+    2009; Blurton, Kesselmeier & Gondan 2012; Tuerlinckx 2004)."""
     _one_of("what", what, ("density", "distribution", "tail", "survival"))
     times_s = _column("times_s", times_s)
     if np.isnan(times_s).any():
         raise ValueError("times_s: NaN; every time must be known")
     if not (np.isfinite(drift) and boundary > 0 and 0 < start < 1 and drift_sd >= 0 and delay_range_s >= 0):
         raise ValueError("the boundary must be above 0, the start between 0 and 1, drift_sd and delay_range_s 0 or more")
+    upper = np.broadcast_to(upper, times_s.shape) if np.ndim(upper) == 0 else upper
     return _analysis.first_passage(what, times_s, _flags("upper", upper, times_s), drift, boundary, start, drift_sd,
                                    delay_range_s)
 

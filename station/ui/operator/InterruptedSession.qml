@@ -26,7 +26,7 @@ Rectangle {
         objectName: "resume"
         anchors { right: parent.right; verticalCenter: parent.verticalCenter; rightMargin: Math.round(0.6 * root.theme.unit) }
         theme: root.theme
-        enabled: !root.operating.preparing
+        enabled: !root.operating.preparing && !root.operating.otherMachine
         text: root.texts.text("operator.resume")
         onActivated: root.operating.resume()
     }

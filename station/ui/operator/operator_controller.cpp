@@ -260,13 +260,18 @@ void OperatorController::nameCopy(const QString& name) { name_station({name.trim
 
 void OperatorController::name_station(const store::StationName& how) {
   if (preparing_) return;
+  preparing_ = true;
   forget_refusal();
-  try {
-    store::name_station(request_.database, how);
-  } catch (const std::exception& error) {
-    return refuse({texts::phrase_of(error)});
-  }
-  refresh();
+  Q_EMIT changed();
+  work(
+      [this, how, database = request_.database](const std::stop_token&) -> Then {
+        store::name_station(database, how);
+        return [this] {
+          stay();
+          refresh();
+        };
+      },
+      &OperatorController::refuse);
 }
 
 void OperatorController::resume() {
@@ -313,7 +318,8 @@ bool OperatorController::refuses() const { return state_.refusal != texts::Phras
 
 QVariantList OperatorController::problems() const {
   QVariantList all;
-  if (refuses()) all += to_variant(state_.refusal);
+  // The page asks what happened to a database of another machine, instead of saying what to type.
+  if (refuses() && !state_.other_machine) all += to_variant(state_.refusal);
   return all + to_list(words_.problems) + to_list(refused_);
 }
 QVariantList OperatorController::not_live() const { return to_list(not_live_); }
