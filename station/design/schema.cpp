@@ -126,7 +126,7 @@ Rule Schema::rule_of(const Json& given, const Json& form) const {
     rule.kind = Rule::Kind::word;
   } else if (type == "array") {
     const auto* items = form.contains("items") ? &resolved(form["items"]) : &form;
-    if (items->contains("oneOf") && !items->contains("type")) items = &resolved((*items)["oneOf"].front());
+    if (items->contains("anyOf") && !items->contains("type")) items = &resolved((*items)["anyOf"].front());
     rule.kind = kind_of_items(*items);
     rule.allowed = words_of(*items);
     if (rule.kind == Rule::Kind::tables) add_keys(*items, rule);

@@ -47,10 +47,10 @@ namespace {
 /// above.
 void read_starts(text::TableReader& reader, Spec& spec) {
   auto &below = spec.ascending.values, &above = spec.descending.values;
-  below = reader.maybe_numbers("start_below", any_level);
-  above = reader.maybe_numbers("start_above", any_level);
+  below = reader.maybe_numbers("start_below");
+  above = reader.maybe_numbers("start_above");
   if (!reader.has("start_below") && !reader.has("start_above")) {
-    spec.values = reader.numbers("start", any_level);
+    spec.values = reader.numbers("start");
     if (spec.values.empty()) return;
     const auto [low, high] = std::minmax_element(spec.values.begin(), spec.values.end());
     const double middle = 0.5 * (*low + *high);

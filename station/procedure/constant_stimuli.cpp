@@ -173,10 +173,10 @@ extern const Description constant_stimuli{
     "constant-stimuli",
     Choice::listed,
     [](text::TableReader& reader, Spec& spec) {
-      spec.values = reader.numbers("values", any_level);
+      spec.values = reader.numbers("values");
       read_list(reader, spec);
       if (const auto* stop = reader.maybe_table("stop")) {
-        text::TableReader inner(*stop, reader.path("stop"), reader.findings());
+        text::TableReader inner(*stop, reader.path("stop"), reader.findings(), reader.keys("stop"));
         read_right_of_last(inner, spec);
         if (!inner.has("right") && !inner.has("of_last"))
           reader.problem("stop", phrase("\"stop\" does not contain a rule"),

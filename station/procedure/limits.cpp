@@ -209,20 +209,18 @@ SeriesStarts read_starts(text::TableReader& reader, const std::string& key) {
   if (!value) return {};
   SeriesStarts starts;
   if (value->kind != text::Value::Kind::table) {
-    starts.values = reader.numbers(key, any_level);
+    starts.values = reader.numbers(key);
     return starts;
   }
-  text::TableReader inner(*value, reader.path(key), reader.findings());
-  inner.require("uniform",
-                phrase("give the lowest and the highest start: %1", {plain("{ uniform = [2.0, 4.0] }")}));
-  starts.uniform = inner.maybe_interval("uniform", any_level);
+  text::TableReader inner(*value, reader.path(key), reader.findings(), reader.keys(key));
+  inner.require("uniform");
+  starts.uniform = inner.maybe_interval("uniform");
   inner.finish();
   return starts;
 }
 
 void read_limits(text::TableReader& reader, Spec& spec) {
-  spec.tracks =
-      reader.string("tracks", phrase("write the id of the answer that is more frequent at higher levels"));
+  spec.tracks = reader.string("tracks");
   read_scale(reader, spec);
   spec.ascending = read_starts(reader, "start_ascending");
   spec.descending = read_starts(reader, "start_descending");
@@ -231,14 +229,12 @@ void read_limits(text::TableReader& reader, Spec& spec) {
                    phrase("%1 says nowhere at which levels series start", {reader.title()}),
                    phrase("give \"start_ascending\", \"start_descending\" or both: a list of levels, or %1",
                           {plain("{ uniform = [low, high] }")}));
-  spec.min = reader.number("min", any_level);
-  spec.max = reader.number("max", any_level);
-  spec.step = {reader.number("step", {0, 1e6, text::Range::Ends::open_low})};
-  spec.series = reader.integer("series", 1, 1000);
-  spec.n_change = reader.integer("n_change", 1, 20, 1);
-  spec.directions = reader.word("directions", {"alternate", "random"}, "alternate") == "random"
-                        ? Directions::random
-                        : Directions::alternate;
+  spec.min = reader.number("min");
+  spec.max = reader.number("max");
+  spec.step = {reader.number("step")};
+  spec.series = reader.integer("series");
+  spec.n_change = reader.integer("n_change");
+  spec.directions = reader.word("directions") == "random" ? Directions::random : Directions::alternate;
 }
 
 void validate_starts(const Spec& spec, std::vector<Problem>& problems) {

@@ -38,12 +38,12 @@ class StandIn final : public Procedure {
 void read_program(text::TableReader& reader, Spec& spec) {
   read_tracks(reader, spec);
   auto& program = spec.program;
-  program.file = reader.string("program", phrase("name the file of the program, as seen from this file"));
+  program.file = reader.string("program");
   program.place = reader.place("program");
-  program.limit_s = reader.number("limit_s", {0.05, 60, text::Range::Ends::closed, "s"}, 2);
+  program.limit_s = reader.number("limit_s");
   if (const auto* settings = reader.maybe_table("settings")) program.settings = *settings;
-  spec.min = reader.number("min", any_level);
-  spec.max = reader.number("max", any_level);
+  spec.min = reader.number("min");
+  spec.max = reader.number("max");
   read_stop(reader, spec);
 }
 

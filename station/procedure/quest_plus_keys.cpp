@@ -33,23 +33,18 @@ void read_axes(text::TableReader& reader, Spec& spec) {
   for (const auto& parameter : kParameters)
     if (needs_grid(spec, parameter.name) && std::string(parameter.name) != "lapse")
       needed += (needed.empty() ? "grid." : ", grid.") + std::string(parameter.name);
-  if (const auto* grid = reader.table("grid", phrase("give %1 and grid.lapse", {plain(needed)}))) {
-    text::TableReader inner(*grid, reader.path("grid"), reader.findings());
+  if (const auto* grid = reader.table("grid")) {
+    text::TableReader inner(*grid, reader.path("grid"), reader.findings(), reader.keys("grid"));
     for (const auto& [key, axis, prior] : kParameters) {
-      const auto* value =
-          needs_grid(spec, key)
-              ? inner.require(key, phrase("write a grid: %1 or %2",
-                                          {plain("{ from, to, step }"), plain("{ values = [...] }")}))
-              : inner.take(key);
-      if (value) spec.*axis = read_grid(*value, inner.path(key), Axis::parameter, reader.findings());
+      const auto* value = needs_grid(spec, key) ? inner.require(key) : inner.take(key);
+      if (value) spec.*axis = read_grid(*value, inner, key);
     }
     inner.finish();
   }
   if (const auto* table = reader.maybe_table("prior")) {
-    text::TableReader inner(*table, reader.path("prior"), reader.findings());
+    text::TableReader inner(*table, reader.path("prior"), reader.findings(), reader.keys("prior"));
     for (const auto& [key, axis, prior] : kParameters)
-      if (const auto* value = inner.take(key))
-        spec.*prior = read_prior(*value, inner.path(key), reader.findings());
+      if (const auto* value = inner.take(key)) spec.*prior = read_prior(*value, inner, key);
     inner.finish();
   }
 }
@@ -57,13 +52,13 @@ void read_axes(text::TableReader& reader, Spec& spec) {
 void read_second(text::TableReader& reader, Spec& spec) {
   const auto* table = reader.maybe_table("second");
   if (!table) return;
-  text::TableReader inner(*table, reader.path("second"), reader.findings());
+  text::TableReader inner(*table, reader.path("second"), reader.findings(), reader.keys("second"));
   auto& second = spec.second.emplace();
-  second.level = inner.string("level", phrase("write the name of a factor"));
+  second.level = inner.string("level");
   if (const auto* stimuli = inner.require(
           "stimuli", phrase("give the values from which to choose: %1", {plain("{ from, to, step }")})))
-    second.stimuli = read_grid(*stimuli, inner.path("stimuli"), Axis::stimuli, reader.findings());
-  second.origin = inner.number("origin", any_level, 0);
+    second.stimuli = read_grid(*stimuli, inner, "stimuli");
+  second.origin = inner.number("origin");
   inner.finish();
 }
 
@@ -71,14 +66,14 @@ void read_second(text::TableReader& reader, Spec& spec) {
 void read_grids(text::TableReader& reader, Spec& spec) {
   read_tracks(reader, spec);
   read_scale(reader, spec);
-  const auto function = reader.word("function", {"weibull", "normal", "logistic", "signal-detection"});
+  const auto function = reader.word("function");
   spec.signal_detection = function == "signal-detection";
   spec.function = function == "normal"     ? terms::Function::normal
                   : function == "logistic" ? terms::Function::logistic
                                            : terms::Function::weibull;
   if (const auto* stimuli = reader.require(
           "stimuli", phrase("give the levels from which to choose: %1", {plain("{ from, to, step }")})))
-    spec.stimuli = read_grid(*stimuli, reader.path("stimuli"), Axis::stimuli, reader.findings());
+    spec.stimuli = read_grid(*stimuli, reader, "stimuli");
   read_axes(reader, spec);
   read_stop(reader, spec);
 }
@@ -86,15 +81,14 @@ void read_grids(text::TableReader& reader, Spec& spec) {
 void read_posterior(text::TableReader& reader, Spec& spec) {
   read_second(reader, spec);
   read_grids(reader, spec);
-  std::vector<std::string> parameters;
-  for (const auto& parameter : kParameters) parameters.emplace_back(parameter.name);
+  const auto& parameters = reader.words("nuisance");
   spec.nuisance = reader.maybe_strings("nuisance");
   for (const auto& name : spec.nuisance)
     if (std::find(parameters.begin(), parameters.end(), name) == parameters.end())
       reader.problem("nuisance",
                      phrase("\"%1\" is not a parameter of the psychometric function", {plain(name)}),
                      phrase("allowed: %1", {text::quoted_list(parameters)}));
-  reader.word("select", {"min-expected-entropy"}, "min-expected-entropy");
+  reader.word("select");
 }
 
 void validate_rate(const char* key, const Grid& grid, std::vector<Problem>& problems) {

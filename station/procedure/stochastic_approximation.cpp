@@ -58,8 +58,8 @@ extern const Description accelerated_stochastic_approximation{
       read_tracks(reader, spec);
       read_scale(reader, spec);
       read_span(reader, spec);
-      spec.step = {reader.number("step", {0, 1e6, text::Range::Ends::open_low})};
-      spec.target = reader.number("target", {0, 1, text::Range::Ends::open});
+      spec.step = {reader.number("step")};
+      spec.target = reader.number("target");
       read_stop(reader, spec);
     },
     [](const Spec& spec, std::vector<Problem>& problems) {

@@ -29,7 +29,7 @@ Protocol parse(const std::string& source, const std::string& path) {
   protocol.path = path, protocol.source = source, protocol.sha256 = text::sha256(source);
   const KeyPlaces places(document, path);
   Reading reading{protocol, findings, places, {}};
-  text::TableReader file(document, "", findings);
+  text::TableReader file(document, "", findings, protocol_keys());
   read_header(file, reading);
   read_factors(file, reading);
   read_scenes(file, reading);

@@ -14,9 +14,6 @@ using text::TableReader;
 
 namespace {
 
-const std::vector<std::string> kShown{"psychometric",    "ez",   "bis", "lisas", "ies", "caf", "dprime",
-                                      "response-signal", "trace"};
-
 void read_by(TableReader& reader, Reading& reading) {
   auto& by = reading.protocol.analysis.by;
   const auto* value = reader.take("by");
@@ -84,18 +81,16 @@ texts::Phrase without_effect(const std::string& word, const Protocol& protocol) 
 
 void read_show(TableReader& reader, Reading& reading) {
   auto& analysis = reading.protocol.analysis;
-  if (!reader.has("show")) {
-    reader.take("show");
-    return;
-  }
+  if (!reader.has("show")) return;
+  const auto& shown = reader.words("show");
   analysis.show = reader.maybe_strings("show");
   std::vector<std::string> useful;
-  for (const auto& word : kShown)
+  for (const auto& word : shown)
     if (without_effect(word, reading.protocol).empty()) useful.push_back(word);
   for (const auto& word : *analysis.show) {
-    if (std::find(kShown.begin(), kShown.end(), word) == kShown.end()) {
+    if (std::find(shown.begin(), shown.end(), word) == shown.end()) {
       reader.problem("show", phrase("\"%1\" has \"%2\"", {plain("show"), plain(word)}),
-                     text::suggestion(word, kShown));
+                     text::suggestion(word, shown));
       continue;
     }
     const auto reason = without_effect(word, reading.protocol);
@@ -112,15 +107,16 @@ void read_analysis(TableReader& file, Reading& reading) {
     reading.protocol.analysis.count_incomplete = sessions->incomplete == Unfinished::count;
   const auto* table = file.maybe_table("analysis");
   if (!table) return;
-  TableReader reader(*table, "analysis", reading.findings);
+  TableReader reader(*table, "analysis", reading.findings, file.keys("analysis"));
   auto& analysis = reading.protocol.analysis;
   const auto& factors = reading.protocol.factors;
   read_by(reader, reading);
   if (const auto* difficulty = reader.take("difficulty"))
-    analysis.difficulty = linear_from(*difficulty, "difficulty", {-1e9, 1e9}, factors, reading.findings);
+    analysis.difficulty =
+        linear_from(*difficulty, "difficulty", reader.range("difficulty"), factors, reading.findings);
   read_show(reader, reading);
   const auto& sessions = reading.protocol.sessions;
-  const auto incomplete = reader.maybe_word("incomplete_sessions", {"leave_out", "count"});
+  const auto incomplete = reader.maybe_word("incomplete_sessions");
   if (incomplete) analysis.count_incomplete = *incomplete == "count";
   if (incomplete == "leave_out" && sessions && sessions->incomplete == Unfinished::count)
     reader.problem(
@@ -128,10 +124,10 @@ void read_analysis(TableReader& file, Reading& reading) {
         phrase("the protocol counts unfinished sessions already ([sessions] incomplete = \"count\")"),
         plain("incomplete_sessions = \"count\""));
   if (const auto* exclude = reader.maybe_table("response_time_exclude")) {
-    TableReader inner(*exclude, "analysis.response_time_exclude", reading.findings);
-    analysis.exclude_below_s = inner.number("below_s", {0, 10, Range::Ends::closed, "s"}, 0);
-    analysis.exclude_mad =
-        inner.maybe_number("mad", {0, 100, Range::Ends::open_low, "median absolute deviations"});
+    TableReader inner(*exclude, reader.path("response_time_exclude"), reading.findings,
+                      reader.keys("response_time_exclude"));
+    analysis.exclude_below_s = inner.number("below_s");
+    analysis.exclude_mad = inner.maybe_number("mad");
     inner.finish();
   }
   reader.finish();

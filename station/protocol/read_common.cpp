@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
@@ -42,36 +41,22 @@ Localised localised_from(const text::Value& value, const std::string& key, const
 }
 
 Localised read_localised(TableReader& reader, const std::string& key, const Reading& reading) {
-  const auto* value =
-      reader.require(key, phrase("write a text in each language: %1", {plain("{ en = \"...\" }")}));
+  const auto* value = reader.require(key);
   return value ? localised_from(*value, key, reading) : Localised{};
 }
 
 std::optional<Distribution> read_distribution(TableReader& reader, const std::string& key) {
   const auto* value = reader.take(key);
   if (!value) return std::nullopt;
-  const text::Range seconds{0, 3600, text::Range::Ends::closed, "s"};
   if (value->kind == Value::Kind::table) {
-    TableReader inner(*value, reader.path(key), reader.findings());
-    inner.require("uniform", phrase("give the shortest and longest time in seconds: %1",
-                                    {plain("{ uniform = [0.8, 1.2] }")}));
-    const auto interval = inner.maybe_interval("uniform", seconds);
+    TableReader inner(*value, reader.path(key), reader.findings(), reader.keys(key));
+    inner.require("uniform");
+    const auto interval = inner.maybe_interval("uniform");
     inner.finish();
     return interval ? std::optional(Distribution{interval->first, interval->second}) : std::nullopt;
   }
-  const auto fixed = reader.maybe_number(key, seconds);
+  const auto fixed = reader.maybe_number(key);
   return fixed ? std::optional(Distribution{*fixed, *fixed}) : std::nullopt;
-}
-
-std::string read_name(TableReader& reader, const std::string& key, const texts::Phrase& what) {
-  const auto name = reader.string(key, what);
-  const auto good = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
-  };
-  if (!std::all_of(name.begin(), name.end(), good) || name.size() > 64)
-    reader.problem(key, phrase("\"%1\" is \"%2\"", {plain(key), plain(name)}),
-                   phrase("allowed: at most 64 letters, digits, _ and -"));
-  return name;
 }
 
 using text::Value;
@@ -114,7 +99,7 @@ std::optional<FactorValue> read_factor_value(const text::Value& value, const Fac
 
 const Factor* read_numeric_factor(TableReader& reader, const std::string& key, const Reading& reading) {
   const auto& factors = reading.protocol.factors;
-  const auto name = reader.string(key, phrase("write the name of a factor"));
+  const auto name = reader.string(key);
   if (name.empty()) return nullptr;
   const auto* factor = find_factor(factors, name);
   if (!factor)
@@ -126,9 +111,8 @@ const Factor* read_numeric_factor(TableReader& reader, const std::string& key, c
   return factor && (span(*factor) || is_broken(*factor)) ? factor : nullptr;
 }
 
-std::string read_scene_name(TableReader& reader, const std::string& key, const texts::Phrase& what,
-                            const Reading& reading) {
-  auto name = reader.string(key, what);
+std::string read_scene_name(TableReader& reader, const std::string& key, const Reading& reading) {
+  auto name = reader.string(key);
   const auto& known = reading.declared_scenes;
   if (reader.has(key) && std::find(known.begin(), known.end(), name) == known.end())
     reading.findings.add(reader.place(key), phrase("unknown scene \"%1\"", {plain(name)}),

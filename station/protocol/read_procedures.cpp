@@ -131,7 +131,7 @@ void check_spec(const Value& table, const Spec& spec, text::Findings& findings) 
 void check_second(const Value& table, const Spec& spec, const Reading& reading, text::Findings& findings) {
   const auto* second = table.find("second");
   if (!spec.second || spec.second->level.empty() || !second) return;
-  TableReader reader(second->value, "second", findings);
+  TableReader reader(second->value, "second", findings, keys_of("procedure.second"));
   const auto* factor = read_numeric_factor(reader, "level", reading);
   if (!factor || is_broken(*factor)) return;
   for (const double value : spec.second->stimuli.values) {
@@ -227,12 +227,11 @@ void add_family(const Value& table, const std::string& name, std::vector<Spec> f
 }
 
 Spec read_procedure(const Value& table, const Reading& reading, text::Findings& findings) {
-  TableReader reader(table, titled("procedure", table), findings);
+  TableReader reader(table, titled("procedure", table), findings, keys_of("procedure"));
   Spec spec;
-  spec.name = read_name(reader, "name", phrase("choose a name, which is stored with the data"));
+  spec.name = reader.string("name");
   reader.take("copy");
-  spec.kind =
-      procedure::parse_kind(reader.word("kind", procedure::kind_names())).value_or(Kind::constant_stimuli);
+  spec.kind = procedure::parse_kind(reader.word("kind")).value_or(Kind::constant_stimuli);
   const auto* factor = read_numeric_factor(reader, "level", reading);
   if (factor) spec.level = factor->name;
   procedure::description(spec.kind).read(reader, spec);
@@ -242,7 +241,7 @@ Spec read_procedure(const Value& table, const Reading& reading, text::Findings& 
   check_tracks(reader, spec, reading);
   check_balance(reader, spec, reading);
   read_with(reader, spec, reading, findings);
-  if (reader.take("continues")) spec.continues = reader.boolean("continues", "false");
+  if (reader.take("continues")) spec.continues = reader.boolean("continues");
   reader.take("for_each");
   if (factor && !is_broken(*factor)) check_levels(reader, spec, *factor);
   if (findings.problems.empty()) check_spec(table, spec, findings);

@@ -17,7 +17,7 @@ using text::Value;
 
 namespace {
 
-constexpr int most_sessions = 100, most_days = 366, most_groups = 100;
+constexpr int most_groups = 100;
 
 std::vector<std::string> levels_of_groups(const Protocol& protocol) {
   std::vector<std::string> names;
@@ -196,13 +196,12 @@ void read_sessions(TableReader& file, Reading& reading) {
                          phrase("at most %1", {plain("100")}));
   const auto* table = file.maybe_table("sessions");
   if (!table) return;
-  TableReader reader(*table, "sessions", reading.findings);
+  TableReader reader(*table, "sessions", reading.findings, file.keys("sessions"));
   SessionPlan plan;
   plan.place = reader.place();
-  plan.count = reader.integer("count", 2, most_sessions);
-  plan.min_days = reader.integer("min_days", 0, most_days, 0);
-  plan.incomplete = reader.word("incomplete", {"repeat", "count"}, "repeat") == "count" ? Unfinished::count
-                                                                                        : Unfinished::repeat;
+  plan.count = reader.integer("count");
+  plan.min_days = reader.integer("min_days");
+  plan.incomplete = reader.word("incomplete") == "count" ? Unfinished::count : Unfinished::repeat;
   reader.finish();
   reading.protocol.sessions = plan;
 }

@@ -15,23 +15,22 @@ using text::TableReader;
 
 namespace {
 
-const std::vector<std::string> kEvents{"trial", "onset", "change", "response"};
-
 TriggerEvent event_of(const std::string& word) {
-  const auto found = std::find(kEvents.begin(), kEvents.end(), word);
-  return static_cast<TriggerEvent>(found == kEvents.end() ? 0 : found - kEvents.begin());
+  const auto words = trigger_event_names();
+  const auto found = std::find(words.begin(), words.end(), word);
+  return static_cast<TriggerEvent>(found == words.end() ? 0 : found - words.begin());
 }
 
 void read_send(TableReader& reader, Triggers& triggers) {
   if (!reader.has("send")) {
-    reader.take("send");
-    return reader.defaulted("send", "[\"trial\", \"onset\", \"change\", \"response\"]");
+    return reader.defaulted("send", reader.declared("send").fallback);
   }
   triggers.send.clear();
+  const auto& events = reader.words("send");
   for (const auto& word : reader.maybe_strings("send")) {
-    if (std::find(kEvents.begin(), kEvents.end(), word) == kEvents.end())
+    if (std::find(events.begin(), events.end(), word) == events.end())
       reader.problem("send", phrase("\"%1\" has \"%2\"", {plain("send"), plain(word)}),
-                     phrase("allowed: %1", {text::quoted_list(kEvents)}));
+                     phrase("allowed: %1", {text::quoted_list(events)}));
     else if (std::find(triggers.send.begin(), triggers.send.end(), event_of(word)) != triggers.send.end())
       reader.problem("send", phrase("\"%1\" appears twice in \"%2\"", {plain(word), plain("send")}),
                      phrase("list each event only once"));
@@ -41,9 +40,9 @@ void read_send(TableReader& reader, Triggers& triggers) {
 }
 
 void read_code(const text::Value& table, Reading& reading) {
-  TableReader reader(table, "triggers.code", reading.findings);
+  TableReader reader(table, "triggers.code", reading.findings, keys_of("triggers.code"));
   TriggerCode code;
-  code.event = event_of(reader.word("event", kEvents));
+  code.event = event_of(reader.word("event"));
   const auto known = conditions(reading.protocol);
   code.condition = reader.maybe_string("condition").value_or("");
   if (!code.condition.empty() && std::find(known.begin(), known.end(), code.condition) == known.end())
@@ -54,7 +53,7 @@ void read_code(const text::Value& table, Reading& reading) {
                   "leave out \"condition\": no factor is in [analysis] %1, and no block has an instruction",
                   {plain("\"by\"")})
             : text::suggestion(code.condition, known));
-  code.code = reader.integer("code", 1, 255);
+  code.code = reader.integer("code");
   const auto& send = reading.protocol.triggers.send;
   if (std::find(send.begin(), send.end(), code.event) == send.end())
     reader.problem("event", phrase("\"%1\" is not in \"send\"", {plain(name(code.event))}),
@@ -86,7 +85,7 @@ void check_unique(TableReader& reader, const Reading& reading) {
 void read_triggers(TableReader& file, Reading& reading) {
   const auto* table = file.maybe_table("triggers");
   if (!table) return;
-  TableReader reader(*table, "triggers", reading.findings);
+  TableReader reader(*table, "triggers", reading.findings, file.keys("triggers"));
   reading.protocol.triggers.place = table->place;
   read_send(reader, reading.protocol.triggers);
   for (const auto* code : reader.tables("code")) read_code(*code, reading);

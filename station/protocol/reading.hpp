@@ -6,12 +6,16 @@
 
 #include "station/protocol/key_places.hpp"
 #include "station/protocol/protocol.hpp"
+#include "station/protocol/protocol_keys.hpp"
 #include "station/text/reader.hpp"
 
 // The functions with which load() and parse() read a protocol file, one for each part of the file. A function
 // reads its tables into the protocol and reports problems. Call the functions in the order of their
 // declaration, because later ones rely on earlier ones.
 namespace turnpoint::protocol {
+
+/// The declared keys of a table of a protocol file, such as `task.rating`.
+inline const text::Keys& keys_of(const std::string& path) { return text::below(protocol_keys(), path); }
 
 struct Reading {
   Protocol& protocol;
@@ -66,14 +70,10 @@ ValueAnswer read_typed(text::TableReader& reader);
 std::vector<Choice> read_choice_list(text::TableReader& reader, const std::string& path,
                                      const Reading& reading);
 /// Reads the name of a scene. Reports a problem if the file has no such scene.
-std::string read_scene_name(text::TableReader& reader, const std::string& key, const texts::Phrase& what,
-                            const Reading& reading);
+std::string read_scene_name(text::TableReader& reader, const std::string& key, const Reading& reading);
 
 /// Reads a number, or { uniform = [low, high] }.
 std::optional<Distribution> read_distribution(text::TableReader& reader, const std::string& key);
-
-/// Reads a name made of letters, digits, _ and -. Reports a problem for any other character.
-std::string read_name(text::TableReader& reader, const std::string& key, const texts::Phrase& what);
 
 /// Reads a value of a factor and checks it against the factor's range or levels.
 std::optional<FactorValue> read_factor_value(const text::Value& value, const Factor& factor,

@@ -76,10 +76,10 @@ std::optional<Thermometers> read_thermometers(TableReader& file) {
 
 void read_devices(TableReader& file, Rig& rig) {
   file.require("amplifier");
-  rig.amplifier_uri =
-      read_device(file, "amplifier", {"enable"},
-                  {"fault", "stop", "heartbeat", "gate", "read_back", "active", "fault_active", "stop_active"})
-          .value_or("");
+  rig.amplifier_uri = read_device(file, "amplifier", {"enable"},
+                                  {"fault", "stop", "heartbeat", "gate", "read_back", "active",
+                                   "fault_active", "stop_active"})
+                          .value_or("");
   rig.buttons_uri =
       read_device(file, "buttons", {"left", "right"}, {"third", "active", "hold_ms", "refractory_ms"});
   rig.contact_uri = read_device(file, "contact", {"line"}, {"active", "hold_ms", "refractory_ms"});

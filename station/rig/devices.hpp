@@ -7,8 +7,8 @@
 
 namespace turnpoint::rig {
 
-/// Reads the key "uri" of a table, whose allowed forms are declared, such as "sim:" and "alsa:DEVICE". Text must
-/// follow the scheme if the form has text after it.
+/// Reads the key "uri" of a table, whose allowed forms are declared, such as "sim:" and "alsa:DEVICE". Text
+/// must follow the scheme if the form has text after it.
 std::string read_uri(text::TableReader& reader);
 
 /// Checks a URI `gpio:name=LINE,name=LINE`; other schemes are accepted. It must contain all names in

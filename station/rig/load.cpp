@@ -245,8 +245,7 @@ Rig parse(const std::string& source, const std::string& path) {
   file.word("format");
   rig.name = file.string("name");
   rig.reproduction = file.boolean("reproduction");
-  if (const auto* surface = file.table("surface"))
-    rig.surface = read_surface(*surface, file);
+  if (const auto* surface = file.table("surface")) rig.surface = read_surface(*surface, file);
   read_transducers(file, rig);
   read_output(file, rig);
   check_bands(file, rig);

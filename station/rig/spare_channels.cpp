@@ -200,8 +200,7 @@ bool has_force_cells(const Rig& rig) {
 void read_spare_channels(TableReader& file, Rig& rig) {
   if (const auto* table = file.maybe_table("marker")) rig.marker = read_marker(*table, rig, file);
   if (const auto* table = file.maybe_table("noise")) rig.noise = read_noise(*table, rig, file);
-  if (const auto* table = file.maybe_table("capture"))
-    rig.capture = read_capture(*table, rig, file);
+  if (const auto* table = file.maybe_table("capture")) rig.capture = read_capture(*table, rig, file);
   if (const auto* table = file.maybe_table("force_cells")) {
     const auto converter = read_converter(*table, rig, file);
     if (rig.capture) rig.capture->converter = converter;

@@ -9,7 +9,6 @@ using texts::phrase, texts::plain;
 
 namespace {
 
-
 // Handbook values for common tempers. A rig used for research should state its own values. The yield strength
 // is only used to warn about a tension that the material cannot carry. expansion_per_K and modulus_per_K are
 // the relative changes of length and of Young's modulus per kelvin at room temperature (for aluminium, from
@@ -59,8 +58,7 @@ void read_material(text::TableReader& reader, Surface& surface) {
     surface.poisson = reader.maybe_number("poisson");
   }
   if (filled) surface.yield_Pa = 1e6 * filled->yield_MPa;
-  if (const auto yield = reader.maybe_number("yield_MPa"))
-    surface.yield_Pa = 1e6 * *yield;
+  if (const auto yield = reader.maybe_number("yield_MPa")) surface.yield_Pa = 1e6 * *yield;
 }
 
 void read_profile(const text::Value& list, text::TableReader& reader, Taper& taper) {

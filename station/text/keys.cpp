@@ -47,9 +47,7 @@ Key integer(std::string name, int low, int high, std::string help) {
 Key boolean(std::string name, std::string help) {
   return made(std::move(name), Kind::boolean, std::move(help)).by_default("false");
 }
-Key string(std::string name, std::string help) {
-  return made(std::move(name), Kind::text, std::move(help));
-}
+Key string(std::string name, std::string help) { return made(std::move(name), Kind::text, std::move(help)); }
 Key word(std::string name, std::vector<std::string> words, std::string help) {
   return worded(std::move(name), Kind::word, std::move(words), std::move(help));
 }
@@ -95,14 +93,6 @@ Key any(std::string name, std::string help) { return made(std::move(name), Kind:
 
 namespace {
 
-/// The keys of the tables that a value of this key can be.
-const Keys* tables_of(const Key& key) {
-  if (key.keys) return key.keys.get();
-  for (const auto& form : key.forms)
-    if (form.keys) return form.keys.get();
-  return nullptr;
-}
-
 const Keys* one_below(const Keys& keys, const std::string& name) {
   for (const auto& key : keys.list)
     if (key.name == name)
@@ -113,8 +103,8 @@ const Keys* one_below(const Keys& keys, const std::string& name) {
 /// What a key is, if the table does not say it: its default without quotes.
 std::string default_word(const Keys& keys, const std::string& name) {
   for (const auto& key : keys.list)
-    if (key.name == name && key.fallback.size() > 2 && key.fallback.front() == '"')
-      return key.fallback.substr(1, key.fallback.size() - 2);
+    if (key.name == name && !key.fallback.empty())
+      return key.fallback.front() == '"' ? key.fallback.substr(1, key.fallback.size() - 2) : key.fallback;
   return "";
 }
 
@@ -128,7 +118,10 @@ bool holds(const With& with, const Keys& keys, const Value& table) {
   const auto* entry = table.find(with.key);
   if (with.words.empty()) return (entry == nullptr) == with.absent;
   if (entry == nullptr) return is_word(default_word(keys, with.key), with.words);
+  if (entry->value.kind == Value::Kind::boolean)
+    return is_word(entry->value.boolean ? "true" : "false", with.words);
   // A value that is not allowed has been reported. What goes with it is not known.
+  if (with.words.front() == "true") return true;
   for (const auto& key : keys.list)
     if (key.name == with.key && key.kind == Key::Kind::word && !is_word(entry->value.string, key.words))
       return true;
@@ -136,6 +129,13 @@ bool holds(const With& with, const Keys& keys, const Value& table) {
 }
 
 }  // namespace
+
+const Keys* tables_of(const Key& key) {
+  if (key.keys) return key.keys.get();
+  for (const auto& form : key.forms)
+    if (form.keys) return form.keys.get();
+  return nullptr;
+}
 
 const Keys& below(const Keys& keys, const std::string& path) {
   const auto dot = path.find('.');
@@ -149,9 +149,8 @@ Found find(const Keys& keys, const std::string& name, const Value& table) {
   for (const auto& key : keys.list) {
     if (key.name != name) continue;
     const auto& with = key.conditions;
-    const bool fits =
-        with.empty() ||
-        std::any_of(with.begin(), with.end(), [&](const With& one) { return holds(one, keys, table); });
+    const bool fits = with.empty() || std::any_of(with.begin(), with.end(),
+                                                  [&](const With& one) { return holds(one, keys, table); });
     if (fits) return {&key, true};
     if (found.key == nullptr) found.key = &key;
   }
@@ -175,8 +174,12 @@ std::string condition_of(const Key& key) {
       all += with.key;
     } else {
       all += with.key + " = ";
+      const std::string quote = with.words.front() == "true" ? "" : "\"";
       for (std::size_t i = 0; i < with.words.size(); ++i)
-        all += std::string(i == 0 ? "" : i + 1 == with.words.size() ? " or " : ", ") + "\"" + with.words[i] + "\"";
+        all += std::string(i == 0                       ? ""
+                           : i + 1 == with.words.size() ? " or "
+                                                        : ", ") +
+               quote + with.words[i] + quote;
     }
   }
   return all;

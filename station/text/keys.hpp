@@ -50,14 +50,14 @@ struct Key {
   Range range = {};
   bool infinite = false;  ///< a number that may also be `inf`
   std::vector<std::string> words = {};
-  std::string pattern = {};                 ///< for a text: what it must match, as a regular expression
-  std::string form = {};                    ///< the same in words
-  std::string fallback = {};                ///< the default, as it is written in a file
-  std::string otherwise = {};               ///< what holds without the key, if that is no value: in words
-  bool needed = false;                      ///< whether its table must have this key
-  std::size_t fewest = 0, most = 0;         ///< for lists: the number of values; 0: any
-  std::vector<With> conditions = {};        ///< the key has an effect only if one of these holds
-  std::shared_ptr<const Keys> keys = {};    ///< of a table, or of each table of a list
+  std::string pattern = {};               ///< for a text: what it must match, as a regular expression
+  std::string form = {};                  ///< the same in words
+  std::string fallback = {};              ///< the default, as it is written in a file
+  std::string otherwise = {};             ///< what holds without the key, if that is no value: in words
+  bool needed = false;                    ///< whether its table must have this key
+  std::size_t fewest = 0, most = 0;       ///< for lists: the number of values; 0: any
+  std::vector<With> conditions = {};      ///< the key has an effect only if one of these holds
+  std::shared_ptr<const Keys> keys = {};  ///< of a table, or of each table of a list
   std::vector<Key> forms = {};
 
   Key& required() { return needed = true, *this; }
@@ -119,6 +119,9 @@ Key several(std::string name, std::vector<Key> forms, std::string help);
 Key any(std::string name, std::string help);
 }  // namespace key
 
+/// The keys of the tables that a value of this key can be; nullptr if it can be none.
+const Keys* tables_of(const Key& key);
+
 /// The keys of a table below `keys`, such as `surface.taper`. Throws std::logic_error if none is declared.
 const Keys& below(const Keys& keys, const std::string& path);
 
@@ -135,6 +138,9 @@ std::vector<std::string> names_for(const Keys& keys, const Value& table);
 
 /// The condition under which a key has an effect: `only with kind = "tone"`; "" if there is none.
 std::string condition_of(const Key& key);
+
+/// What a value of this key can be, for people: `number from 0 to 1`.
+std::string values_of(const Key& key);
 
 /// The JSON schema of a format, for editors.
 std::string json_schema(const Keys& keys, const std::string& title);

@@ -1,8 +1,7 @@
 // What people and their editors read about the keys of a format: the JSON schema and the reference tables.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
-#include <map>
-#include <set>
 
 #include "station/text/keys.hpp"
 #include "station/text/number.hpp"
@@ -93,10 +92,10 @@ class SchemaWriter {
                                      .add("minProperties", amount(1))
                                      .add("additionalProperties", text_of("")));
       if (expression_)
-        definitions.add(
-            "linear", Json{}
-                          .add("description", word("A number, or linear arithmetic on factors in quotes"))
-                          .add("oneOf", list_of({Json{}.add("type", word("number")), text_of("")})));
+        definitions.add("linear",
+                        Json{}
+                            .add("description", word("A number, or linear arithmetic on factors in quotes"))
+                            .add("oneOf", list_of({Json{}.add("type", word("number")), text_of("")})));
       root.add("$defs", std::move(definitions));
     }
     return rendered(root, 0) + "\n";
@@ -179,8 +178,8 @@ class SchemaWriter {
         return json;
       }
       case Kind::texts:
-        return array(key, key.words.empty() ? text_of(key.pattern)
-                                            : Json{}.add("enum", list_of_words(key.words)));
+        return array(key,
+                     key.words.empty() ? text_of(key.pattern) : Json{}.add("enum", list_of_words(key.words)));
       case Kind::expression:
         expression_ = true;
         return json.add("$ref", word("#/$defs/linear"));
@@ -210,12 +209,17 @@ class SchemaWriter {
       if (const auto condition = condition_of(*key); !condition.empty()) sentence += "; " + condition;
       if (std::find(sentences.begin(), sentences.end(), sentence) == sentences.end())
         sentences.push_back(std::move(sentence));
-      auto one = value(*key);
-      const auto is = [&](const Json& other) { return on_one_line(other) == on_one_line(one); };
-      if (std::none_of(values.begin(), values.end(), is)) values.push_back(std::move(one));
+      const auto add = [&](Json one) {
+        const auto is = [&](const Json& other) { return on_one_line(other) == on_one_line(one); };
+        if (std::none_of(values.begin(), values.end(), is)) values.push_back(std::move(one));
+      };
+      if (key->kind != Kind::several) add(value(*key));
+      for (const auto& form : key->kind == Kind::several ? key->forms : std::vector<Key>{}) add(value(form));
     }
     std::string description;
     for (const auto& sentence : sentences) description += (description.empty() ? "" : " / ") + sentence;
+    if (!description.empty())
+      description[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(description[0])));
     Json json;
     json.add("description", word(description));
     const auto& fallback = same.front()->fallback;
@@ -251,7 +255,8 @@ class SchemaWriter {
     if (!needed.empty()) json.add("required", list_of_words(needed));
     if (keys.fewest > 0) json.add("minProperties", amount(static_cast<double>(keys.fewest)));
     std::vector<Json> all;
-    for (const auto& names : keys.exactly_one) all.push_back(Json{}.add("oneOf", list_of(each_required(names))));
+    for (const auto& names : keys.exactly_one)
+      all.push_back(Json{}.add("oneOf", list_of(each_required(names))));
     for (const auto& names : keys.at_least_one)
       all.push_back(Json{}.add("anyOf", list_of(each_required(names))));
     if (!all.empty()) json.add("allOf", list_of(std::move(all)));
@@ -340,7 +345,8 @@ void add_tables(const Keys& keys, const std::string& path, bool of_list, std::st
   if (!rows.empty()) {
     const auto title = path.empty() ? "The file" : of_list ? "`[[" + path + "]]`" : "`[" + path + "]`";
     page += "**" + title + "**\n\n| key | value | default | meaning |\n|---|---|---|---|\n" + rows;
-    for (const auto& names : keys.exactly_one) page += "\nExactly one of " + words_in_code(names) + " is needed.\n";
+    for (const auto& names : keys.exactly_one)
+      page += "\nExactly one of " + words_in_code(names) + " is needed.\n";
     for (const auto& names : keys.at_least_one)
       page += "\nAt least one of " + words_in_code(names) + " is needed.\n";
     page += "\n";
@@ -357,7 +363,15 @@ void add_tables(const Keys& keys, const std::string& path, bool of_list, std::st
 
 }  // namespace
 
-std::string json_schema(const Keys& keys, const std::string& title) { return SchemaWriter().write(keys, title); }
+std::string values_of(const Key& key) {
+  auto words = type_of(key);
+  std::erase(words, '`');
+  return words;
+}
+
+std::string json_schema(const Keys& keys, const std::string& title) {
+  return SchemaWriter().write(keys, title);
+}
 
 std::string reference(const Keys& keys) {
   std::string page;

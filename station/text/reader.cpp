@@ -96,7 +96,11 @@ const Range& TableReader::range(const std::string& key) const { return declared(
 const std::vector<std::string>& TableReader::words(const std::string& key) const {
   return declared(key).words;
 }
-const Keys& TableReader::keys(const std::string& key) const { return below(*keys_, key); }
+const Keys& TableReader::keys(const std::string& key) const {
+  const auto* found = tables_of(declared(key));
+  if (found == nullptr) throw std::logic_error("the key \"" + path(key) + "\" is declared as no table");
+  return *found;
+}
 
 texts::Phrase TableReader::needed(const Key& key) const {
   using Kind = Key::Kind;
@@ -121,6 +125,8 @@ texts::Phrase TableReader::needed(const Key& key) const {
       return phrase("add tables %1: %2", {plain("[[" + path(key.name) + "]]"), plain(key.help)});
     case Kind::table:
       return phrase("add a table %1: %2", {plain("[" + path(key.name) + "]"), plain(key.help)});
+    case Kind::several:
+      return plain(key.help + ": " + values_of(key));
     default:
       return plain(key.help);
   }
@@ -236,9 +242,8 @@ std::optional<std::string> TableReader::maybe_word(const std::string& key) {
 
 std::string TableReader::word(const std::string& key) {
   const auto& known = declared(key, Key::Kind::word);
-  return known.fallback.empty()
-             ? word(key, known.words)
-             : word(key, known.words, known.fallback.substr(1, known.fallback.size() - 2));
+  return known.fallback.empty() ? word(key, known.words)
+                                : word(key, known.words, known.fallback.substr(1, known.fallback.size() - 2));
 }
 
 namespace {
@@ -467,13 +472,21 @@ std::vector<const Value*> TableReader::tables(const std::string& key) {
   return list;
 }
 
+Place TableReader::place_of_last(const std::vector<std::string>& names) const {
+  Place last = table_->place;
+  for (const auto& entry : table_->entries)
+    if (std::find(names.begin(), names.end(), entry.key) != names.end()) last = entry.place;
+  return last;
+}
+
 void TableReader::check_groups() {
   const auto count = [&](const std::vector<std::string>& names) {
     return std::count_if(names.begin(), names.end(), [&](const auto& name) { return has(name); });
   };
   for (const auto& names : keys_->exactly_one)
     if (const auto given = count(names); given != 1)
-      findings_->add(table_->place, phrase("%1 has %2 of %3", {title(), plain(given), quoted_list(names)}),
+      findings_->add(given == 0 ? table_->place : place_of_last(names),
+                     phrase("%1 has %2 of %3", {title(), plain(given), quoted_list(names)}),
                      phrase("give exactly one of them"));
   for (const auto& names : keys_->at_least_one)
     if (count(names) == 0)

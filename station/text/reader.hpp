@@ -70,6 +70,8 @@ class TableReader {
   const Range& range(const std::string& key) const;
   const std::vector<std::string>& words(const std::string& key) const;
   const Keys& keys(const std::string& key) const;
+  /// The declaration of a key that applies to this table.
+  const Key& declared(const std::string& key) const;
 
   std::optional<double> maybe_number(const std::string& key, const Range& range);
   double number(const std::string& key, const Range& range);
@@ -120,10 +122,10 @@ class TableReader {
   void finish();
 
  private:
-  const Key& declared(const std::string& key) const;
   const Key& declared(const std::string& key, Key::Kind kind) const;
   texts::Phrase needed(const Key& key) const;
   void check_groups();
+  Place place_of_last(const std::vector<std::string>& names) const;
   bool check_number(const Value& value, const std::string& key, const Range& range);
   std::optional<double> number_from(const Value* value, const std::string& key, const Range& range);
 

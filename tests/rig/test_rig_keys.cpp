@@ -8,9 +8,7 @@
 using namespace turnpoint;
 
 namespace {
-std::string schema() {
-  return text::json_schema(rig::rig_keys(), "Turnpoint rig file (friction-rig/1)");
-}
+std::string schema() { return text::json_schema(rig::rig_keys(), "Turnpoint rig file (friction-rig/1)"); }
 }  // namespace
 
 TEST_CASE("the rig schema for editors follows from the declared keys", "[rig]") {

@@ -2,6 +2,7 @@
 
 #include "station/text/number.hpp"
 #include "station/text/problem.hpp"
+#include "station/text/reader.hpp"
 #include "station/text/sha256.hpp"
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
@@ -112,4 +113,39 @@ TEST_CASE("keys with too many parts and lists with too many items are refused at
   CHECK(refused(list + "1]\n").find("at most 10000") != std::string::npos);
   CHECK(refused("a.b.c.d = [1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 9.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, "
                 "8.5]") == "");
+}
+
+TEST_CASE("a key is declared once: what is not declared cannot be read, and what is not read is not accepted",
+          "[text]") {
+  const Keys keys{
+      key::word("kind", {"pulse", "tone"}, "what it is").by_default("\"pulse\""),
+      key::number("length_ms", {0, 10, Range::Ends::open_low, "ms"}, "its length").by_default("2"),
+      key::number("frequency_Hz", {20, 2000}, "its frequency").required().only_with("kind", {"tone"})};
+  const auto said = [&](const std::string& source) {
+    const auto table = parse_toml(source, "a.toml");
+    Findings findings;
+    TableReader reader(table, "marker", findings, keys);
+    const auto kind = reader.word("kind");
+    reader.number("length_ms");
+    if (kind == "tone") reader.number("frequency_Hz");
+    reader.finish();
+    std::string all;
+    for (const auto& problem : findings.problems) all += format(problem) + "\n";
+    return all;
+  };
+  CHECK(said("").empty());
+  CHECK(said("kind = \"tone\"\nfrequency_Hz = 250").empty());
+  CHECK(said("kind = \"tone\"").find("needs the key \"frequency_Hz\"; a number from 20 to 2000") !=
+        std::string::npos);
+  CHECK(said("frequency_Hz = 250")
+            .find("\"frequency_Hz\" has no effect in [marker]; only with kind = \"tone\"") !=
+        std::string::npos);
+  CHECK(said("length_ms = 11").find("allowed: above 0 and at most 10 ms") != std::string::npos);
+  CHECK(said("lenght_ms = 1").find("did you mean \"length_ms\"?") != std::string::npos);
+  const auto table = parse_toml("length_ms = 1", "a.toml");
+  Findings findings;
+  TableReader reader(table, "marker", findings, keys);
+  CHECK_THROWS_AS(reader.number("lenght_ms"), std::logic_error);
+  CHECK_THROWS_AS(reader.boolean("kind"), std::logic_error);
+  CHECK_THROWS_AS(reader.finish(), std::logic_error);  // length_ms was not read
 }
