@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "station/analysis/proportion.hpp"
-#include "station/text/number.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::analysis {
 
@@ -40,7 +40,7 @@ double core_derivative(Function function, double z) {
 
 double core_inverse(Function function, double p) {
   if (!(p > 0 && p < 1))
-    throw std::invalid_argument("inverse of a psychometric function at " + text::number(p) +
+    throw std::invalid_argument("inverse of a psychometric function at " + core::number(p) +
                                 ": it must be above 0 and below 1");
   switch (function) {
     case Function::weibull:
@@ -56,7 +56,7 @@ double core_inverse(Function function, double p) {
 double axis_position(Function function, Scale scale, double level) {
   if (scale == Scale::linear) return level;
   if (!(level > 0))
-    throw std::invalid_argument("level " + text::number(level) + " on a log10 scale: it must be above 0");
+    throw std::invalid_argument("level " + core::number(level) + " on a log10 scale: it must be above 0");
   return (function == Function::weibull ? 20 : 1) * std::log10(level);
 }
 

@@ -1,11 +1,11 @@
 #pragma once
 #include <optional>
 
-#include "station/terms/psychometric.hpp"
+#include "station/core/psychometric.hpp"
 
 namespace turnpoint::analysis {
 
-using terms::Function;
+using core::Function;
 /// Whether a function of the level uses the level itself or its base-10 logarithm. On the log10 scale, levels
 /// must be positive. A Weibull on the linear scale takes its level in dB.
 enum class Scale { linear, log10 };

@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "station/random/elementary.hpp"
-#include "station/text/number.hpp"
+#include "station/core/elementary.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::procedure {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
-using text::TableReader;
+using core::TableReader;
 
-texts::Phrase forms() {
+core::Phrase forms() {
   return phrase("allowed: %1, %2, %3 or %4",
                 {plain("{ from, to, step }"), plain("{ from, to, count }"),
                  plain("{ log_from, log_to, count }"), plain("{ values = [...] }")});
@@ -26,7 +26,7 @@ std::vector<double> even_steps(TableReader& reader, double from, double to) {
   const double step = reader.number("step");
   const double intervals = (to - from) / step;
   if (!(intervals <= most_grid_points - 1)) {
-    reader.problem("step", phrase("the grid would have %1 points", {plain(text::number(intervals + 1))}),
+    reader.problem("step", phrase("the grid would have %1 points", {plain(core::number(intervals + 1))}),
                    phrase("at most %1", {plain(most_grid_points)}));
     return {from};
   }
@@ -34,8 +34,8 @@ std::vector<double> even_steps(TableReader& reader, double from, double to) {
   if (std::fabs(intervals - whole) > 1e-6 || whole < 0)
     reader.problem("to",
                    phrase("the steps from %1 by %2 do not end exactly at %3",
-                          {plain(text::number(from)), plain(text::number(step)), plain(text::number(to))}),
-                   phrase("a possible end is %1", {plain(text::number(from + std::max(whole, 0.0) * step))}));
+                          {plain(core::number(from)), plain(core::number(step)), plain(core::number(to))}),
+                   phrase("a possible end is %1", {plain(core::number(from + std::max(whole, 0.0) * step))}));
   std::vector<double> values;
   for (int i = 0; i <= static_cast<int>(whole); ++i) values.push_back(at_step(from, i, step));
   return values;
@@ -45,7 +45,7 @@ std::vector<double> linear_axis(TableReader& reader) {
   const double from = reader.number("from"), to = reader.number("to");
   if (reader.has("to") && to < from) {
     reader.problem("to", phrase("%1 is less than %2", {plain("\"to\""), plain("\"from\"")}),
-                   phrase("at least %1", {plain(text::number(from))}));
+                   phrase("at least %1", {plain(core::number(from))}));
     return {from};
   }
   if (!reader.has("count")) return even_steps(reader, from, to);
@@ -60,12 +60,12 @@ std::vector<double> log_axis(TableReader& reader) {
   const int count = reader.integer("count");
   if (reader.has("log_to") && to <= from) {
     reader.problem("log_to", phrase("\"log_to\" must be greater than \"log_from\""),
-                   phrase("above %1", {plain(text::number(from))}));
+                   phrase("above %1", {plain(core::number(from))}));
     return {from};
   }
   std::vector<double> values{from};
-  const double first = random::log(from), range = random::log(to) - first;
-  for (int i = 1; i + 1 < count; ++i) values.push_back(random::exp(first + range * i / (count - 1)));
+  const double first = core::log(from), range = core::log(to) - first;
+  for (int i = 1; i + 1 < count; ++i) values.push_back(core::exp(first + range * i / (count - 1)));
   values.push_back(to);
   return values;
 }
@@ -94,8 +94,8 @@ double at_step(double from, std::int64_t steps, double step) {
 namespace {
 
 /// The form of a grid that a table has, by the first key of each form; nullptr if it has none.
-const text::Keys* form_of(const text::Key& grid, const text::Value& table) {
-  const text::Keys* found = nullptr;
+const core::Keys* form_of(const core::Key& grid, const core::Value& table) {
+  const core::Keys* found = nullptr;
   for (const auto& form : grid.forms) {
     const auto fits =
         std::ranges::count_if(form.keys->list, [&](const auto& key) { return table.find(key.name); });
@@ -107,11 +107,11 @@ const text::Keys* form_of(const text::Key& grid, const text::Value& table) {
 
 }  // namespace
 
-Grid read_grid(const text::Value& table, text::TableReader& outer, const std::string& key) {
+Grid read_grid(const core::Value& table, core::TableReader& outer, const std::string& key) {
   Grid grid;
   const auto name = outer.path(key);
   auto& findings = outer.findings();
-  if (table.kind != text::Value::Kind::table) {
+  if (table.kind != core::Value::Kind::table) {
     findings.add(table.place, phrase("\"%1\" is %2", {plain(name), describe(table)}), forms());
     return grid;
   }
@@ -140,11 +140,11 @@ Grid read_grid(const text::Value& table, text::TableReader& outer, const std::st
   return grid;
 }
 
-Prior read_prior(const text::Value& table, text::TableReader& outer, const std::string& key) {
+Prior read_prior(const core::Value& table, core::TableReader& outer, const std::string& key) {
   Prior prior;
   const auto name = outer.path(key);
   auto& findings = outer.findings();
-  if (table.kind != text::Value::Kind::table) {
+  if (table.kind != core::Value::Kind::table) {
     findings.add(
         table.place, phrase("\"%1\" is %2", {plain(name), describe(table)}),
         phrase("write %1 or %2", {plain("{ normal = { mean, sd } }"), plain("{ weights = [...] }")}));

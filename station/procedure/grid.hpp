@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "station/core/reader.hpp"
 #include "station/procedure/spec.hpp"
-#include "station/text/reader.hpp"
 
 namespace turnpoint::procedure {
 
@@ -12,7 +12,7 @@ inline constexpr int most_grid_points = 10001;
 
 /// Reads a grid in one of the forms that are declared for the key `key` of `outer`, such as { from, to, step
 /// }, and computes its values, which are the same on every machine.
-Grid read_grid(const text::Value& table, text::TableReader& outer, const std::string& key);
+Grid read_grid(const core::Value& table, core::TableReader& outer, const std::string& key);
 
 /// Returns the smallest power of 10 by which all values become whole numbers, up to 10^9; 0 if none does.
 double decimal_places(const std::vector<double>& values);
@@ -22,6 +22,6 @@ double decimal_places(const std::vector<double>& values);
 double at_step(double from, std::int64_t steps, double step);
 
 /// Reads a prior in one of the forms { normal = { mean, sd } } or { weights = [...] }.
-Prior read_prior(const text::Value& table, text::TableReader& outer, const std::string& key);
+Prior read_prior(const core::Value& table, core::TableReader& outer, const std::string& key);
 
 }  // namespace turnpoint::procedure

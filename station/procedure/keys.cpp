@@ -5,16 +5,16 @@
 
 namespace turnpoint::procedure {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::Range;
-using text::TableReader;
+using core::Range;
+using core::TableReader;
 
 namespace {
 
 void read_max_run(TableReader& order, Spec& spec) {
   const auto* table = order.take("max_run");
-  if (!table || table->kind != text::Value::Kind::table) {
+  if (!table || table->kind != core::Value::Kind::table) {
     if (const auto limit = order.maybe_integer("max_run")) spec.max_run[kRightAnswer] = *limit;
     return;
   }

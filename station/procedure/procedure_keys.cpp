@@ -10,10 +10,10 @@ namespace turnpoint::procedure {
 namespace declarations {
 namespace {
 
-using text::Key;
-using text::Keys;
-using text::Range;
-using namespace text::key;
+using core::Key;
+using core::Keys;
+using core::Range;
+using namespace core::key;
 using Ends = Range::Ends;
 using Words = std::vector<std::string>;
 
@@ -234,6 +234,6 @@ Keys all() {
 }  // namespace
 }  // namespace declarations
 
-text::Keys procedure_keys() { return declarations::all(); }
+core::Keys procedure_keys() { return declarations::all(); }
 
 }  // namespace turnpoint::procedure

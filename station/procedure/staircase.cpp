@@ -12,7 +12,7 @@
 
 namespace turnpoint::procedure {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
@@ -88,7 +88,7 @@ std::map<std::string, Estimate> Staircase::estimates() const {
 
 namespace {
 
-void read_steps(text::TableReader& reader, Spec& spec) {
+void read_steps(core::TableReader& reader, Spec& spec) {
   spec.step = reader.maybe_numbers("step");
   spec.step_down = reader.maybe_numbers("step_down");
   if (spec.kind == Kind::up_down) spec.step_up = reader.maybe_numbers("step_up");
@@ -100,7 +100,7 @@ void read_steps(text::TableReader& reader, Spec& spec) {
                           phrase("give either \"step\" (for both directions) or \"step_down\""));
 }
 
-void read_staircase(text::TableReader& reader, Spec& spec) {
+void read_staircase(core::TableReader& reader, Spec& spec) {
   read_tracks(reader, spec);
   read_scale(reader, spec);
   read_span(reader, spec);
@@ -139,7 +139,7 @@ void validate_staircase(const Spec& spec, std::vector<Problem>& problems) {
          phrase("it must be at least two less than the number of reversals at which the staircase stops")});
 }
 
-std::unique_ptr<Procedure> make_staircase(const Spec& spec, const Context&, const random::Key&) {
+std::unique_ptr<Procedure> make_staircase(const Spec& spec, const Context&, const core::DrawKey&) {
   return std::make_unique<Staircase>(spec);
 }
 

@@ -2,11 +2,11 @@
 
 #include <limits>
 
+#include "station/core/trial.hpp"
 #include "station/procedure/procedure_keys.hpp"
 #include "station/procedure/spec.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/protocol/triggers.hpp"
-#include "station/terms/trial.hpp"
 
 namespace turnpoint::protocol {
 
@@ -14,10 +14,10 @@ namespace turnpoint::protocol {
 namespace declarations {
 namespace {
 
-using text::Key;
-using text::Keys;
-using text::Range;
-using namespace text::key;
+using core::Key;
+using core::Keys;
+using core::Range;
+using namespace core::key;
 using Ends = Range::Ends;
 using Words = std::vector<std::string>;
 
@@ -224,7 +224,7 @@ Keys task() {
 
 Keys timing() {
   Words zeros;
-  for (const auto zero : terms::response_zeros) zeros.emplace_back(terms::name(zero));
+  for (const auto zero : core::response_zeros) zeros.emplace_back(core::name(zero));
   return {
       word("response_zero", zeros, "from when response times count").required(),
       number("explore_s", {0, 600, Ends::open_low, "s"}, "time to explore before the answer"),
@@ -525,6 +525,6 @@ const Keys& all() {
 }  // namespace
 }  // namespace declarations
 
-const text::Keys& protocol_keys() { return declarations::all(); }
+const core::Keys& protocol_keys() { return declarations::all(); }
 
 }  // namespace turnpoint::protocol

@@ -1,9 +1,9 @@
 #pragma once
-#include "station/text/keys.hpp"
+#include "station/core/keys.hpp"
 
 namespace turnpoint::protocol {
 
 /// All keys of a protocol file.
-const text::Keys& protocol_keys();
+const core::Keys& protocol_keys();
 
 }  // namespace turnpoint::protocol

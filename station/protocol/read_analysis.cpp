@@ -7,10 +7,10 @@
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::Range;
-using text::TableReader;
+using core::Range;
+using core::TableReader;
 
 namespace {
 
@@ -18,7 +18,7 @@ void read_by(TableReader& reader, Reading& reading) {
   auto& by = reading.protocol.analysis.by;
   const auto* value = reader.take("by");
   if (!value) return;
-  if (value->kind == text::Value::Kind::string)
+  if (value->kind == core::Value::Kind::string)
     by = {reader.maybe_string("by").value_or("")};
   else
     by = reader.maybe_strings("by");
@@ -28,7 +28,7 @@ void read_by(TableReader& reader, Reading& reading) {
     const auto* factor = find_factor(factors, name);
     if (!factor)
       reader.problem("by", phrase("unknown factor \"%1\"", {plain(name)}),
-                     text::suggestion(name, names(factors)));
+                     core::suggestion(name, names(factors)));
     else if (factor->levels.empty())
       reader.problem("by", phrase("the factor \"%1\" has a range, not levels", {plain(name)}),
                      phrase("use factors with \"levels\", because one curve is fitted for each level"));
@@ -44,7 +44,7 @@ void read_by(TableReader& reader, Reading& reading) {
 }
 
 /// Why a value of `show` would add nothing to the report of this protocol; empty if it would add something.
-texts::Phrase without_effect(const std::string& word, const Protocol& protocol) {
+core::Phrase without_effect(const std::string& word, const Protocol& protocol) {
   const auto& task = protocol.task;
   // do not add a second message: the reader of [task] has reported a task without choices
   if (word == "trace" || task.choices.empty()) return {};
@@ -90,13 +90,13 @@ void read_show(TableReader& reader, Reading& reading) {
   for (const auto& word : *analysis.show) {
     if (std::find(shown.begin(), shown.end(), word) == shown.end()) {
       reader.problem("show", phrase("\"%1\" has \"%2\"", {plain("show"), plain(word)}),
-                     text::suggestion(word, shown));
+                     core::suggestion(word, shown));
       continue;
     }
     const auto reason = without_effect(word, reading.protocol);
     if (!reason.empty())
       reader.problem("show", phrase("\"%1\" would show nothing: %2", {plain(word), reason}),
-                     phrase("allowed here: %1", {text::quoted_list(useful)}));
+                     phrase("allowed here: %1", {core::quoted_list(useful)}));
   }
 }
 

@@ -3,9 +3,9 @@
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::TableReader;
+using core::TableReader;
 
 namespace {
 

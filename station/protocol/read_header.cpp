@@ -2,17 +2,17 @@
 #include <cctype>
 #include <set>
 
+#include "station/core/number.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::Range;
-using text::TableReader;
-using text::Value;
+using core::Range;
+using core::TableReader;
+using core::Value;
 
 namespace {
 
@@ -48,9 +48,9 @@ void check_factor_name(TableReader& reader, const std::string& name) {
                    phrase("\"abs\" is a function; choose another name"));
 }
 
-void read_level(const text::Value& item, Factor& factor, text::Findings& findings) {
+void read_level(const core::Value& item, Factor& factor, core::Findings& findings) {
   const bool number = item.kind == Value::Kind::number || item.kind == Value::Kind::integer;
-  const bool fits = number ? text::inside_range(item.number, {-1e6, 1e6})
+  const bool fits = number ? core::inside_range(item.number, {-1e6, 1e6})
                            : item.kind == Value::Kind::string && !item.string.empty() && !factor.range;
   const FactorValue value = number ? FactorValue(item.number) : FactorValue(item.string);
   const auto& levels = factor.levels;
@@ -60,7 +60,7 @@ void read_level(const text::Value& item, Factor& factor, text::Findings& finding
   else if (std::find(levels.begin(), levels.end(), value) != levels.end())
     findings.add(item.place, phrase("a level of \"%1\" appears twice", {plain(factor.name)}),
                  phrase("each level must be different"));
-  else if (factor.range && !text::inside_range(item.number, {factor.range->first, factor.range->second}))
+  else if (factor.range && !core::inside_range(item.number, {factor.range->first, factor.range->second}))
     findings.add(item.place, phrase("a level of \"%1\" is outside its range", {plain(factor.name)}),
                  describe(Range{factor.range->first, factor.range->second}));
   else
@@ -93,7 +93,7 @@ void read_draw(TableReader& reader, Factor& factor, bool has_levels, Reading& re
   }
 }
 
-Factor read_factor(const text::Value& table, Reading& reading) {
+Factor read_factor(const core::Value& table, Reading& reading) {
   TableReader reader(table, titled("factor", table), reading.findings, keys_of("factor"));
   Factor factor;
   factor.place = reader.place("name");
@@ -159,7 +159,7 @@ void read_factors(TableReader& file, Reading& reading) {
 }
 
 void read_resume(TableReader& file, Reading& reading) {
-  static const text::Value empty;
+  static const core::Value empty;
   const auto* table = file.maybe_table("resume");
   TableReader reader(table ? *table : empty, "resume", reading.findings, file.keys("resume"));
   auto& resume = reading.protocol.resume;

@@ -3,19 +3,19 @@
 #include <set>
 #include <tuple>
 
+#include "station/core/number.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/interludes.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/protocol/sources.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::Range;
-using text::TableReader;
-using text::Value;
+using core::Range;
+using core::TableReader;
+using core::Value;
 
 namespace {
 
@@ -64,7 +64,7 @@ std::string without_spaces(const std::string& text) {
 
 /// Checks that the rule compares an answer with a value that the answer can have.
 void check_value(const AnswerCondition& rule, const Item* item, const std::string& right,
-                 text::Findings& findings) {
+                 core::Findings& findings) {
   const auto* number = std::get_if<double>(&rule.value);
   if (!item || item->value || item->rating) {
     const double low = item && item->value ? item->value->low : item ? 1 : 0;
@@ -74,7 +74,7 @@ void check_value(const AnswerCondition& rule, const Item* item, const std::strin
     if (!number || *number < low || *number > high)
       findings.add(rule.place,
                    phrase("\"%1\" compares a number with \"%2\"", {plain(rule.source), plain(right)}),
-                   phrase("a number from %1 to %2", {plain(text::number(low)), plain(text::number(high))}));
+                   phrase("a number from %1 to %2", {plain(core::number(low)), plain(core::number(high))}));
     return;
   }
   std::vector<std::string> ids;
@@ -84,7 +84,7 @@ void check_value(const AnswerCondition& rule, const Item* item, const std::strin
                  phrase("use %1", {plain("== or !=")}));
   else if (std::find(ids.begin(), ids.end(), right) == ids.end())
     findings.add(rule.place, phrase("\"%1\": there is no choice \"%2\"", {plain(rule.source), plain(right)}),
-                 text::suggestion(right, ids));
+                 core::suggestion(right, ids));
 }
 
 void add_rule(const Value& value, const Interlude& here, const Reading& reading,
@@ -108,8 +108,8 @@ void add_rule(const Value& value, const Interlude& here, const Reading& reading,
     const auto* item = find_item(rule.about, here, reading.protocol);
     if (!item && !is_score(rule.about, here, reading.protocol))
       return reading.findings.add(value.place, phrase("nothing above is called \"%1\"", {plain(rule.about)}),
-                                  text::suggestion(rule.about, known_names(here, reading.protocol)));
-    const auto number = text::read_number(right);
+                                  core::suggestion(rule.about, known_names(here, reading.protocol)));
+    const auto number = core::read_number(right);
     const bool numeric = !item || item->value || item->rating;
     rule.value = numeric && number ? FactorValue(*number) : FactorValue(right);
     check_value(rule, item, right, reading.findings);
@@ -220,7 +220,7 @@ Example read_example(const Value& table, const std::string& path, const Reading&
       const auto* factor = find_factor(factors, entry.key);
       if (!factor)
         reading.findings.add(entry.place, phrase("unknown factor \"%1\"", {plain(entry.key)}),
-                             text::suggestion(entry.key, names(factors)));
+                             core::suggestion(entry.key, names(factors)));
       else if (const auto value = read_factor_value(entry.value, *factor, reading.findings))
         example.with[entry.key] = *value;
     }
@@ -285,7 +285,7 @@ void read_interlude(const Value& table, InterludeKind kind, const char* list, Re
   if (const auto after = repeats ? reader.maybe_string("after_each") : std::nullopt) {
     if (std::find(parts.begin(), parts.end(), *after) == parts.end())
       reader.problem("after_each", phrase("there is no block or sequence \"%1\"", {plain(*after)}),
-                     text::suggestion(*after, parts));
+                     core::suggestion(*after, parts));
     interlude.after_each = *after;
   }
   read_audience(reader, interlude.audience, reading);

@@ -8,11 +8,11 @@
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::Range;
-using text::TableReader;
-using text::Value;
+using core::Range;
+using core::TableReader;
+using core::Value;
 
 namespace {
 
@@ -33,7 +33,7 @@ void read_what(TableReader& reader, Block& block, const Reading& reading) {
     // `known` is empty if no procedure could be read. Do not report every name in the list as unknown then.
     if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end())
       reader.problem("procedures", phrase("unknown procedure \"%1\"", {plain(name)}),
-                     text::suggestion(name, known));
+                     core::suggestion(name, known));
     if (!seen.insert(name).second)
       reader.problem("procedures", phrase("\"%1\" appears twice", {plain(name)}),
                      phrase("list each procedure only once"));
@@ -125,7 +125,7 @@ void read_block_keys(TableReader& reader, Block& block, const Reading& reading) 
     for (const auto& [key, instruction] : reading.protocol.instructions) known.push_back(key);
     if (std::find(known.begin(), known.end(), *name) == known.end())
       reader.problem("instruction", phrase("there is no [instructions.%1]", {plain(*name)}),
-                     text::suggestion(*name, known));
+                     core::suggestion(*name, known));
     block.fixed["instruction"] = *name;
   }
 }
@@ -164,7 +164,7 @@ Sequence read_sequence(const Value& table, const Reading& reading) {
   const auto* factor = find_factor(factors, sequence.over);
   if (!sequence.over.empty() && !factor)
     reader.problem("over", phrase("unknown factor \"%1\"", {plain(sequence.over)}),
-                   text::suggestion(sequence.over, names(factors)));
+                   core::suggestion(sequence.over, names(factors)));
   if (factor && factor->levels.size() < 2)
     reader.problem(
         "over",

@@ -3,18 +3,18 @@
 #include <map>
 #include <set>
 
+#include "station/core/number.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::Findings;
-using text::Range;
-using text::TableReader;
-using text::Value;
+using core::Findings;
+using core::Range;
+using core::TableReader;
+using core::Value;
 using Ends = Range::Ends;
 
 namespace {
@@ -136,7 +136,7 @@ void check_form(TableReader& reader, const Scene& scene, Findings& findings) {
     if (scene.boundary_mm->is_constant() && *scene.zone->from_mm >= least)
       reader.problem("zone",
                      phrase("the zone begins at %1 mm, beyond its boundary",
-                            {plain(text::number(*scene.zone->from_mm))}),
+                            {plain(core::number(*scene.zone->from_mm))}),
                      phrase("\"from_mm\" must be less than \"boundary_mm\""));
   }
 }
@@ -250,7 +250,7 @@ class Resolver {
     const auto* found = scenes_.find(base.string);
     if (found && found->value.kind == Value::Kind::table) return resolve(base.string);
     reading_.findings.add(base.place, phrase("unknown scene \"%1\"", {plain(base.string)}),
-                          text::suggestion(base.string, others));
+                          core::suggestion(base.string, others));
     return nullptr;
   }
 

@@ -2,9 +2,9 @@
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::TableReader;
+using core::TableReader;
 
 void read_sensing(TableReader& file, Reading& reading) {
   const auto* table = file.maybe_table("sensing");

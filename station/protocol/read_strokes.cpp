@@ -6,9 +6,9 @@
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::TableReader;
+using core::TableReader;
 
 namespace {
 
@@ -35,7 +35,7 @@ void check_scene(TableReader& reader, const Block& block, const Reading& reading
     if (!block.strokes.scene.empty() &&
         std::find(declared.begin(), declared.end(), block.strokes.scene) == declared.end())
       reader.problem("scene", phrase("there is no [scene.%1]", {plain(block.strokes.scene)}),
-                     text::suggestion(block.strokes.scene, known));
+                     core::suggestion(block.strokes.scene, known));
     return;
   }
   const auto expressions = expressions_of(found->second);

@@ -2,18 +2,18 @@
 #include <cmath>
 #include <set>
 
+#include "station/core/number.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::Range;
-using text::TableReader;
-using text::Value;
+using core::Range;
+using core::TableReader;
+using core::Value;
 
 namespace {
 
@@ -38,10 +38,10 @@ bool compares(TaskKind kind) {
   return kind != TaskKind::single_interval && kind != TaskKind::two_interval && kind != TaskKind::adjustment;
 }
 
-void check_scene(const std::string& name, const text::Place& place, const Reading& reading) {
+void check_scene(const std::string& name, const core::Place& place, const Reading& reading) {
   const auto& known = reading.declared_scenes;
   if (std::find(known.begin(), known.end(), name) == known.end())
-    reading.findings.add(place, phrase("unknown scene \"%1\"", {plain(name)}), text::suggestion(name, known));
+    reading.findings.add(place, phrase("unknown scene \"%1\"", {plain(name)}), core::suggestion(name, known));
 }
 
 std::vector<std::string> read_interval(const Value& item, const Reading& reading) {
@@ -127,7 +127,7 @@ std::vector<Anchor> read_anchors(TableReader& reader, double low, double high, c
   if (reader.has("labels") && (anchors.size() < 2 || anchors.front().at > low || anchors.back().at < high))
     reader.problem(
         "labels", phrase("an end of the scale has no label"),
-        phrase("write labels at %1 and at %2", {plain(text::number(low)), plain(text::number(high))}));
+        phrase("write labels at %1 and at %2", {plain(core::number(low)), plain(core::number(high))}));
   return anchors;
 }
 
@@ -145,7 +145,7 @@ Scale read_scale(const Value& table, const std::string& path, const Reading& rea
     const double steps = (value.high - value.low) * std::pow(10.0, value.decimals);
     if (steps < 10 || steps > 1000)
       reader.problem(reader.has("decimals") ? "decimals" : "line",
-                     phrase("the line has %1 steps of its smallest decimal", {plain(text::number(steps))}),
+                     phrase("the line has %1 steps of its smallest decimal", {plain(core::number(steps))}),
                      phrase("use 10 to 1000, because a finger cannot choose between more places"));
     value.anchors = read_anchors(reader, value.low, value.high, reading);
     scale.value = std::move(value);
@@ -299,7 +299,7 @@ void read_correct_scenes(TableReader& reader, Task& task, const Reading& reading
   for (const auto& entry : table->entries) {
     if (std::find(scenes.begin(), scenes.end(), entry.key) == scenes.end()) {
       reading.findings.add(entry.place, phrase("unknown scene \"%1\"", {plain(entry.key)}),
-                           text::suggestion(entry.key, scenes));
+                           core::suggestion(entry.key, scenes));
       continue;
     }
     if (entry.value.kind != Value::Kind::string) {
@@ -345,7 +345,7 @@ void read_correct_answers(TableReader& reader, Task& task, const Reading& readin
     if (std::find(ids.begin(), ids.end(), entry.key) == ids.end())
       reading.findings.add(
           entry.place, phrase("\"correct\" has \"%1\", which is not the id of a choice", {plain(entry.key)}),
-          text::suggestion(entry.key, ids));
+          core::suggestion(entry.key, ids));
     if (entry.value.kind != Value::Kind::string) {
       reading.findings.add(entry.value.place,
                            phrase("\"%1\" has %2", {plain("correct"), describe(entry.value)}),

@@ -5,10 +5,10 @@
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::TableReader;
-using text::Value;
+using core::TableReader;
+using core::Value;
 
 namespace {
 
@@ -53,7 +53,7 @@ void read_timing(TableReader& file, Reading& reading) {
   auto& timing = reading.protocol.timing;
   const auto zero = reader.word("response_zero");
   timing.response_zero_place = reader.place("response_zero");
-  for (const auto known : terms::response_zeros)
+  for (const auto known : core::response_zeros)
     if (zero == name(known)) timing.response_zero = known;
   timing.explore_s = reader.maybe_number("explore_s");
   read_signal(reader, reading);

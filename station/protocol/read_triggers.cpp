@@ -1,17 +1,17 @@
 #include <algorithm>
 #include <map>
 
+#include "station/core/number.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/protocol/triggers.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::TableReader;
+using core::TableReader;
 
 namespace {
 
@@ -30,7 +30,7 @@ void read_send(TableReader& reader, Triggers& triggers) {
   for (const auto& word : reader.maybe_strings("send")) {
     if (std::find(events.begin(), events.end(), word) == events.end())
       reader.problem("send", phrase("\"%1\" has \"%2\"", {plain("send"), plain(word)}),
-                     phrase("allowed: %1", {text::quoted_list(events)}));
+                     phrase("allowed: %1", {core::quoted_list(events)}));
     else if (std::find(triggers.send.begin(), triggers.send.end(), event_of(word)) != triggers.send.end())
       reader.problem("send", phrase("\"%1\" appears twice in \"%2\"", {plain(word), plain("send")}),
                      phrase("list each event only once"));
@@ -39,7 +39,7 @@ void read_send(TableReader& reader, Triggers& triggers) {
   }
 }
 
-void read_code(const text::Value& table, Reading& reading) {
+void read_code(const core::Value& table, Reading& reading) {
   TableReader reader(table, "triggers.code", reading.findings, keys_of("triggers.code"));
   TriggerCode code;
   code.event = event_of(reader.word("event"));
@@ -52,7 +52,7 @@ void read_code(const text::Value& table, Reading& reading) {
             ? phrase(
                   "leave out \"condition\": no factor is in [analysis] %1, and no block has an instruction",
                   {plain("\"by\"")})
-            : text::suggestion(code.condition, known));
+            : core::suggestion(code.condition, known));
   code.code = reader.integer("code");
   const auto& send = reading.protocol.triggers.send;
   if (std::find(send.begin(), send.end(), code.event) == send.end())
@@ -75,7 +75,7 @@ void check_unique(TableReader& reader, const Reading& reading) {
       reader.problem(
           "code",
           phrase("the code %1 stands for %2 and for %3",
-                 {plain(text::number(code.code)), plain(described(first->second)), plain(described(code))}),
+                 {plain(core::number(code.code)), plain(described(first->second)), plain(described(code))}),
           phrase("give each event of each condition its own code"));
   }
 }

@@ -9,10 +9,10 @@ namespace turnpoint::rig {
 namespace declarations {
 namespace {
 
-using text::Key;
-using text::Keys;
-using text::Range;
-using namespace text::key;
+using core::Key;
+using core::Keys;
+using core::Range;
+using namespace core::key;
 using Ends = Range::Ends;
 
 const Range sd_mm{0, 100, Ends::closed, "mm"};
@@ -274,6 +274,6 @@ const Keys& all() {
 }  // namespace
 }  // namespace declarations
 
-const text::Keys& rig_keys() { return declarations::all(); }
+const core::Keys& rig_keys() { return declarations::all(); }
 
 }  // namespace turnpoint::rig

@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "station/drive/sine.hpp"
-#include "station/terms/usage_error.hpp"
+#include "station/audio/sine.hpp"
+#include "station/core/usage_error.hpp"
 
 namespace turnpoint::sensing {
 namespace {
@@ -38,8 +38,8 @@ CarrierFilter::CarrierFilter(const std::vector<double>& taps, int factor, std::u
   for (std::int64_t n = 0; n <= half_; ++n) {
     const double tap = scale * taps[static_cast<std::size_t>(half_ + n)] * (n == 0 ? 0.5 : 1);
     const std::uint64_t phase = increment * static_cast<std::uint64_t>(n);
-    const auto even = static_cast<float>(tap * drive::sine_of_phase(phase + drive::quarter_cycle));
-    const auto odd = static_cast<float>(tap * drive::sine_of_phase(phase));
+    const auto even = static_cast<float>(tap * audio::sine_of_phase(phase + audio::quarter_cycle));
+    const auto odd = static_cast<float>(tap * audio::sine_of_phase(phase));
     even_.push_back({{even, even, even, even}});
     odd_.push_back({{odd, odd, odd, odd}});
   }
@@ -76,7 +76,7 @@ void CarrierFilter::append(const std::int32_t* frames, std::int64_t count) noexc
 void CarrierFilter::finish(std::int64_t centre) noexcept {
   // The processor works on the sines, each a long chain of operations, while it begins with the filter.
   const std::uint64_t phase = increment_ * static_cast<std::uint64_t>(centre);
-  const double c = drive::sine_of_phase(phase + drive::quarter_cycle), s = drive::sine_of_phase(phase);
+  const double c = audio::sine_of_phase(phase + audio::quarter_cycle), s = audio::sine_of_phase(phase);
   const Quad* middle = kept_.data() + filled_ - 1 - half_;
   Quad re, im;
   loops_->carrier(middle->value, half_, even_.front().value, odd_.front().value, re.value, im.value);
@@ -147,7 +147,7 @@ double pass_Hz(Band band) { return band == Band::force ? 400 : 1000; }
 double stop_Hz(Band band) { return band == Band::force ? 600 : 2000; }
 
 const BridgeOptions& checked(const BridgeOptions& options) {
-  const auto fail = [](const std::string& what) { throw terms::UsageError("strain-gauge bridges: " + what); };
+  const auto fail = [](const std::string& what) { throw core::UsageError("strain-gauge bridges: " + what); };
   if (options.rate_Hz < 2 * middle_rate_Hz || options.rate_Hz % middle_rate_Hz != 0)
     fail(fmt::format("rate {} Hz is not a multiple of {} Hz", options.rate_Hz, middle_rate_Hz));
   if (!(options.carrier_Hz > 2 * stop_Hz(options.band) && options.carrier_Hz < 0.45 * options.rate_Hz))
@@ -173,7 +173,7 @@ BridgeDemodulator::BridgeDemodulator(const BridgeOptions& options)
       // The first stage may let signals alias, but only to frequencies that the second stage stops.
       first_(low_pass(pass_Hz(options.band), middle_rate_Hz - stop_Hz(options.band), options.rate_Hz,
                       attenuation_dB),
-             options.rate_Hz / middle_rate_Hz, drive::phase_increment(options.carrier_Hz, options.rate_Hz),
+             options.rate_Hz / middle_rate_Hz, audio::phase_increment(options.carrier_Hz, options.rate_Hz),
              {options.reference, options.bridges[0], options.bridges[1], options.bridges[2]},
              options.channels),
       second_(low_pass(pass_Hz(options.band), stop_Hz(options.band), middle_rate_Hz, attenuation_dB),

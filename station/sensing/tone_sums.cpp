@@ -10,13 +10,13 @@
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
-#include "station/drive/sine.hpp"
+#include "station/audio/sine.hpp"
 
 namespace turnpoint::sensing {
 namespace {
 
 inline std::complex<double> unit(std::uint64_t phase) noexcept {
-  return {drive::sine_of_phase(phase + drive::quarter_cycle), drive::sine_of_phase(phase)};
+  return {audio::sine_of_phase(phase + audio::quarter_cycle), audio::sine_of_phase(phase)};
 }
 
 }  // namespace
@@ -46,9 +46,9 @@ std::uint64_t ToneSums::of_fraction(std::uint64_t increment) const noexcept {
   return static_cast<std::uint64_t>(std::llround(static_cast<double>(increment) * delay_fraction_));
 }
 
-drive::Partial ToneSums::at(std::size_t tone, std::int64_t captured_frame) const noexcept {
+audio::Partial ToneSums::at(std::size_t tone, std::int64_t captured_frame) const noexcept {
   const FollowedTone& followed = tones_[tone];
-  drive::Partial partial = drive::advanced(
+  audio::Partial partial = audio::advanced(
       followed.partial, static_cast<std::uint64_t>(captured_frame - delay_ - followed.origin_frame));
   partial.phase -= partial.curvature == 0 ? part_of_frame_[tone] : of_fraction(partial.increment);
   return partial;
@@ -103,7 +103,7 @@ void ToneSums::compute(const AlignedBlock& block, Parts parts) noexcept {
                       row(part, parity, 0) + column);
   const auto to_middle = static_cast<std::uint64_t>(block_frames_ - 1);
   for (std::size_t t = 0; t < tones_.size(); ++t) {
-    const drive::Partial partial = at(t, block.first_frame);
+    const audio::Partial partial = at(t, block.first_frame);
     phase_[t] = partial.phase + partial.increment / 2 * to_middle;
     if (partial.curvature == 0) continue;
     glide(block, t, partial);
@@ -113,11 +113,11 @@ void ToneSums::compute(const AlignedBlock& block, Parts parts) noexcept {
 }
 
 // A gliding tone has no symmetry, so its sums are computed frame by frame.
-void ToneSums::glide(const AlignedBlock& block, std::size_t tone, const drive::Partial& partial) noexcept {
+void ToneSums::glide(const AlignedBlock& block, std::size_t tone, const audio::Partial& partial) noexcept {
   for (std::size_t part = 0; part < part_count; ++part)
     for (std::size_t i = 0; i < inputs_; ++i) row(part, 0, i)[tone] = row(part, 1, i)[tone] = 0;
   for (int n = 0; n < block_frames_; ++n) {
-    const auto e = unit(drive::advanced(partial, static_cast<std::uint64_t>(n)).phase);
+    const auto e = unit(audio::advanced(partial, static_cast<std::uint64_t>(n)).phase);
     for (std::size_t part = 0; part < part_count; ++part) {
       const double f = factor(part, n - (block_frames_ - 1) / 2.0);
       const std::size_t real = part == 2 ? 1 : 0;

@@ -4,7 +4,7 @@
 #include <deque>
 #include <utility>
 
-#include "station/lines/guard.hpp"
+#include "station/io/guard.hpp"
 #include "station/session/presented.hpp"
 
 namespace turnpoint::session {
@@ -13,9 +13,9 @@ namespace {
 
 class VirtualStage : public Stage {
  public:
-  VirtualStage(const drive::StreamConfig& config, observer::Respondent observer, Inputs& inputs,
+  VirtualStage(const audio::StreamConfig& config, simulation::Respondent observer, Inputs& inputs,
                std::unique_ptr<SimulatedRoom> room, const TriggerSetup& triggers)
-      : stream_(drive::open_synchronous(config)),
+      : stream_(audio::open_synchronous(config)),
         triggers_(triggers, *stream_, nullptr),
         simulated_sync_(triggers.simulated_sync),
         observer_(std::move(observer)),
@@ -90,7 +90,7 @@ class VirtualStage : public Stage {
     // meanwhile.
   }
 
-  std::vector<Onset> present(std::span<const drive::PreparedBurst> intervals,
+  std::vector<Onset> present(std::span<const audio::PreparedBurst> intervals,
                              std::int64_t earliest_ns) override {
     // The bursts of an aborted trial may still be ramping down. They occupy the drive until they are silent.
     advance_to(quiet_ns_);
@@ -109,10 +109,10 @@ class VirtualStage : public Stage {
     return onsets;
   }
 
-  std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) override {
+  std::optional<std::int64_t> glide(const audio::ToneSet& to, double seconds) override {
     const auto change = glide_to(*stream_, presented_, to, seconds);
     if (!change) return std::nullopt;
-    if (watch_) watch_->changed(presented_.size() - 1, *change, drive::format_of(stream_->config().output));
+    if (watch_) watch_->changed(presented_.size() - 1, *change, audio::format_of(stream_->config().output));
     return presented_.back().start_frame + change->at_frame;
   }
 
@@ -133,7 +133,7 @@ class VirtualStage : public Stage {
   Refusal arm() override { return refusal(alive().arm(now_ns_)); }
   void disarm() override { guard_.disarm(); }
   Refusal clear() override { return refusal(guard_.clear()); }
-  drive::AmplifierState amplifier() const override { return guard_.state(); }
+  audio::AmplifierState amplifier() const override { return guard_.state(); }
   Refusal open_amplifier() override {
     // Before each trial the force cells are read without a finger, which takes a moment.
     if (room_ && room_->capture().finger) {
@@ -151,7 +151,7 @@ class VirtualStage : public Stage {
 
   const std::vector<std::string>& buttons() const override { return no_buttons_; }
   std::string missing() const override { return ""; }
-  void question(const observer::Question& question, const trial::SimulatedTimes& times) override {
+  void question(const simulation::Question& question, const trial::SimulatedTimes& times) override {
     const auto reply = observer_.answer(question);
     script_.clear();
     for (const auto& event : trial::simulated_events(times, reply)) {
@@ -165,7 +165,7 @@ class VirtualStage : public Stage {
     }
   }
 
-  void adjustment(const observer::Adjustment& adjustment, const trial::TrialSpec& spec,
+  void adjustment(const simulation::Adjustment& adjustment, const trial::TrialSpec& spec,
                   const trial::SimulatedTimes& times) override {
     const auto settings = observer_.adjust(adjustment);
     script_.clear();
@@ -270,23 +270,23 @@ class VirtualStage : public Stage {
 
   /// Returns the amplifier guard's state machine, which works here without GPIO lines. All threads are
   /// reported as alive, because on the virtual clock none of them can hang.
-  lines::Guard& alive() {
+  io::Guard& alive() {
     guard_.audio_alive(now_ns_);
     guard_.session_alive(now_ns_);
     return guard_;
   }
-  static Refusal refusal(const std::optional<lines::Guard::Refusal>& why) {
+  static Refusal refusal(const std::optional<io::Guard::Refusal>& why) {
     return why ? Refusal(Fault{why->kind, ""}) : std::nullopt;
   }
 
   const std::vector<std::string> no_buttons_;
-  lines::Guard guard_;
-  std::unique_ptr<drive::SynchronousStream> stream_;
+  io::Guard guard_;
+  std::unique_ptr<audio::SynchronousStream> stream_;
   Triggers triggers_;
   std::optional<TriggerCapture> capture_;
   const bool simulated_sync_;
   std::int64_t sync_due_ns_ = 0;
-  observer::Respondent observer_;
+  simulation::Respondent observer_;
   Inputs& inputs_;
   std::int64_t now_ns_ = 0;
   std::int64_t quiet_ns_ = 0;  ///< time at which the surface will be silent
@@ -305,7 +305,7 @@ class VirtualStage : public Stage {
 
 }  // namespace
 
-std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Respondent observer,
+std::unique_ptr<Stage> virtual_stage(const audio::StreamConfig& stream, simulation::Respondent observer,
                                      Inputs& inputs, std::unique_ptr<SimulatedRoom> room,
                                      const TriggerSetup& triggers) {
   return std::make_unique<VirtualStage>(stream, std::move(observer), inputs, std::move(room), triggers);

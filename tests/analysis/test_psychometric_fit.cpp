@@ -3,11 +3,11 @@
 
 #include "station/analysis/psychometric_fit.hpp"
 #include "station/analysis/psychometric_posterior.hpp"
-#include "station/random/draws.hpp"
+#include "station/core/draws.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::analysis;
-namespace rnd = turnpoint::random;
+namespace rnd = turnpoint::core;
 
 namespace {
 

@@ -8,12 +8,12 @@
 #include <functional>
 #include <numbers>
 
-#include "station/drive/oscillator.hpp"
-#include "station/drive/sine.hpp"
+#include "station/audio/oscillator.hpp"
+#include "station/audio/sine.hpp"
 
 namespace turnpoint::benchmark {
 
-using namespace drive;
+using namespace audio;
 
 namespace {
 

@@ -8,7 +8,7 @@ using namespace turnpoint;
 
 namespace {
 std::string schema() {
-  return text::json_schema(protocol::protocol_keys(), "Turnpoint protocol file (friction-protocol/1)");
+  return core::json_schema(protocol::protocol_keys(), "Turnpoint protocol file (friction-protocol/1)");
 }
 }  // namespace
 
@@ -17,10 +17,10 @@ TEST_CASE("the protocol schema for editors follows from the declared keys", "[pr
 }
 
 TEST_CASE("the reference of protocol keys on the page follows from the declared keys", "[protocol]") {
-  CHECK(tests::generated_part("protocols/README.md") == text::reference(protocol::protocol_keys()));
+  CHECK(tests::generated_part("protocols/README.md") == core::reference(protocol::protocol_keys()));
 }
 
 TEST_CASE("writes the schema and the reference of protocols", "[.write]") {
   tests::write_source("protocols/protocol.schema.json", schema());
-  tests::write_generated_part("protocols/README.md", text::reference(protocol::protocol_keys()));
+  tests::write_generated_part("protocols/README.md", core::reference(protocol::protocol_keys()));
 }

@@ -1,9 +1,9 @@
 // protocols/README.md is the manual of protocol files: its examples must be valid.
 #include <sstream>
 
+#include "station/core/read_file.hpp"
+#include "station/core/toml.hpp"
 #include "station/protocol/protocol.hpp"
-#include "station/system/read_file.hpp"
-#include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -13,7 +13,7 @@ namespace {
 const std::string readme_path = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/README.md";
 
 std::vector<std::string> snippets() {
-  std::istringstream lines(system::read_file(readme_path));
+  std::istringstream lines(core::read_file(readme_path));
   std::vector<std::string> all;
   bool inside = false;
   for (std::string line; std::getline(lines, line);) {
@@ -29,22 +29,22 @@ std::vector<std::string> snippets() {
   return all;
 }
 
-std::vector<text::Problem> problems_of(const std::string& source) {
+std::vector<core::Problem> problems_of(const std::string& source) {
   try {
     protocol::parse(source, "readme.toml");
     return {};
-  } catch (const text::BadInput& error) {
+  } catch (const core::BadInput& error) {
     return error.problems();
   }
 }
 
 // An example may lack what only a complete file contains. Any other problem is a mistake in the manual.
-bool lacks_the_rest(const text::Problem& problem) {
+bool lacks_the_rest(const core::Problem& problem) {
   for (const auto* part :
        {"the file needs", "the file has no", "unknown factor", "unknown scene", "unknown procedure",
         "not a declared language", "has no value", "there is no [instructions", "has no deadline",
         "second scene", "nothing ends the interval", "unknown key \"offset_mm\"", "nothing above is called"})
-    if (texts::say(problem.what, "en").find(part) != std::string::npos) return true;
+    if (core::say(problem.what, "en").find(part) != std::string::npos) return true;
   return false;
 }
 
