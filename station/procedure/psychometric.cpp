@@ -22,7 +22,7 @@ double strength(Scale scale, double threshold, double slope, double level) {
   return threshold <= 0 ? saturating_exp(700) : saturating_exp(slope * core::log(level / threshold));
 }
 
-double core(Function function, Scale scale, double threshold, double slope, double level) {
+double sigmoid(Function function, Scale scale, double threshold, double slope, double level) {
   const bool logs = scale != Scale::linear;
   if (logs && (level <= 0 || threshold <= 0)) return level <= 0 ? 0 : 1;
   const double x = logs ? core::log(level / threshold) / kLn10 : level - threshold;
@@ -86,7 +86,7 @@ double detection_rate(Scale scale, double threshold, double slope, double criter
 }
 
 double probability(Function function, Scale scale, const Psychometric& p, double level) {
-  const double f = core(function, scale, p.threshold, p.slope, level);
+  const double f = sigmoid(function, scale, p.threshold, p.slope, level);
   return std::clamp(p.guess + (1 - p.guess - p.lapse) * f, 0.0, 1.0);
 }
 

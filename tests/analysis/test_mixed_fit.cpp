@@ -70,7 +70,7 @@ struct Group {
       for (const double level : {-10.0, -5.0, -2.0, 2.0, 5.0, 10.0, 14.0}) {
         LevelCount count{level, trials, 0};
         for (int k = 0; k < trials; ++k)
-          count.positive += draws.uniform() < core(Function::normal, intercept + own_rate * level);
+          count.positive += draws.uniform() < sigmoid(Function::normal, intercept + own_rate * level);
         person.counts.push_back(count);
       }
       all.push_back(person);
@@ -137,7 +137,7 @@ TEST_CASE("Few trials of an unusual participant are drawn to the group, many are
     for (const double level : {-10.0, -5.0, -2.0, 2.0, 5.0, 10.0, 14.0})
       person.counts.push_back(
           {level, trials,
-           static_cast<int>(std::lround(trials * core(Function::normal, 0.25 * (level - 8))))});
+           static_cast<int>(std::lround(trials * sigmoid(Function::normal, 0.25 * (level - 8))))});
     return person;
   };
   auto few = people, many = people;
