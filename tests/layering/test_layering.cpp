@@ -248,11 +248,11 @@ TEST_CASE("a name of a layer that the table does not allow is found without an i
 }
 
 TEST_CASE("an entry of the table that nothing needs is found", "[layering]") {
-  std::istringstream text("station/text: station/terms\nstation/terms:\nphysics: station/text\n");
+  std::istringstream text("station/scene: station/core\nstation/core:\nphysics: station/scene\n");
   const auto table = parse_table(text);
   std::map<std::string, Layers> used;
-  used["station/text"] = used_by(table, "station/text/a.cpp", "#include \"station/terms/b.hpp\"");
-  CHECK(unused(table, used) == std::vector<std::string>{"physics: station/text"});
-  used["station/text"].clear();
+  used["station/scene"] = used_by(table, "station/scene/a.cpp", "#include \"station/core/b.hpp\"");
+  CHECK(unused(table, used) == std::vector<std::string>{"physics: station/scene"});
+  used["station/scene"].clear();
   CHECK(unused(table, used).size() == 2);
 }
