@@ -28,19 +28,10 @@ inline Partial advanced(Partial partial, std::uint64_t frames) noexcept {
   return partial;
 }
 
-/// The inner loops for one kind of processor. `steady` adds `frames` samples of a partial without glide to
-/// `sum`; `gliding` also follows curvature and amplitude_change along `shape` (one value per frame). All
-/// processors give the same bits.
-struct Kernels {
-  const char* name;
-  void (*steady)(double* sum, int frames, Partial partial) noexcept;
-  void (*gliding)(double* sum, int frames, Partial partial, const double* shape) noexcept;
-};
+/// Adds `frames` samples of a partial without glide to `sum`. Every processor gives the same bits.
+void add_steady(double* sum, int frames, Partial partial) noexcept;
 
-/// Loops without special instructions, which run on every processor of the architecture.
-const Kernels& generic_kernels() noexcept;
-
-/// The fastest loops that this processor supports; detected once.
-const Kernels& best_kernels() noexcept;
+/// The same, following curvature and amplitude_change along `shape` (one value for each frame).
+void add_gliding(double* sum, int frames, Partial partial, const double* shape) noexcept;
 
 }  // namespace turnpoint::audio

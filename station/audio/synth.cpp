@@ -20,7 +20,6 @@ struct Synth::State {
   };
 
   Format format;
-  const Kernels* kernels;
   std::array<Slot, max_voices> slots;
   std::int64_t next_frame = 0;
   PreparedTone carrier;  ///< an amplitude of 0 means that there is no carrier
@@ -58,12 +57,12 @@ struct Synth::State {
     }
     if (carrier.amplitude != 0) {
       const auto c = static_cast<std::size_t>(carrier.channel);
-      kernels->steady(mix.samples[c].data(), frames,
-                      {carrier.phase + carrier.increment * static_cast<std::uint64_t>(frame),
-                       carrier.increment, 0, carrier.amplitude, 0});
+      add_steady(mix.samples[c].data(), frames,
+                 {carrier.phase + carrier.increment * static_cast<std::uint64_t>(frame), carrier.increment, 0,
+                  carrier.amplitude, 0});
       std::fill_n(mix.dithered[c].begin(), frames, std::uint8_t{1});
     }
-    step(frame, frames, [&](Voice& voice, std::int64_t at) { voice.add(at, mix, scratch, *kernels); });
+    step(frame, frames, [&](Voice& voice, std::int64_t at) { voice.add(at, mix, scratch); });
   }
 
   /// Calls `go(voice, at)` for every voice in use, where `at` is `frame` counted from the start of the
@@ -110,7 +109,7 @@ struct Synth::State {
   }
 };
 
-Synth::Synth(const Format& format, const Kernels& kernels) : state_(new State) {
+Synth::Synth(const Format& format) : state_(new State) {
   if (format.rate_Hz < 8000 || format.rate_Hz > 768000 || format.channels < 1 ||
       format.channels > max_channels || format.bits < 8 || format.bits > 32)
     throw core::UsageError(
@@ -118,7 +117,6 @@ Synth::Synth(const Format& format, const Kernels& kernels) : state_(new State) {
                     "and 8 to 32 bits",
                     format.rate_Hz, format.channels, format.bits, max_channels));
   state_->format = format;
-  state_->kernels = &kernels;
 }
 
 Synth::~Synth() = default;

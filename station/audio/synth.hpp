@@ -32,7 +32,7 @@ class Synth {
   static constexpr int max_voices = 8;
 
   /// Throws core::UsageError for a format outside 8-768 kHz, 1-8 channels or 8-32 bits.
-  explicit Synth(const Format& format, const Kernels& kernels = best_kernels());
+  explicit Synth(const Format& format);
   ~Synth();
   Synth(const Synth&) = delete;
   Synth& operator=(const Synth&) = delete;

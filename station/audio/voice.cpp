@@ -131,7 +131,7 @@ std::int64_t Voice::next_boundary(std::int64_t at) const noexcept {
   return std::max(next, at + 1);
 }
 
-void Voice::tones(std::int64_t at, int offset, int count, Scratch& scratch, const Kernels& kernels) noexcept {
+void Voice::tones(std::int64_t at, int offset, int count, Scratch& scratch) noexcept {
   const bool gliding = glide_end_ != never;
   double* shape = scratch.shape.data() + offset;
   if (gliding)
@@ -141,7 +141,7 @@ void Voice::tones(std::int64_t at, int offset, int count, Scratch& scratch, cons
     const Partial p = advanced(partials_[k], static_cast<std::uint64_t>(at - origin_));
     if (p.amplitude == 0 && p.amplitude_change == 0) continue;
     double* sum = scratch.dry[static_cast<std::size_t>(burst_.tones[k].channel)].data() + offset;
-    gliding ? kernels.gliding(sum, count, p, shape) : kernels.steady(sum, count, p);
+    gliding ? add_gliding(sum, count, p, shape) : add_steady(sum, count, p);
   }
 }
 
@@ -231,7 +231,7 @@ void Voice::pass(std::int64_t at, int frames) noexcept {
   for (std::int64_t n = std::max<std::int64_t>(at, 0); n < last; n = next_boundary(n)) enter(n);
 }
 
-void Voice::add(std::int64_t at, Mix& mix, Scratch& scratch, const Kernels& kernels) noexcept {
+void Voice::add(std::int64_t at, Mix& mix, Scratch& scratch) noexcept {
   const int first = static_cast<int>(std::clamp<std::int64_t>(-at, 0, mix.frames));
   const int last = static_cast<int>(std::clamp<std::int64_t>(end() - at, first, mix.frames));
   if (first == last) return;
@@ -245,7 +245,7 @@ void Voice::add(std::int64_t at, Mix& mix, Scratch& scratch, const Kernels& kern
   for (int n = first; n < last;) {
     enter(at + n);
     const int count = static_cast<int>(std::min<std::int64_t>(next_boundary(at + n) - (at + n), last - n));
-    tones(at + n, n, count, scratch, kernels);
+    tones(at + n, n, count, scratch);
     n += count;
   }
   const bool gated = gains(at + first, last - first, scratch);

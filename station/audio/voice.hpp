@@ -62,7 +62,7 @@ class Voice {
 
   /// Adds frames [at, at + mix.frames) to the mix. `at` may be negative (the burst has not begun) and must
   /// not decrease.
-  void add(std::int64_t at, Mix& mix, Scratch& scratch, const Kernels& kernels) noexcept;
+  void add(std::int64_t at, Mix& mix, Scratch& scratch) noexcept;
 
   /// Advances by this many frames without computing them. The noise filters keep their state.
   void pass(std::int64_t at, int frames) noexcept;
@@ -76,7 +76,7 @@ class Voice {
   const PreparedChange* due_change(std::int64_t at) const noexcept;
   void begin_glide(std::int64_t at, const PreparedChange& change) noexcept;
   void end_glide(std::int64_t at) noexcept;
-  void tones(std::int64_t at, int offset, int count, Scratch& scratch, const Kernels& kernels) noexcept;
+  void tones(std::int64_t at, int offset, int count, Scratch& scratch) noexcept;
   bool gains(std::int64_t at, int count, Scratch& scratch) const noexcept;
   void markers(std::int64_t at, int first, int last, Mix& mix) const noexcept;
   void signal(std::int64_t at, int first, int last, Mix& mix) const noexcept;

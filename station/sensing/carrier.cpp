@@ -30,8 +30,7 @@ CarrierFilter::CarrierFilter(const std::vector<double>& taps, int factor, std::u
       channels_(channels),
       stride_(stride),
       kept_(taps.size() + kSpareOutputs * static_cast<std::size_t>(factor)),
-      filled_(taps.size()),
-      loops_(&best_loops()) {
+      filled_(taps.size()) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::fill(kept_.begin(), kept_.end(), Quad{{nan, nan, nan, nan}});
   const double scale = 0x1p-30;  // 2 / 2^31: the factor 2 of the filter, and the full scale of a sample
@@ -70,7 +69,7 @@ void CarrierFilter::append(const std::int32_t* frames, std::int64_t count) noexc
     std::fill_n(to, count, Quad{{nan, nan, nan, nan}});
     return;
   }
-  loops_->pick_four(frames, count, channels_.data(), stride_, to->value);
+  loops::pick_four(frames, count, channels_.data(), stride_, to->value);
 }
 
 void CarrierFilter::finish(std::int64_t centre) noexcept {
@@ -79,7 +78,7 @@ void CarrierFilter::finish(std::int64_t centre) noexcept {
   const double c = audio::sine_of_phase(phase + audio::quarter_cycle), s = audio::sine_of_phase(phase);
   const Quad* middle = kept_.data() + filled_ - 1 - half_;
   Quad re, im;
-  loops_->carrier(middle->value, half_, even_.front().value, odd_.front().value, re.value, im.value);
+  loops::carrier(middle->value, half_, even_.front().value, odd_.front().value, re.value, im.value);
   for (std::size_t i = 0; i < inputs; ++i) {
     const double real = re.value[i], imaginary = -im.value[i];
     output_[i] = {real * c + imaginary * s, imaginary * c - real * s};
@@ -113,8 +112,7 @@ Decimator::Decimator(const std::vector<double>& taps, int factor)
       kept_(taps.size() + kSpareSamples),
       filled_(taps.size()),
       half_(static_cast<std::int64_t>(taps.size() / 2)),
-      factor_(factor),
-      loops_(&best_loops()) {
+      factor_(factor) {
   half_taps_.front() /= 2;  // the loop adds the sample in the middle twice
   for (Lanes& sample : kept_) sample.fill(std::numeric_limits<double>::quiet_NaN());
 }
@@ -130,7 +128,7 @@ bool Decimator::push(std::int64_t index, const Lanes& sample) noexcept {
   if (centre % factor_ != 0) return false;
   output_index_ = centre / factor_;
   const Lanes& middle = kept_[filled_ - 1 - static_cast<std::size_t>(half_)];
-  loops_->eight(middle.data(), half_, half_taps_.data(), output_.data());
+  loops::eight(middle.data(), half_, half_taps_.data(), output_.data());
   return true;
 }
 

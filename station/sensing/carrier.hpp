@@ -52,7 +52,6 @@ class CarrierFilter {
   std::vector<Quad> even_, odd_;  ///< filter taps times cosine (even_) or sine (odd_) of the carrier
   std::vector<Quad> kept_;        ///< the most recent frames, the newest last
   std::size_t filled_ = 0;
-  const SampleLoops* loops_;
   bool ready_ = false;
   std::int64_t output_index_ = 0;
   std::array<std::complex<double>, inputs> output_{};
@@ -85,7 +84,6 @@ class Decimator {
   std::vector<Lanes> kept_;        ///< the most recent samples, the newest last
   std::size_t filled_;
   std::int64_t half_, factor_, output_index_ = 0;
-  const SampleLoops* loops_;
   Lanes output_{};
 };
 

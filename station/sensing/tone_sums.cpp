@@ -29,13 +29,12 @@ ToneSums::ToneSums(std::vector<FollowedTone> tones, std::size_t inputs, int bloc
       window_frames_(window_frames),
       delay_(static_cast<std::int64_t>(std::floor(delay_frames))),
       delay_fraction_(delay_frames - std::floor(delay_frames)),
-      columns_((tones_.size() + kTones - 1) / kTones * kTones),
+      columns_((tones_.size() + loops::kTones - 1) / loops::kTones * loops::kTones),
       table_(part_count * static_cast<std::size_t>(block_frames) * columns_),
       folded_(inputs * static_cast<std::size_t>(block_frames)),
       sums_(part_count * 2 * inputs * columns_),
       phase_(tones_.size()),
-      turn_(tones_.size()),
-      loops_(&best_loops()) {
+      turn_(tones_.size()) {
   if (block_frames % 2 != 0 || window_frames % block_frames != 0)
     throw std::logic_error("sensing: a lock-in needs blocks of even length and a window of whole blocks");
   for (const FollowedTone& tone : tones_) part_of_frame_.push_back(of_fraction(tone.partial.increment));
@@ -88,7 +87,7 @@ void ToneSums::fill(std::size_t tone) noexcept {
 void ToneSums::fold(const AlignedBlock& block) noexcept {
   const auto half = static_cast<std::size_t>(block_frames_ / 2);
   for (std::size_t i = 0; i < inputs_; ++i)
-    loops_->fold(block.row[i], half, folded_.data() + i * half, folded_.data() + (inputs_ + i) * half);
+    loops::fold(block.row[i], half, folded_.data() + i * half, folded_.data() + (inputs_ + i) * half);
 }
 
 void ToneSums::compute(const AlignedBlock& block, Parts parts) noexcept {
@@ -97,10 +96,10 @@ void ToneSums::compute(const AlignedBlock& block, Parts parts) noexcept {
   const std::size_t used = parts == Parts::plain ? 1 : part_count;
   for (std::size_t part = 0; part < used; ++part)
     for (std::size_t parity = 0; parity < 2; ++parity)
-      for (std::size_t column = 0; column < columns_; column += kTones)
-        loops_->tones(folded_.data() + parity * inputs_ * half, inputs_, half,
-                      table_.data() + (part * 2 + parity) * half * columns_ + column, columns_,
-                      row(part, parity, 0) + column);
+      for (std::size_t column = 0; column < columns_; column += loops::kTones)
+        loops::tones(folded_.data() + parity * inputs_ * half, inputs_, half,
+                     table_.data() + (part * 2 + parity) * half * columns_ + column, columns_,
+                     row(part, parity, 0) + column);
   const auto to_middle = static_cast<std::uint64_t>(block_frames_ - 1);
   for (std::size_t t = 0; t < tones_.size(); ++t) {
     const audio::Partial partial = at(t, block.first_frame);

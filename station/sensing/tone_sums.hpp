@@ -80,7 +80,6 @@ class ToneSums {
   std::vector<std::uint64_t> part_of_frame_;
   std::vector<std::uint64_t> phase_;        ///< phase of each tone in the middle of the block
   std::vector<std::complex<double>> turn_;  ///< e^(i phase) of each tone in the middle of the block
-  const SampleLoops* loops_;
 };
 
 /// A tone that was found in noise.

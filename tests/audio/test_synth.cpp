@@ -2,12 +2,26 @@
 #include <numbers>
 #include <random>
 
+#include "station/audio/oscillator.hpp"
+#include "station/audio/sine.hpp"
 #include "station/audio/synth.hpp"
+#include "station/core/instruction_sets.hpp"
 #include "tests/audio/bursts.hpp"
 #include "tests/audio/spectrum.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::audio;
+
+// The oscillator's loops for every processor, to compare them with those that this machine chooses.
+namespace turnpoint::plain {
+using audio::Partial;
+}
+#undef TURNPOINT_CLONES
+#define TURNPOINT_CLONES
+#define audio plain
+#include "station/audio/oscillator.cpp"  // NOLINT(bugprone-suspicious-include)
+#undef audio
+namespace plain = turnpoint::plain;
 
 namespace {
 
@@ -32,8 +46,8 @@ std::vector<std::int32_t> quantised(Synth& synth, std::int64_t from, std::size_t
   return out;
 }
 
-std::vector<double> rendered(const Burst& burst, const Kernels& kernels = best_kernels()) {
-  Synth synth({rate, 2, 24}, kernels);
+std::vector<double> rendered(const Burst& burst) {
+  Synth synth({rate, 2, 24});
   REQUIRE(synth.start(prepare(burst, {rate, 2, 24})));
   return rendered(synth, 0, static_cast<std::size_t>(burst.start_frame + burst.length_frames));
 }
@@ -104,12 +118,16 @@ TEST_CASE("a burst of the largest allowed peak never reaches full scale, whateve
   CHECK_THROWS_AS(prepare(burst, format), BurstRefused);
 }
 
-TEST_CASE("loops for special processors give the same bits as the generic loop", "[drive][synth]") {
-  Burst burst = eight_tones();
-  burst.change_count = 1;
-  burst.changes[0] = {100000, 50000, eight_tones().tones};
-  for (auto& tone : burst.changes[0].to.tones) tone.frequency_Hz += 777.7, tone.amplitude *= 0.5;
-  CHECK(rendered(burst) == rendered(burst, generic_kernels()));
+TEST_CASE("loops for special processors give the same bits as the loop for all", "[drive][synth]") {
+  const Partial partial{0x123456789abcdef0, phase_increment(22512.3, rate), 0xfffffffff0001234, 0.115, -0.05};
+  constexpr int frames = 1003;
+  std::vector<double> shape(frames), chosen(frames, 0.25), all(frames, 0.25);
+  for (std::size_t n = 0; n < frames; ++n) shape[n] = static_cast<double>(n) / frames;
+  add_steady(chosen.data(), frames, partial);
+  plain::add_steady(all.data(), frames, partial);
+  add_gliding(chosen.data(), frames - 2, partial, shape.data());
+  plain::add_gliding(all.data(), frames - 2, partial, shape.data());
+  CHECK(chosen == all);
 }
 
 TEST_CASE("samples do not depend on how the stream is divided into blocks", "[drive][synth]") {
