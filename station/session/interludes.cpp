@@ -31,12 +31,14 @@ bool answers_item(const protocol::Item& item, const Input& input) {
 }  // namespace
 
 Interludes::Interludes(const Setup& setup, const Pages& pages, const trial::Director& director,
-                       OperatorGate& gate, Stage& stage, store::SessionLog& log, Player player)
+                       OperatorGate& gate, Stage& stage, SimulatedParticipant* participant,
+                       store::SessionLog& log, Player player)
     : setup_(setup),
       pages_(pages),
       director_(director),
       gate_(gate),
       stage_(stage),
+      participant_(participant),
       log_(log),
       player_(std::move(player)),
       visit_(visit_of(log.session())),
@@ -132,7 +134,7 @@ void Interludes::simulate(InputKind kind, int value, double number) {
   input.kind = kind;
   input.value = value;
   input.number = number;
-  stage_.simulate(std::move(input));
+  participant_->will(std::move(input), stage_.now_ns());
 }
 
 /// Gives the answer that the protocol states for a simulated participant, or a random answer if it states
@@ -179,7 +181,7 @@ std::optional<Interludes::Reply> Interludes::ask(const protocol::Interlude& inte
   const auto& item = interlude.items[index];
   auto page = pages_.question(item, director_);
   page.back = back;
-  if (!setup_.observer.empty()) simulate_answer(interlude, index);
+  if (participant_) simulate_answer(interlude, index);
   const auto shown_ns = stage_.now_ns();
   const auto input = reply(page, [&](const Input& one) {
     return answers_item(item, one) || (back && one.kind == InputKind::back);
@@ -229,7 +231,7 @@ Flow Interludes::explain(const protocol::Interlude& interlude) {
     auto page = pages_.explanation(explanation, director_);
     page.back = at > 0;
     // a simulated participant feels each example once
-    if (!setup_.observer.empty() && played < explanation.examples.size())
+    if (participant_ && played < explanation.examples.size())
       simulate(InputKind::answer, static_cast<int>(played++));
     const auto input = reply(page, [&](const Input& one) {
       return one.kind == InputKind::next || (page.back && one.kind == InputKind::back) ||

@@ -29,9 +29,9 @@ class Interludes {
   /// Presents an example while `page` is shown.
   using Player = std::function<Flow(const protocol::Example&, Page page)>;
 
-  /// All references must outlive this object.
+  /// All references must outlive this object. `participant` is null if a person takes part.
   Interludes(const Setup& setup, const Pages& pages, const trial::Director& director, OperatorGate& gate,
-             Stage& stage, store::SessionLog& log, Player player);
+             Stage& stage, SimulatedParticipant* participant, store::SessionLog& log, Player player);
 
   /// Restores what was answered and scored before the session was resumed.
   void restore(const Earlier& earlier);
@@ -77,6 +77,7 @@ class Interludes {
   const trial::Director& director_;
   OperatorGate& gate_;
   Stage& stage_;
+  SimulatedParticipant* participant_;
   store::SessionLog& log_;
   Player player_;
   const protocol::Visit visit_;

@@ -161,10 +161,6 @@ class RealStage : public Stage {
     return devices_.buttons ? devices_.buttons->names() : no_buttons_;
   }
   std::string missing() const override { return devices_.buttons ? devices_.buttons->missing() : ""; }
-  void question(const simulation::Question&, const trial::SimulatedTimes&) override {}
-  void adjustment(const simulation::Adjustment&, const trial::TrialSpec&,
-                  const trial::SimulatedTimes&) override {}
-  void simulate(Input) override {}
   audio::Amplifier* guarded_amplifier() override { return devices_.amplifier.get(); }
   void set_drift(double share) override {
     if (capture_) capture_->feed().watch().set_drift(share);

@@ -335,13 +335,13 @@ std::vector<Check> simulated_self_test(const rig::Rig& rig, const std::string& d
   const auto stage = real_stage(stream, std::move(devices), inputs);
   SelfTestParts parts{&rig, stage.get(), amplifier,     nullptr,        {},
                       {},   data_folder, faults.clocks, faults.sensors, faults.longest_press_s};
+  SimulatedParticipant nobody(simulation::Observer(simulation::parse("sim")));
   std::unique_ptr<Stage> room_stage;
   if (simulates_capture(rig)) {
     auto room = std::make_unique<SimulatedRoom>(rig, faults.laboratory);
     if (faults.room) faults.room(*room);
     parts.capture = room->capture();
-    room_stage = virtual_stage(simulated_stream(rig), simulation::Observer(simulation::parse("sim")),
-                               room_inputs, std::move(room));
+    room_stage = virtual_stage(simulated_stream(rig), nobody, room_inputs, std::move(room));
     parts.room = room_stage.get();
   }
   parts.ask = [&](const Request& request) {

@@ -201,13 +201,13 @@ Begun resume(const Setup& setup, Stage& stage, Programs& programs) {
   return {std::move(log), std::move(director), {std::move(stored.events), std::move(stored.blocks)}};
 }
 
-Summary run_on(const Setup& setup, Display* display, std::unique_ptr<Stage> stage, Programs& programs,
-               Monitor* monitor) {
+Summary run_on(const Setup& setup, Display* display, std::unique_ptr<Stage> stage,
+               SimulatedParticipant* participant, Programs& programs, Monitor* monitor) {
   auto account = account_of(setup, stage->now_ns());
   auto begun =
       setup.resume_session.empty() ? begin(setup, *stage, programs) : resume(setup, *stage, programs);
   SessionRun run(setup, std::move(begun.director), std::move(begun.log), begun.earlier, std::move(stage),
-                 std::move(account), display, monitor, &programs);
+                 std::move(account), participant, display, monitor, &programs);
   return run.run();
 }
 
@@ -222,12 +222,12 @@ Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monit
 Summary run(const Setup& setup, Display* display, Inputs& inputs, std::unique_ptr<SimulatedRoom> room,
             Monitor* monitor) {
   Programs programs(setup.protocol.path);
-  auto observer = programs.respondent(setup.observer);
+  SimulatedParticipant participant(programs.respondent(setup.observer));
   if (room && setup.protocol.sensing) room->ask_for(window_of(*setup.protocol.sensing));
   return run_on(setup, display,
-                virtual_stage(simulated_stream(setup.rig), std::move(observer), inputs, std::move(room),
+                virtual_stage(simulated_stream(setup.rig), participant, inputs, std::move(room),
                               trigger_setup_of(setup.rig)),
-                programs, monitor);
+                &participant, programs, monitor);
 }
 
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Devices devices, Monitor* monitor) {
@@ -238,7 +238,7 @@ Summary run(const Setup& setup, Display* display, Inputs& inputs, Devices device
   return run_on(
       setup, display,
       real_stage(session_stream(setup.rig), std::move(devices), inputs, capture, trigger_setup_of(setup.rig)),
-      programs, monitor);
+      nullptr, programs, monitor);
 }
 
 }  // namespace turnpoint::session

@@ -30,11 +30,13 @@ namespace turnpoint::session {
 
 SessionRun::SessionRun(const Setup& setup, trial::Director director, store::SessionLog log,
                        const Earlier& earlier, std::unique_ptr<Stage> stage, FingerAccount account,
-                       Display* display, Monitor* monitor, Programs* programs)
+                       SimulatedParticipant* participant, Display* display, Monitor* monitor,
+                       Programs* programs)
     : setup_(setup),
       log_(std::move(log)),
       stage_(std::move(stage)),
       account_(std::move(account)),
+      participant_(participant),
       display_(display),
       monitor_(monitor),
       programs_(programs),
@@ -42,7 +44,7 @@ SessionRun::SessionRun(const Setup& setup, trial::Director director, store::Sess
       director_(std::move(director)),
       pages_(setup),
       gate_(setup, pages_, director_, *stage_, log_, display),
-      interludes_(setup, pages_, director_, gate_, *stage_, log_,
+      interludes_(setup, pages_, director_, gate_, *stage_, participant, log_,
                   [this](const protocol::Example& example, Page page) {
                     return play_example(example, std::move(page));
                   }),
@@ -399,19 +401,21 @@ void SessionRun::interval_begins(Running& trial) {
 }
 
 void SessionRun::ask_observer(const Running& trial, std::int64_t onset_ns) {
-  if (trial.spec.strokes) return;
+  if (!participant_ || trial.spec.strokes) return;
+  const auto now_ns = stage_->now_ns();
   const auto times = trial::simulated_times(setup_.protocol, trial.spec, onset_ns);
   try {
     if (trial.slider)
-      stage_->adjustment(trial::adjustment_of(trial.spec, setup_.protocol, summary_.seed), trial.spec, times);
+      participant_->set(trial::adjustment_of(trial.spec, setup_.protocol, summary_.seed), trial.spec, times,
+                        now_ns);
     else
-      stage_->question(trial::question_of(trial.spec, setup_.protocol, summary_.seed), times);
+      participant_->answer(trial::question_of(trial.spec, setup_.protocol, summary_.seed), times, now_ns);
   } catch (const core::ProgramFailed& failed) {
     // The trial ends without a result, and the session is interrupted.
     Input failure;
     failure.kind = InputKind::failure;
     failure.text = failed.what();
-    stage_->simulate(failure);
+    participant_->will(failure, now_ns);
   }
 }
 

@@ -30,8 +30,8 @@ class SessionRun {
   /// `director` must be in the state that corresponds to the log, and to `earlier`, which is empty for a new
   /// session. `programs` starts the separate programs of the session; null if it has none.
   SessionRun(const Setup& setup, trial::Director director, store::SessionLog log, const Earlier& earlier,
-             std::unique_ptr<Stage> stage, FingerAccount account, Display* display, Monitor* monitor,
-             Programs* programs = nullptr);
+             std::unique_ptr<Stage> stage, FingerAccount account, SimulatedParticipant* participant,
+             Display* display, Monitor* monitor, Programs* programs = nullptr);
 
   /// Runs until the last block has ended or somebody stops the session.
   Summary run();
@@ -123,6 +123,7 @@ class SessionRun {
   store::SessionLog log_;
   std::unique_ptr<Stage> stage_;
   FingerAccount account_;
+  SimulatedParticipant* participant_;  ///< null if a person takes part
   Display* display_;
   Monitor* monitor_;
   Programs* programs_;

@@ -15,9 +15,9 @@
 #include "station/session/capture_feed.hpp"
 #include "station/session/devices.hpp"
 #include "station/session/inputs.hpp"
+#include "station/session/simulated_participant.hpp"
 #include "station/session/simulated_room.hpp"
 #include "station/session/triggers.hpp"
-#include "station/simulation/observer.hpp"
 #include "station/trial/timing.hpp"
 
 namespace turnpoint::session {
@@ -97,18 +97,6 @@ class Stage {
   /// Names the lines (buttons, contact) that are disconnected at present, with the reason; "" if none are.
   virtual std::string missing() const = 0;
 
-  /// Asks a simulated observer to answer this question, and its finger to touch and leave the surface if the
-  /// protocol asks for it. A real stage does nothing. Throws core::ProgramFailed if the observer is a
-  /// program that fails.
-  virtual void question(const simulation::Question& question, const trial::SimulatedTimes& times) = 0;
-
-  /// Asks a simulated observer to set the slider of this trial and press Done. A real stage does nothing.
-  virtual void adjustment(const simulation::Adjustment& adjustment, const trial::TrialSpec& spec,
-                          const trial::SimulatedTimes& times) = 0;
-
-  /// Makes a simulated participant give this input at the time `input.time_ns`. A real stage does nothing.
-  virtual void simulate(Input input) = 0;
-
   /// For the self-test. guarded_amplifier() is null in a simulated session; the capture is that of the
   /// simulated room, and empty without a room.
   virtual audio::Amplifier* guarded_amplifier() { return nullptr; }
@@ -148,11 +136,11 @@ std::unique_ptr<Stage> real_stage(const audio::StreamConfig& stream, Devices dev
                                   const std::optional<CardCapture>& capture = std::nullopt,
                                   const TriggerSetup& triggers = {});
 
-/// Makes a stage on the virtual clock. The drive advances with the clock. The simulated observer answers,
-/// arms a simulated amplifier, and presses Continue when nothing else is left to do. `inputs` must outlive
-/// the stage. Of `inputs`, only a stop has an effect, and only between trials. With a `room`, stimuli are
-/// computed sample by sample, and the surface is measured.
-std::unique_ptr<Stage> virtual_stage(const audio::StreamConfig& stream, simulation::Respondent observer,
+/// Makes a stage on the virtual clock. The drive advances with the clock. The participant's inputs come in
+/// their time; the stage arms a simulated amplifier, and presses Continue when nothing else is left to do.
+/// `participant` and `inputs` must outlive the stage. Of `inputs`, only a stop has an effect, and only
+/// between trials. With a `room`, stimuli are computed sample by sample, and the surface is measured.
+std::unique_ptr<Stage> virtual_stage(const audio::StreamConfig& stream, SimulatedParticipant& participant,
                                      Inputs& inputs, std::unique_ptr<SimulatedRoom> room = nullptr,
                                      const TriggerSetup& triggers = {});
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <deque>
 #include <utility>
 
 #include "station/io/guard.hpp"
@@ -13,12 +12,12 @@ namespace {
 
 class VirtualStage : public Stage {
  public:
-  VirtualStage(const audio::StreamConfig& config, simulation::Respondent observer, Inputs& inputs,
+  VirtualStage(const audio::StreamConfig& config, SimulatedParticipant& participant, Inputs& inputs,
                std::unique_ptr<SimulatedRoom> room, const TriggerSetup& triggers)
       : stream_(audio::open_synchronous(config)),
         triggers_(triggers, *stream_, nullptr),
         simulated_sync_(triggers.simulated_sync),
-        observer_(std::move(observer)),
+        participant_(participant),
         inputs_(inputs),
         room_(std::move(room)) {
     if (room_) {
@@ -47,14 +46,11 @@ class VirtualStage : public Stage {
   }
 
   std::optional<Input> wait_for_input(std::int64_t deadline_ns) {
-    if (auto heard =
-            next_heard(script_.empty() ? deadline_ns : std::min(deadline_ns, script_.front().time_ns)))
-      return heard;
-    if (!script_.empty() && script_.front().time_ns <= deadline_ns) {
-      auto input = std::move(script_.front());
-      script_.pop_front();
-      advance_to(input.time_ns);
-      return input;
+    const auto next_ns = participant_.next_ns();
+    if (auto heard = next_heard(std::min(deadline_ns, next_ns.value_or(deadline_ns)))) return heard;
+    if (next_ns && *next_ns <= deadline_ns) {
+      advance_to(*next_ns);
+      return participant_.take();
     }
     if (deadline_ns != kForever) {
       advance_to(deadline_ns);
@@ -72,7 +68,7 @@ class VirtualStage : public Stage {
   /// session that was stopped and resumed equals one that was not interrupted. A trial takes only
   /// milliseconds of real time, so nobody waits long.
   std::vector<Input> drain() override {
-    script_.clear();
+    participant_.forget();
     unheard_.clear();
     measured_ = false;
     touchable_ = false;
@@ -151,43 +147,6 @@ class VirtualStage : public Stage {
 
   const std::vector<std::string>& buttons() const override { return no_buttons_; }
   std::string missing() const override { return ""; }
-  void question(const simulation::Question& question, const trial::SimulatedTimes& times) override {
-    const auto reply = observer_.answer(question);
-    script_.clear();
-    for (const auto& event : trial::simulated_events(times, reply)) {
-      auto& input = script_.emplace_back(at(event.time_ns, InputKind::answer));
-      input.value = event.value;
-      if (event.kind == trial::EventKind::contact) {
-        input.kind = InputKind::contact, input.number = -1;
-      } else if (reply.value) {
-        input.kind = InputKind::value, input.number = *reply.value;
-      }
-    }
-  }
-
-  void adjustment(const simulation::Adjustment& adjustment, const trial::TrialSpec& spec,
-                  const trial::SimulatedTimes& times) override {
-    const auto settings = observer_.adjust(adjustment);
-    script_.clear();
-    for (const auto& event : trial::simulated_events(times, {})) {
-      auto& input = script_.emplace_back(at(event.time_ns, InputKind::contact));
-      input.value = event.value, input.number = -1;
-    }
-    for (const auto& move : settings.moves)
-      script_
-          .emplace_back(at(times.slider_ns + static_cast<std::int64_t>(move.time_s * 1e9), InputKind::slider))
-          .number = move.value;
-    script_.push_back(at(trial::simulated_done_ns(times, spec, settings.done_s), InputKind::next));
-    std::stable_sort(script_.begin(), script_.end(),
-                     [](const Input& a, const Input& b) { return a.time_ns < b.time_ns; });
-  }
-
-  void simulate(Input input) override {
-    input.quality = TimeQuality::simulated;
-    input.time_ns = std::max(now_ns_, input.time_ns);
-    script_ = {std::move(input)};
-  }
-
   std::optional<CaptureSetup> capture() const override {
     return room_ ? std::optional(room_->capture()) : std::nullopt;
   }
@@ -236,15 +195,6 @@ class VirtualStage : public Stage {
     return input;
   }
 
-  /// What the simulated participant does at this time, but not in the past.
-  Input at(std::int64_t time_ns, InputKind kind) const {
-    Input input;
-    input.time_ns = std::max(now_ns_, time_ns);
-    input.kind = kind;
-    input.quality = TimeQuality::simulated;
-    return input;
-  }
-
   /// A pulse of a simulated device, one each second.
   Input pulse() {
     Input input;
@@ -286,11 +236,10 @@ class VirtualStage : public Stage {
   std::optional<TriggerCapture> capture_;
   const bool simulated_sync_;
   std::int64_t sync_due_ns_ = 0;
-  simulation::Respondent observer_;
+  SimulatedParticipant& participant_;
   Inputs& inputs_;
   std::int64_t now_ns_ = 0;
   std::int64_t quiet_ns_ = 0;  ///< time at which the surface will be silent
-  std::deque<Input> script_;   ///< what the simulated observer will do, in order of time
   std::vector<Presented> presented_, unheard_;
   // The plate goes on moving for some time after the drive stops, so simulate it from this many frames before
   // the measurement, and for as many frames after it.
@@ -305,10 +254,10 @@ class VirtualStage : public Stage {
 
 }  // namespace
 
-std::unique_ptr<Stage> virtual_stage(const audio::StreamConfig& stream, simulation::Respondent observer,
+std::unique_ptr<Stage> virtual_stage(const audio::StreamConfig& stream, SimulatedParticipant& participant,
                                      Inputs& inputs, std::unique_ptr<SimulatedRoom> room,
                                      const TriggerSetup& triggers) {
-  return std::make_unique<VirtualStage>(stream, std::move(observer), inputs, std::move(room), triggers);
+  return std::make_unique<VirtualStage>(stream, participant, inputs, std::move(room), triggers);
 }
 
 }  // namespace turnpoint::session

@@ -80,16 +80,6 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
   void close_amplifier() override { closing_ = world_.plant != Plant::never_off; }
   const std::vector<std::string>& buttons() const override { return inner_->buttons(); }
   std::string missing() const override { return missing_; }
-  void question(const turnpoint::simulation::Question& question,
-                const turnpoint::trial::SimulatedTimes& times) override {
-    inner_->question(question, times);
-  }
-  void adjustment(const turnpoint::simulation::Adjustment& adjustment,
-                  const turnpoint::trial::TrialSpec& spec,
-                  const turnpoint::trial::SimulatedTimes& times) override {
-    inner_->adjustment(adjustment, spec, times);
-  }
-  void simulate(Input input) override { inner_->simulate(std::move(input)); }
   turnpoint::session::Triggers& triggers() override { return inner_->triggers(); }
   std::optional<turnpoint::session::ClockFit> clock_fit() override { return inner_->clock_fit(); }
   std::string realtime_rights() const override { return "none"; }

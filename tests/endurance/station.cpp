@@ -167,13 +167,13 @@ bool Station::live(session::Setup setup) {
   const auto id = session_id_ = log.session().session_id;
   const auto stream = session::stream_of(setup.rig);
   session::Inputs nobody;
-  auto owned = std::make_unique<Room>(
-      world_, disk(), session::virtual_stage(stream, simulation::Observer(simulation::parse("sim")), nobody),
-      stream.output.rate_Hz);
+  session::SimulatedParticipant participant(simulation::Observer(simulation::parse("sim")));
+  auto owned = std::make_unique<Room>(world_, disk(), session::virtual_stage(stream, participant, nobody),
+                                      stream.output.rate_Hz);
   Room& room = *owned;
   Acknowledgements monitor(world_, room, id, dead_);
   session::SessionRun run(setup, std::move(*director), std::move(log), earlier, std::move(owned),
-                          std::move(account), &room, &monitor);
+                          std::move(account), &participant, &room, &monitor);
   const auto summary = run.run();
   if (summary.reason.find("session's time") != std::string::npos) world_.now_ns += kRest_ns;
   return !dead_ &&

@@ -152,7 +152,8 @@ TEST_CASE("on the virtual clock, a trial that follows an aborted one waits until
   for (const double aborted_after_s : {0.0, 0.001, 0.03, 0.5, 1.2, 1.6, 3.99, 4.2}) {
     INFO("aborted " << aborted_after_s << " s after the first onset");
     session::Inputs nobody;
-    const auto stage = session::virtual_stage(stream, simulation::Observer(simulation::parse("sim")), nobody);
+    session::SimulatedParticipant participant(simulation::Observer(simulation::parse("sim")));
+    const auto stage = session::virtual_stage(stream, participant, nobody);
     const auto first = stage->present(intervals, 0);
     REQUIRE(first.size() == 3);
     while (stage->wait_until(first[0].time_ns + static_cast<std::int64_t>(aborted_after_s * 1e9))) {

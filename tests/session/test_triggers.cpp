@@ -221,8 +221,8 @@ TEST_CASE("the first interval of a trial waits for the code of the trial", "[ses
   Bench bench;
   session::Inputs inputs;
   audio::StreamConfig config = bench.stream->config();
-  const auto stage = session::virtual_stage(config, simulation::Observer(simulation::parse("sim")), inputs,
-                                            nullptr, bench.setup);
+  session::SimulatedParticipant participant(simulation::Observer(simulation::parse("sim")));
+  const auto stage = session::virtual_stage(config, participant, inputs, nullptr, bench.setup);
   session::Trigger trigger;
   trigger.code = 5;
   stage->triggers().send(trigger, 0);
