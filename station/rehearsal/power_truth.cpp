@@ -231,7 +231,7 @@ FitTruth GeneratingValues::fit(const std::string& condition, const analysis::Fit
     return without_rounding(crossing(share, low, high, value), threshold);
   };
   FitTruth truth;
-  const double way = analysis::core(options.function, 0);
+  const double way = analysis::sigmoid(options.function, 0);
   truth.threshold = decides == simulation::Decides::side
                         ? question.cut + p.bias
                         : crosses(share(low) + way * (share(high) - share(low)));
