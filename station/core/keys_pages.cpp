@@ -1,6 +1,5 @@
 // What people and their editors read about the keys of a format: the JSON schema and the reference tables.
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "station/core/keys.hpp"
@@ -218,8 +217,8 @@ class SchemaWriter {
     }
     std::string description;
     for (const auto& sentence : sentences) description += (description.empty() ? "" : " / ") + sentence;
-    if (!description.empty())
-      description[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(description[0])));
+    if (!description.empty() && description[0] >= 'a' && description[0] <= 'z')
+      description[0] = static_cast<char>(description[0] - 'a' + 'A');
     Json json;
     json.add("description", word(description));
     const auto& fallback = same.front()->fallback;
