@@ -9,7 +9,7 @@
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/signal_detection.hpp"
 #include "station/analysis/student.hpp"
-#include "station/text/number.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::analysis {
 
@@ -49,8 +49,8 @@ std::optional<Bias> choice_bias(const std::vector<TrialRecord>& trials) {
   const double fair = known > 0 ? static_cast<double>(second_right) / known : 0.5;
   if (fair < bias.interval.low || fair > bias.interval.high)
     bias.statements.push_back(
-        {"bias", texts::phrase("statement.bias", {texts::plain(text::number(100 * bias.share_second, 3)),
-                                                  texts::plain(text::number(100 * fair, 3))})});
+        {"bias", core::phrase("statement.bias", {core::plain(core::number(100 * bias.share_second, 3)),
+                                                 core::plain(core::number(100 * fair, 3))})});
   return bias;
 }
 
@@ -128,9 +128,9 @@ Fatigue fatigue(const std::vector<TrialRecord>& trials) {
   }
   Fatigue result{within_groups(times), within_groups(scores), {}};
   if (result.proportion_correct && result.proportion_correct->interval.high < 0)
-    result.statements.push_back({"fatigue", texts::phrase("statement.fatigue")});
+    result.statements.push_back({"fatigue", core::phrase("statement.fatigue")});
   if (result.response_time_s && result.response_time_s->interval.low > 0)
-    result.statements.push_back({"slowing", texts::phrase("statement.slowing")});
+    result.statements.push_back({"slowing", core::phrase("statement.slowing")});
   return result;
 }
 

@@ -11,8 +11,8 @@
 #include "station/analysis/first_passage.hpp"
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/quantile.hpp"
-#include "station/random/draws.hpp"
-#include "station/text/number.hpp"
+#include "station/core/draws.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::analysis {
 
@@ -323,7 +323,7 @@ struct WeightedDraws {
 };
 
 /// Draws from a t distribution with 6 degrees of freedom, and weights the draws by the posterior density.
-WeightedDraws draw(const Posterior& f, const Vector& centre, const Matrix& covariance, random::Draws& draws) {
+WeightedDraws draw(const Posterior& f, const Vector& centre, const Matrix& covariance, core::Draws& draws) {
   constexpr int freedom = 6;
   const auto n = centre.size();
   const Matrix root = covariance.llt().matrixL();
@@ -464,7 +464,7 @@ Mode maximum(const Posterior& f, const Shared& start, const std::vector<double>&
 }
 
 /// Draws from a normal distribution around the maximum.
-WeightedDraws normal_draws(const Mode& mode, random::Draws& draws) {
+WeightedDraws normal_draws(const Mode& mode, core::Draws& draws) {
   const Matrix root = mode.covariance.llt().matrixL();
   WeightedDraws sample;
   for (int i = 0; i < kPosteriorDraws; ++i) {
@@ -477,7 +477,7 @@ WeightedDraws normal_draws(const Mode& mode, random::Draws& draws) {
   return sample;
 }
 
-WeightedDraws posterior_draws(const Posterior& posterior, const Vector& centre, random::Draws& draws) {
+WeightedDraws posterior_draws(const Posterior& posterior, const Vector& centre, core::Draws& draws) {
   bool curved = true;
   Matrix covariance = covariance_at(posterior, centre, curved);
   // a nearly flat direction must not send most of the draws to where nothing is possible
@@ -510,7 +510,7 @@ DiffusionFit fit_diffusion(const std::vector<DiffusionTrial>& trials, std::size_
   });
   if (answers < kFewestAnswers) {
     result.statements.push_back(
-        {"diffusion-too-few", texts::phrase("statement.diffusion_too_few", {texts::plain(kFewestAnswers)})});
+        {"diffusion-too-few", core::phrase("statement.diffusion_too_few", {core::plain(kFewestAnswers)})});
     return result;
   }
   const bool likelihood = options.method == DiffusionOptions::Method::likelihood;
@@ -521,7 +521,7 @@ DiffusionFit fit_diffusion(const std::vector<DiffusionTrial>& trials, std::size_
     mode = maximum(posterior, start, drifts);
   else
     mode.at = mode_from(posterior, posterior.unbounded(start, drifts));
-  random::Draws draws({seed, random::Stream::bootstrap, 2000, stream, 0});
+  core::Draws draws({seed, core::Stream::bootstrap, 2000, stream, 0});
   const WeightedDraws sample =
       likelihood ? normal_draws(mode, draws) : posterior_draws(posterior, mode.at, draws);
   const auto log_boundary =
@@ -529,7 +529,7 @@ DiffusionFit fit_diffusion(const std::vector<DiffusionTrial>& trials, std::size_
   if (!mode.curved || sample.effective < 30 ||
       log_boundary.interval.high - log_boundary.interval.low > std::log(20)) {
     result.statements.push_back(
-        {"diffusion-not-determined", texts::phrase("statement.diffusion_not_determined")});
+        {"diffusion-not-determined", core::phrase("statement.diffusion_not_determined")});
     return result;
   }
   DiffusionEstimates found;
@@ -819,7 +819,7 @@ DiffusionCheck check_diffusion(const std::vector<DiffusionTrial>& trials, const 
   };
   DiffusionCheck check;
   check.statistic = statistic(residuals_of([&](std::size_t s) { return expected[s].count; }));
-  random::Draws draws({seed, random::Stream::bootstrap, 3000, stream, 0});
+  core::Draws draws({seed, core::Stream::bootstrap, 3000, stream, 0});
   for (int i = 0; i < kCheckReplicates; ++i)
     check.replicates.push_back(statistic(residuals_of([&](std::size_t s) {
       const auto& p = expected[s].probability;

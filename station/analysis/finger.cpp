@@ -104,7 +104,7 @@ std::optional<Finger> finger(const std::vector<FingerTrial>& trials, const std::
   }
   result.boundaries = boundaries_of(trials);
   if (result.boundaries.shift_mm.empty())
-    result.statements.push_back({"no-felt-boundary", texts::phrase("statement.no_felt_boundary")});
+    result.statements.push_back({"no-felt-boundary", core::phrase("statement.no_felt_boundary")});
   return result;
 }
 

@@ -8,7 +8,7 @@
 
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/signal_detection.hpp"
-#include "station/text/number.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::analysis {
 
@@ -62,7 +62,7 @@ double proportion_correct(Deciding deciding, double d_prime, int intervals) {
 
 double d_prime(Deciding deciding, double proportion, int intervals) {
   if (!(proportion >= 0 && proportion <= 1))
-    throw std::invalid_argument("proportion correct " + text::number(proportion) + ": from 0 to 1");
+    throw std::invalid_argument("proportion correct " + core::number(proportion) + ": from 0 to 1");
   if (deciding != Deciding::largest && proportion <= 0.5) return 0;
   if (proportion == 0) return -kInfinity;
   if (proportion == 1) return kInfinity;

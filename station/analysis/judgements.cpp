@@ -32,12 +32,12 @@ void add_exponent(Judgements& judgements, bool decibel) {
     }
   }
   if (!sizes) {
-    judgements.statements.push_back({"no-logarithm", texts::phrase("statement.no_logarithm")});
+    judgements.statements.push_back({"no-logarithm", core::phrase("statement.no_logarithm")});
     return;
   }
   judgements.exponent = student_slope(x, y);
   if (!judgements.exponent)
-    judgements.statements.push_back({"few-magnitudes", texts::phrase("statement.few_magnitudes")});
+    judgements.statements.push_back({"few-magnitudes", core::phrase("statement.few_magnitudes")});
 }
 
 }  // namespace
@@ -70,9 +70,9 @@ std::vector<Judgements> judgements(const std::vector<TrialRecord>& trials,
     }
     if (zeros > 0)
       one.statements.push_back(
-          {"zero-magnitudes", texts::phrase("statement.zero_magnitudes", {texts::plain(zeros)})});
+          {"zero-magnitudes", core::phrase("statement.zero_magnitudes", {core::plain(zeros)})});
     if (one.levels.empty())
-      one.statements.push_back({"no-trials", texts::phrase("statement.no_trials")});
+      one.statements.push_back({"no-trials", core::phrase("statement.no_trials")});
     else if (judged != Judged::ratings)
       add_exponent(one, judged == Judged::magnitudes_dB);
     all.push_back(std::move(one));

@@ -70,8 +70,8 @@ Laplace::Local Laplace::local(const PersonAxis& person, const Eigen::Vector2d& c
   for (std::size_t i = 0; i < person.x.size(); ++i) {
     const double z = coefficients[0] + coefficients[1] * person.x[i];
     const double p =
-        std::clamp(person.guess + range * core(function_, z), kProbabilityFloor, 1 - kProbabilityFloor);
-    const double slope = range * core_derivative(function_, z);
+        std::clamp(person.guess + range * sigmoid(function_, z), kProbabilityFloor, 1 - kProbabilityFloor);
+    const double slope = range * sigmoid_derivative(function_, z);
     const double n = person.trials[i], k = person.positive[i];
     sum.log_likelihood += k * std::log(p) + (n - k) * std::log1p(-p);
     const Eigen::Vector2d row(1, person.x[i]);

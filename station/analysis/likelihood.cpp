@@ -40,13 +40,13 @@ Likelihood::Anchor Likelihood::anchor(const Theta& theta) const {
   if (!anchor_) return {};
   const double height = 1 - theta[3] - theta[2];
   const double inside = std::clamp((*anchor_ - theta[3]) / height, kProbabilityFloor, 1 - kProbabilityFloor);
-  const double z = core_inverse(function_, inside), slope = core_derivative(function_, z);
+  const double z = sigmoid_inverse(function_, inside), slope = sigmoid_derivative(function_, z);
   return {z, inside / height / slope, (inside - 1) / height / slope};
 }
 
 double Likelihood::probability(const Theta& theta, const Anchor& at, double u) const {
   const double z = std::exp(theta[1]) * (u - theta[0]) + at.z;
-  return std::clamp(theta[3] + (1 - theta[3] - theta[2]) * core(function_, z), kProbabilityFloor,
+  return std::clamp(theta[3] + (1 - theta[3] - theta[2]) * sigmoid(function_, z), kProbabilityFloor,
                     1 - kProbabilityFloor);
 }
 
@@ -63,7 +63,7 @@ double Likelihood::negative_log(const Theta& theta) const {
 std::array<double, 4> Likelihood::gradient_of_probability(const Theta& theta, const Anchor& at,
                                                           double u) const {
   const double rate = std::exp(theta[1]), height = 1 - theta[3] - theta[2], from = rate * (u - theta[0]);
-  const double f = core(function_, from + at.z), df = core_derivative(function_, from + at.z);
+  const double f = sigmoid(function_, from + at.z), df = sigmoid_derivative(function_, from + at.z);
   // In trials without a signal, `from` is minus infinity. The derivative with respect to the rate is then 0.
   std::array<double, 4> dp{-height * df * rate, df > 0 ? height * df * from : 0,
                            -f + height * df * at.dz_dlapse, 1 - f + height * df * at.dz_dguess};

@@ -54,7 +54,7 @@ class Likelihood {
     std::array<std::array<double, 4>, 4> information;
   };
   Local local(const Theta& theta) const;
-  /// The value of the standard variable z (see core()) at the level theta[0], and its derivatives with
+  /// The value of the standard variable z (see sigmoid()) at the level theta[0], and its derivatives with
   /// respect to lapse and guess.
   struct Anchor {
     double z = 0, dz_dlapse = 0, dz_dguess = 0;

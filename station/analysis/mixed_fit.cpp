@@ -10,8 +10,8 @@
 
 #include "station/analysis/fit_bounds.hpp"
 #include "station/analysis/laplace.hpp"
-#include "station/random/draws.hpp"
-#include "station/text/number.hpp"
+#include "station/core/draws.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::analysis {
 
@@ -153,7 +153,7 @@ struct LikelyTheta {
 /// says little, as at a variance of 0, is replaced by a scale from the size of the estimate.
 std::vector<LikelyTheta> likely_factors(Laplace& laplace, const MixedMinimum& found) {
   constexpr int draws_wanted = 150, freedom = 4;
-  random::Draws draws({1, random::Stream::bootstrap, 4000, 0, 0});
+  core::Draws draws({1, core::Stream::bootstrap, 4000, 0, 0});
   const double size =
       std::max({std::fabs(found.theta[2]), std::fabs(found.theta[3]), std::fabs(found.theta[4]), 0.1});
   Eigen::Vector3d scale;
@@ -245,7 +245,7 @@ void describe_group(const Scaled& data, const MixedMinimum& found, const Eigen::
       boost::math::quantile(boost::math::students_t(static_cast<double>(data.people.size()) - 1), 0.975);
   fit.threshold = threshold_of(b, errors, t, fit.options);
   if (!fit.threshold) {
-    fit.statements.push_back({"group-does-not-rise", texts::phrase("statement.group_falls")});
+    fit.statements.push_back({"group-does-not-rise", core::phrase("statement.group_falls")});
     return;
   }
   fit.slope = slope_of(b[1], fit.rate_se, t, fit.options.function);
@@ -256,7 +256,7 @@ void describe_group(const Scaled& data, const MixedMinimum& found, const Eigen::
   fit.threshold_sd = (level(u + sd) - level(u - sd)) / 2;
   const Eigen::Matrix2d scaled_random = random_factor(found.theta) * random_factor(found.theta).transpose();
   if (scaled_random.determinant() < kNoVariance * kNoVariance * scaled_random.trace())
-    fit.statements.push_back({"singular", texts::phrase("statement.singular")});
+    fit.statements.push_back({"singular", core::phrase("statement.singular")});
 }
 
 }  // namespace
@@ -266,7 +266,7 @@ MixedResult fit_mixed(const std::vector<PersonCounts>& data, const MixedOptions&
   if (people.people.size() < kFewestPeople)
     return {std::nullopt,
             {{"few-participants",
-              texts::phrase("statement.few_participants", {texts::plain(people.people.size())})}}};
+              core::phrase("statement.few_participants", {core::plain(people.people.size())})}}};
   const auto pooled = together(people, options);
   if (!pooled.parameters) return {std::nullopt, pooled.statements};
   const double rate = rate_from_slope(options.function, pooled.parameters->slope) * people.width;
@@ -281,7 +281,7 @@ MixedResult fit_mixed(const std::vector<PersonCounts>& data, const MixedOptions&
   fit.lapse = lapse, fit.log_likelihood = -found.negative_log;
   const auto covariance = covariance_of(found);
   if (!covariance || !std::isfinite(found.negative_log))
-    return {std::nullopt, {{"not-determined", texts::phrase("statement.group_undetermined")}}};
+    return {std::nullopt, {{"not-determined", core::phrase("statement.group_undetermined")}}};
   describe_group(people, found, *covariance, fit);
   add_people(people, found, *covariance, fit);
   return {std::move(fit), {}};

@@ -37,7 +37,7 @@ struct PooledPerson {
 };
 
 /// A psychometric function with random effects: participant i answers with the probability guess + (1 - guess
-/// - lapse) core(b0 + b0i + (b1 + b1i) u), where u is the level's axis_position() and (b0i, b1i) are normal
+/// - lapse) sigmoid(b0 + b0i + (b1 + b1i) u), where u is the level's axis_position() and (b0i, b1i) are normal
 /// with mean 0 and any covariance (Moscatelli, Mezzetti & Lacquaniti 2012). In the notation of lme4:
 /// `cbind(positive, trials - positive) ~ u + (1 + u | participant)`.
 struct MixedFit {

@@ -74,7 +74,7 @@ void PosteriorGrid::evaluate(const Box& box) {
   for (int t = 0; t < box[at_threshold].count; ++t)
     for (int r = 0; r < box[at_rate].count; ++r) {
       for (std::size_t i = 0; i < between.size(); ++i)
-        between[i] = core(function_, rate(r) * (counts_.u[i] - box[at_threshold].centre(t)));
+        between[i] = sigmoid(function_, rate(r) * (counts_.u[i] - box[at_threshold].centre(t)));
       add_log_likelihoods(between);
     }
 }
@@ -162,7 +162,7 @@ std::optional<Marginal> PosteriorGrid::marginal_of_crossing(double p) const {
       const double inside = (p - ends.low) / ends.range;
       auto& shift = shifts.emplace_back();
       if (!(inside > 0 && inside < 1)) continue;
-      shift = core_inverse(function_, inside) / rate(r);
+      shift = sigmoid_inverse(function_, inside) / rate(r);
       least = std::min(least, *shift), most = std::max(most, *shift);
     }
   if (least > most) return std::nullopt;
@@ -191,7 +191,7 @@ Marginal PosteriorGrid::marginal_of_probability(double u) const {
   const double* weight = weight_.data();
   for (int t = 0; t < box_[at_threshold].count; ++t)
     for (int r = 0; r < box_[at_rate].count; ++r) {
-      const double between = core(function_, rate(r) * (u - box_[at_threshold].centre(t)));
+      const double between = sigmoid(function_, rate(r) * (u - box_[at_threshold].centre(t)));
       for (const auto& ends : ends_) {
         const auto cell = static_cast<int>((ends.low + ends.range * between) * kProbabilityCells);
         mass[static_cast<std::size_t>(std::clamp(cell, 0, kProbabilityCells - 1))] += *weight++;

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "station/text/number.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::analysis {
 
@@ -17,7 +17,7 @@ void check(int successes, int trials, double confidence) {
     throw std::invalid_argument("proportion " + std::to_string(successes) + " of " + std::to_string(trials) +
                                 ": there must be at least one trial, and no more successes than trials");
   if (!(confidence > 0 && confidence < 1))
-    throw std::invalid_argument("confidence " + text::number(confidence) +
+    throw std::invalid_argument("confidence " + core::number(confidence) +
                                 ": it must be above 0 and below 1");
 }
 
@@ -31,7 +31,7 @@ double normal_density(double z) {
 
 double normal_quantile(double p) {
   if (!(p > 0 && p < 1))
-    throw std::invalid_argument("normal quantile of " + text::number(p) + ": it must be above 0 and below 1");
+    throw std::invalid_argument("normal quantile of " + core::number(p) + ": it must be above 0 and below 1");
   return -std::numbers::sqrt2 * boost::math::erfc_inv(2 * p);
 }
 

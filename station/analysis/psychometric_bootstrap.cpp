@@ -7,7 +7,7 @@
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/psychometric_fit.hpp"
 #include "station/analysis/quantile.hpp"
-#include "station/random/draws.hpp"
+#include "station/core/draws.hpp"
 
 namespace turnpoint::analysis {
 
@@ -33,8 +33,8 @@ struct Replicator {
     return {options.function, options.guess, of, within, anchor};
   }
 
-  AxisCounts draw(const random::Key& key) const {
-    random::Draws draws(key);
+  AxisCounts draw(const core::DrawKey& key) const {
+    core::Draws draws(key);
     AxisCounts drawn = counts;
     for (std::size_t i = 0; i < drawn.u.size(); ++i) {
       drawn.positive[i] = 0;
@@ -178,7 +178,7 @@ Replicates replicate(const Replicator& base, const BootstrapOptions& options, do
   Replicates result;
   result.ratios.resize(quantities.size());
   for (int i = 0; i < options.replicates; ++i) {
-    const auto drawn = base.draw({options.seed, random::Stream::bootstrap, options.stream, 0, i});
+    const auto drawn = base.draw({options.seed, core::Stream::bootstrap, options.stream, 0, i});
     const auto fitted = base.fit(drawn);
     result.thetas.push_back(fitted.theta);
     result.beyond += 2 * (fitted.negative_log - saturated(drawn)) >= deviance - 1e-9 ? 1 : 0;
@@ -199,7 +199,7 @@ PsychometricIntervals bootstrap(const PsychometricFit& fit, const BootstrapOptio
   PsychometricIntervals result;
   result.confidence = options.confidence;
   if (!fit.parameters) {
-    result.statements.push_back({"no-fit", texts::phrase("statement.no_fit")});
+    result.statements.push_back({"no-fit", core::phrase("statement.no_fit")});
     return result;
   }
   const auto function = fit.options.function;

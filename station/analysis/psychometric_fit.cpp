@@ -6,11 +6,11 @@
 #include <stdexcept>
 
 #include "station/analysis/fit_bounds.hpp"
-#include "station/text/number.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::analysis {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
@@ -19,7 +19,7 @@ void check(const std::vector<LevelCount>& data, const FitOptions& options) {
     if (!(std::isfinite(point.level) || point.level == kNoise) || point.trials < 0 || point.positive < 0 ||
         point.positive > point.trials)
       throw std::invalid_argument(
-          "level " + text::number(point.level) + ": " + std::to_string(point.positive) + " of " +
+          "level " + core::number(point.level) + ": " + std::to_string(point.positive) + " of " +
           std::to_string(point.trials) +
           " trials; the level must be finite, and there cannot be more positive answers than trials");
   const auto inside = [](double low, double high, double most) {
@@ -32,7 +32,7 @@ void check(const std::vector<LevelCount>& data, const FitOptions& options) {
         "bounds of lapse and guess: they must meet 0 <= low <= high, with a lapse of at most 0.5, a guess of "
         "at most 0.9, and a sum below 1");
   if (options.guess == Guess::fixed && !(options.guess_value >= 0 && options.guess_value < 1))
-    throw std::invalid_argument("guess " + text::number(options.guess_value) +
+    throw std::invalid_argument("guess " + core::number(options.guess_value) +
                                 ": it must be at least 0 and below 1");
 }
 
@@ -122,7 +122,7 @@ void note_bounds(PsychometricFit& fit, const Theta& theta, const ThetaBounds& bo
   if (rate_low) fit.statements.push_back({"slope-bound", phrase("statement.shallow")});
   if (fit.at_bound.lapse_high)
     fit.statements.push_back(
-        {"lapse-bound", phrase("statement.lapse_bound", {plain(text::number(bounds.high[2]))})});
+        {"lapse-bound", phrase("statement.lapse_bound", {plain(core::number(bounds.high[2]))})});
 }
 
 }  // namespace
@@ -140,7 +140,7 @@ std::optional<Statement> unusable(const std::vector<LevelCount>& data, const Fit
     return Statement{"too-few-trials",
                      phrase("statement.too_few_trials", {plain(trials), plain(options.minimum_trials)})};
   const double z = trend(axis_counts(data, options.function, options.scale));
-  if (z < -1.645) return Statement{"reversed", phrase("statement.reversed", {plain(text::number(z, 3))})};
+  if (z < -1.645) return Statement{"reversed", phrase("statement.reversed", {plain(core::number(z, 3))})};
   return std::nullopt;
 }
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "station/analysis/proportion.hpp"
-#include "station/text/number.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::analysis {
 
@@ -13,7 +13,7 @@ namespace {
 constexpr double kPerDecibel = std::numbers::ln10 / 20;
 }
 
-double core(Function function, double z) {
+double sigmoid(Function function, double z) {
   switch (function) {
     case Function::weibull:
       return -std::expm1(-std::exp(z));
@@ -25,7 +25,7 @@ double core(Function function, double z) {
   return 1 / (1 + std::exp(-z));
 }
 
-double core_derivative(Function function, double z) {
+double sigmoid_derivative(Function function, double z) {
   switch (function) {
     case Function::weibull:
       return z > 700 ? 0 : std::exp(z - std::exp(z));
@@ -38,9 +38,9 @@ double core_derivative(Function function, double z) {
   return p * (1 - p);
 }
 
-double core_inverse(Function function, double p) {
+double sigmoid_inverse(Function function, double p) {
   if (!(p > 0 && p < 1))
-    throw std::invalid_argument("inverse of a psychometric function at " + text::number(p) +
+    throw std::invalid_argument("inverse of a psychometric function at " + core::number(p) +
                                 ": it must be above 0 and below 1");
   switch (function) {
     case Function::weibull:
@@ -56,7 +56,7 @@ double core_inverse(Function function, double p) {
 double axis_position(Function function, Scale scale, double level) {
   if (scale == Scale::linear) return level;
   if (!(level > 0))
-    throw std::invalid_argument("level " + text::number(level) + " on a log10 scale: it must be above 0");
+    throw std::invalid_argument("level " + core::number(level) + " on a log10 scale: it must be above 0");
   return (function == Function::weibull ? 20 : 1) * std::log10(level);
 }
 
@@ -93,14 +93,14 @@ double probability(Function function, Scale scale, const Psychometric& parameter
   const double z =
       rate_from_slope(function, parameters.slope) *
       (axis_position(function, scale, level) - axis_position(function, scale, parameters.threshold));
-  return parameters.guess + (1 - parameters.guess - parameters.lapse) * core(function, z);
+  return parameters.guess + (1 - parameters.guess - parameters.lapse) * sigmoid(function, z);
 }
 
 std::optional<double> level_at(Function function, Scale scale, const Psychometric& parameters, double p) {
   const double inside = (p - parameters.guess) / (1 - parameters.guess - parameters.lapse);
   if (!(inside > 0 && inside < 1)) return std::nullopt;
   const double u = axis_position(function, scale, parameters.threshold) +
-                   core_inverse(function, inside) / rate_from_slope(function, parameters.slope);
+                   sigmoid_inverse(function, inside) / rate_from_slope(function, parameters.slope);
   return level_from_axis(function, scale, u);
 }
 

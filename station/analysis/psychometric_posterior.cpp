@@ -6,7 +6,7 @@
 #include <string>
 
 #include "station/analysis/posterior_grid.hpp"
-#include "station/text/number.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::analysis {
 
@@ -27,10 +27,10 @@ void check(const Prior& prior) {
   };
   if (!rises(prior.threshold_low, prior.threshold_high) || !rises(prior.slope_low, prior.slope_high) ||
       !(prior.slope_low > 0) || !(prior.falling_share >= 0 && prior.falling_share <= 0.5))
-    throw std::invalid_argument("prior: threshold " + text::number(prior.threshold_low) + " to " +
-                                text::number(prior.threshold_high) + ", slope " +
-                                text::number(prior.slope_low) + " to " + text::number(prior.slope_high) +
-                                ", falling over " + text::number(prior.falling_share) +
+    throw std::invalid_argument("prior: threshold " + core::number(prior.threshold_low) + " to " +
+                                core::number(prior.threshold_high) + ", slope " +
+                                core::number(prior.slope_low) + " to " + core::number(prior.slope_high) +
+                                ", falling over " + core::number(prior.falling_share) +
                                 "; low must be below high, a slope above 0, and the share at most 0.5");
 }
 
@@ -73,7 +73,7 @@ class Reading {
     result_.fit.parameters = parameters;
     const double u = axis_position(options_.function, options_.scale, parameters.threshold);
     if (u < counts_.lowest() || u > counts_.u.back())
-      result_.fit.statements.push_back({"extrapolated", texts::phrase("statement.extrapolated")});
+      result_.fit.statements.push_back({"extrapolated", core::phrase("statement.extrapolated")});
   }
 
   void read_intervals() {
@@ -117,11 +117,11 @@ class Reading {
 
   /// `name` is the key of the parameter's name.
   void say_undetermined(const std::string& code, const char* name, double low, double high) {
-    using texts::phrase, texts::plain;
+    using core::phrase, core::plain;
     result_.fit.statements.push_back(
         {code + "-undetermined",
          phrase("statement.undetermined",
-                {plain(trials_), phrase(name), plain(text::number(low, 3)), plain(text::number(high, 3))})});
+                {plain(trials_), phrase(name), plain(core::number(low, 3)), plain(core::number(high, 3))})});
   }
 
   bool off_centre(Parameter parameter) const {
@@ -132,7 +132,7 @@ class Reading {
 
   void say_off_centre(const std::string& code, const char* name) {
     result_.fit.statements.push_back(
-        {code + "-off-centre", texts::phrase("statement.off_centre", {texts::phrase(name)})});
+        {code + "-off-centre", core::phrase("statement.off_centre", {core::phrase(name)})});
   }
 
   template <class Map>
@@ -163,8 +163,8 @@ class Reading {
 
 Prior prior_around(Function function, Scale scale, const Range& levels, const std::optional<Range>& slopes) {
   if (!(levels.first < levels.second))
-    throw std::invalid_argument("prior: levels from " + text::number(levels.first) + " to " +
-                                text::number(levels.second) + "; the first must be below the second");
+    throw std::invalid_argument("prior: levels from " + core::number(levels.first) + " to " +
+                                core::number(levels.second) + "; the first must be below the second");
   const double low = axis_position(function, scale, levels.first),
                high = axis_position(function, scale, levels.second), range = high - low;
   double rate_low = kShallow / range, rate_high = kSteep / range;

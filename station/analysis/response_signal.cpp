@@ -165,24 +165,24 @@ SpeedAccuracyCurve curve_of(const std::string& condition,
                   [](const auto& levels) { return levels.size() < 2; }))
     curve.by_level.clear();
   if (curve.points.size() < kFewestLags)
-    curve.statements.push_back({"lags-too-few", texts::phrase("statement.lags_too_few")});
+    curve.statements.push_back({"lags-too-few", core::phrase("statement.lags_too_few")});
   return curve;
 }
 
 /// Says which parameters the answers do not determine.
 void name_missing(SpeedAccuracyCurve& curve) {
-  texts::Phrase missing;
+  core::Phrase missing;
   const auto name = [&missing](const auto& estimate, const char* what) {
     if (estimate) return;
-    if (!missing.values.empty()) missing.values.push_back(texts::plain(", "));
-    missing.values.push_back(texts::phrase(what));
+    if (!missing.values.empty()) missing.values.push_back(core::plain(", "));
+    missing.values.push_back(core::phrase(what));
   };
   name(curve.asymptote, "statement.asymptote");
   name(curve.rate_per_s, "statement.rate");
   name(curve.intercept_s, "statement.intercept");
   if (!missing.values.empty())
     curve.statements.push_back(
-        {"curve-undetermined", texts::phrase("statement.curve_undetermined", {missing})});
+        {"curve-undetermined", core::phrase("statement.curve_undetermined", {missing})});
 }
 
 /// The p value of the model in which both curves share this parameter.

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "station/analysis/student.hpp"
-#include "station/text/number.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::analysis {
 
@@ -53,17 +53,17 @@ void estimate(Settings& s, const std::vector<double>& below, const std::vector<d
   s.side_difference = student_difference(below, above);
   if (s.values.size() < kFewest) {
     s.statements.push_back(
-        {"few-settings", texts::phrase("statement.few_settings", {texts::plain(s.values.size())})});
+        {"few-settings", core::phrase("statement.few_settings", {core::plain(s.values.size())})});
     return;
   }
   s.mean = student_mean(s.values);
   s.sd = scatter_of(s.values);
-  if (!s.sd) s.statements.push_back({"equal-settings", texts::phrase("statement.equal_settings")});
+  if (!s.sd) s.statements.push_back({"equal-settings", core::phrase("statement.equal_settings")});
   s.start_slope = slope_on_starts(s);
   if (s.start_slope && s.start_slope->interval.low > 0)
     s.statements.push_back(
-        {"follows-start", texts::phrase("statement.follows_start",
-                                        {texts::plain(text::number(100 * s.start_slope->value, 2))})});
+        {"follows-start", core::phrase("statement.follows_start",
+                                       {core::plain(core::number(100 * s.start_slope->value, 2))})});
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 #include "station/analysis/diffusion.hpp"
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/quantile.hpp"
-#include "station/random/draws.hpp"
-#include "station/text/number.hpp"
+#include "station/core/draws.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::analysis {
 
@@ -92,8 +92,8 @@ std::vector<Measures> measure(const std::vector<Group>& groups) {
 }
 
 std::vector<Group> drawn(const std::vector<Group>& groups, const TimeExclusion& rule,
-                         const random::Key& key) {
-  random::Draws draws(key);
+                         const core::DrawKey& key) {
+  core::Draws draws(key);
   std::vector<Group> result(groups.size());
   for (std::size_t g = 0; g < groups.size(); ++g) {
     for (const auto& cell : groups[g].answered) {
@@ -250,10 +250,10 @@ void fill_cells(Group& group, InstructionResult& result, int stream, const Trade
   if (result.timeouts > 0.05 * result.presented)
     result.statements.push_back(
         {"timeouts",
-         texts::phrase("statement.timeouts",
-                       {texts::plain(text::number(100.0 * result.timeouts / result.presented, 3))})});
+         core::phrase("statement.timeouts",
+                       {core::plain(core::number(100.0 * result.timeouts / result.presented, 3))})});
   if (result.caf.empty())
-    result.statements.push_back({"caf-too-few", texts::phrase("statement.caf_too_few")});
+    result.statements.push_back({"caf-too-few", core::phrase("statement.caf_too_few")});
 }
 
 void set_estimates(InstructionResult& result, const Measures& values,
@@ -370,11 +370,11 @@ Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options)
     if (entry.check) checks.push_back(&*entry.check);
   result.model_p = share_as_bad(checks);
   if (result.model_p && *result.model_p < kMisfit)
-    result.statements.push_back({"diffusion-misfit", texts::phrase("statement.diffusion_misfit")});
+    result.statements.push_back({"diffusion-misfit", core::phrase("statement.diffusion_misfit")});
   Sessions sessions{measure(groups), {}};
   for (int i = 0; i < options.replicates; ++i)
     sessions.replicates.push_back(
-        measure(drawn(groups, options.exclusion, {options.seed, random::Stream::bootstrap, 1000, 0, i})));
+        measure(drawn(groups, options.exclusion, {options.seed, core::Stream::bootstrap, 1000, 0, i})));
   for (std::size_t g = 0; g < groups.size(); ++g)
     set_estimates(result.instructions[g], sessions.values[g], sessions.of(g), options);
   add_differences(sessions, groups, options, result);

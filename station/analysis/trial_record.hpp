@@ -3,13 +3,13 @@
 #include <string>
 #include <vector>
 
-#include "station/terms/trial.hpp"
-#include "station/texts/texts.hpp"
+#include "station/core/texts.hpp"
+#include "station/core/trial.hpp"
 
 namespace turnpoint::analysis {
 
-using terms::Outcome;
-using terms::TrialType;
+using core::Outcome;
+using core::TrialType;
 
 /// The side from which a slider started: one of the protocol's starts below, or one of its starts above;
 /// `none` if the trial has no slider or its start is in neither list.
@@ -61,7 +61,7 @@ std::vector<std::string> conditions_of(const std::vector<TrialRecord>& trials,
 /// A remark that the report shows beside a number or instead of it: a stable code and a sentence for people.
 struct Statement {
   std::string code;
-  texts::Phrase text;
+  core::Phrase text;
 };
 
 /// Both ends of an interval at a given confidence.

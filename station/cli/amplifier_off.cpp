@@ -1,7 +1,7 @@
 #include "station/cli/run.hpp"
-#include "station/lines/amplifier.hpp"
+#include "station/io/amplifier.hpp"
 #include "station/rig/rig.hpp"
-#include "station/setup/places.hpp"
+#include "station/session/places.hpp"
 
 namespace turnpoint::cli {
 
@@ -13,9 +13,9 @@ void add_amplifier_off(CommandLine& app, Context& context) {
   auto request = add_station_options(*command);
   command->footer("Example: turnpoint amplifier-off");
   command->callback([request, &context] {
-    const auto path = setup::rig_or_default(request->rig, context.err);
+    const auto path = session::rig_or_default(request->rig, context.err);
     const auto uri = rig::load(path).amplifier_uri;
-    lines::force_amplifier_off(uri);
+    io::force_amplifier_off(uri);
     context.out << "amplifier off: " << uri << ", of " << path << "\n";
   });
 }

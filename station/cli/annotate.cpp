@@ -8,7 +8,7 @@
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/shared_options.hpp"
-#include "station/desk/report_data.hpp"
+#include "station/view/report_data.hpp"
 
 namespace turnpoint::cli {
 
@@ -19,7 +19,7 @@ struct Options {
 };
 
 void annotate(const Options& options, Context& context) {
-  const auto id = options.session.empty() ? desk::session_to_report(options.database, {}) : options.session;
+  const auto id = options.session.empty() ? view::session_to_report(options.database, {}) : options.session;
   store::annotate(options.database, id, options.text);
   if (context.json)
     context.out << Json{{"session_id", id}, {"text", options.text}}.dump(2, ' ', false, kInvalidBytes)

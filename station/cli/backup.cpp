@@ -8,7 +8,7 @@
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/shared_options.hpp"
-#include "station/desk/choices.hpp"
+#include "station/view/choices.hpp"
 
 namespace turnpoint::cli {
 
@@ -61,7 +61,7 @@ void drill(const Options& options, Context& context) {
   fmt::print(
       context.out,
       "the backup {} ({}) was restored into a temporary file, which was checked and removed again\n",
-      drill.from, desk::age_in_words(drill.age_s));
+      drill.from, view::age_in_words(drill.age_s));
   fmt::print(
       context.out,
       "the backup contains {} sessions and {} trials; the database contains {} sessions and {} trials\n",

@@ -8,20 +8,20 @@
 #include <string>
 
 #include "physics/boundary_budget.hpp"
-#include "station/calibration/apply.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/run.hpp"
 #include "station/cli/screens.hpp"
 #include "station/cli/shared_options.hpp"
+#include "station/core/number.hpp"
 #include "station/maintenance/calibrate.hpp"
 #include "station/maintenance/force_weights.hpp"
 #include "station/maintenance/pick_up_sweep.hpp"
+#include "station/rig/apply.hpp"
 #include "station/rig/rig.hpp"
 #include "station/session/session.hpp"
 #include "station/session/stage.hpp"
 #include "station/system/write_file.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::cli {
 
@@ -48,9 +48,9 @@ void calibrate_forces(const SensorOptions& options, const rig::Rig& rig, Context
 
 namespace calibrate_sensors_command {
 
-using text::number;
+using core::number;
 
-Json to_json(const calibration::PickUp& pick_up) {
+Json to_json(const rig::PickUp& pick_up) {
   Json json{{"channel", pick_up.response.channel},
             {"drive_channel", pick_up.response.drive_channel},
             {"response_sd", json_number(pick_up.response_sd)},
@@ -70,7 +70,7 @@ Json to_json(const calibration::PickUp& pick_up) {
   return json;
 }
 
-void print(std::ostream& out, const calibration::PickUp& pick_up) {
+void print(std::ostream& out, const rig::PickUp& pick_up) {
   const auto& points = pick_up.response.points;
   fmt::print(
       out,
@@ -128,12 +128,11 @@ void calibrate_pick_ups(const SensorOptions& options, const rig::Rig& rig, Conte
         "and add --arm");
   maintenance::PickUpOptions plan;
   plan.full_scale = options.full_scale, plan.table_full_scale = options.table_full_scale;
-  plan.sensor = calibration::find_sensor(options.sensor).value();
+  plan.sensor = rig::find_sensor(options.sensor).value();
   plan.vibrometer = options.vibrometer, plan.accelerometer = options.accelerometer;
   plan.instrument_sd = 1e-2 * options.instrument_percent;
   const auto made = maintenance::with_pick_ups(rig, maintenance::calibrate_pick_ups(rig, plan), options.out);
-  const auto out =
-      options.out.empty() ? calibration::file_for(options.rig_path, calibration::today()) : options.out;
+  const auto out = options.out.empty() ? rig::file_for(options.rig_path, rig::today()) : options.out;
   maintenance::write_calibration(made, rig, out);
   if (context.json) {
     Json json{{"file", out}, {"pick_ups", Json::array()}};
@@ -147,14 +146,14 @@ void calibrate_pick_ups(const SensorOptions& options, const rig::Rig& rig, Conte
 
 namespace calibrate_forces_command {
 
+using core::number;
 using maintenance::ForceResult;
-using text::number;
 
 /// Asks the operator to place a weight. The operator types an empty line when the weight stands, or "s" to
 /// leave this step out. Returns false for "s".
 bool stands(std::istream& in, std::ostream& out, const maintenance::WeightStep& step) {
-  if (!step.remark.empty() && step.tare) fmt::print(out, "{}\n", texts::say(step.remark, "en"));
-  fmt::print(out, "{} {} (s: leave this step out) ", texts::say(step.text(), "en"),
+  if (!step.remark.empty() && step.tare) fmt::print(out, "{}\n", core::say(step.remark, "en"));
+  fmt::print(out, "{} {} (s: leave this step out) ", core::say(step.text(), "en"),
              step.tap == maintenance::Tap::none ? "Then press Enter" : "Enter begins the reading");
   out.flush();
   std::string line;
@@ -181,7 +180,7 @@ void print(std::ostream& out, const ForceResult& result) {
                step.position_mm, step.pull_g, 1e3 * rest.normal_N, 1e3 * rest.lateral_N, rest.position_mm);
   }
   for (const auto& step : result.repeated)
-    fmt::print(out, "weighed again: {}\n", texts::say(step.name(), "en"));
+    fmt::print(out, "weighed again: {}\n", core::say(step.name(), "en"));
   const auto share = [](double misfit) { return number(misfit, 2); };
   fmt::print(
       out,
@@ -221,7 +220,7 @@ Json to_json(const ForceResult& result, const std::string& out) {
               {"friction", json_number(result.sd.friction)}}},
             {"repeated", Json::array()},
             {"weights", Json::array()}};
-  for (const auto& step : result.repeated) json["repeated"].push_back(texts::say(step.name(), "en"));
+  for (const auto& step : result.repeated) json["repeated"].push_back(core::say(step.name(), "en"));
   for (std::size_t k = 0; k < result.steps.size(); ++k)
     json["weights"].push_back({{"mass_g", result.steps[k].mass_g},
                                {"pull_g", result.steps[k].pull_g},
@@ -239,7 +238,7 @@ void calibrate_forces(const SensorOptions& options, const rig::Rig& rig, Context
   const auto bridges = maintenance::open_bridges(rig);
   const auto result = maintenance::weigh(
       rig, *bridges, [&](const auto& step) { return stands(std::cin, context.err, step); },
-      [&](const auto& why) { return again(std::cin, context.err, texts::say(why, "en")); });
+      [&](const auto& why) { return again(std::cin, context.err, core::say(why, "en")); });
   const auto out = maintenance::write_forces(rig, result.cells, options.out);
   if (context.json) {
     context.out << to_json(result, out).dump(2, ' ', false, kInvalidBytes) << "\n";
@@ -251,8 +250,8 @@ void calibrate_forces(const SensorOptions& options, const rig::Rig& rig, Context
 
 namespace calibrate_command {
 
-using calibration::BoundaryFit;
-using text::number;
+using core::number;
+using rig::BoundaryFit;
 
 struct Options {
   std::string rig, out, plots, edge = "p50", note, boundaries, friction, sound, sweep_out;
@@ -265,8 +264,8 @@ struct Options {
   maintenance::SweepOptions plan;
 };
 
-calibration::Measurements measurements_of(const Options& options) {
-  calibration::Measurements measurements;
+rig::Measurements measurements_of(const Options& options) {
+  rig::Measurements measurements;
   for (const auto& sweep : options.sweeps) {
     const auto equals = sweep.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == sweep.size())
@@ -325,7 +324,7 @@ void print(std::ostream& out, const BoundaryFit& fit) {
   }
 }
 
-Json to_json(const calibration::Calibration& c, const std::string& out, const std::string& plots) {
+Json to_json(const rig::Calibration& c, const std::string& out, const std::string& plots) {
   Json json{{"file", out}, {"plots", plots}, {"made_on", c.made_on}, {"valid_days", c.valid_days}};
   json["transducers"] = Json::array();
   for (const auto& t : c.transducers)
@@ -338,11 +337,11 @@ Json to_json(const calibration::Calibration& c, const std::string& out, const st
   return json;
 }
 
-void print(std::ostream& out, const calibration::Calibration& c) {
+void print(std::ostream& out, const rig::Calibration& c) {
   for (const auto& t : c.transducers)
     fmt::print(out, "{}: usable from {} to {} kHz (within {} dB), residual {} dB\n", t.name,
                number(t.response.low_Hz * 1e-3, 5), number(t.response.high_Hz * 1e-3, 5),
-               number(calibration::equalisation_cap_dB), number(t.response.residual_dB, 2));
+               number(rig::equalisation_cap_dB), number(t.response.residual_dB, 2));
   if (c.quality_factor) fmt::print(out, "quality factor {}\n", number(*c.quality_factor, 3));
   if (c.boundary) print(out, *c.boundary);
   if (c.friction)
@@ -366,7 +365,7 @@ void sweep(const Options& options, const rig::Rig& rig, Context& context) {
   fmt::print(context.err, "{} tones, {} s, to {}\n", steps.size(), number(length_s, 4), options.sweep_out);
 }
 
-Json delay_json(const std::optional<calibration::Delay>& delay) {
+Json delay_json(const std::optional<rig::Delay>& delay) {
   if (!delay) return {};
   return {{"median_s", delay->median_s},
           {"jitter_s", delay->sd_s},
@@ -377,15 +376,14 @@ Json delay_json(const std::optional<calibration::Delay>& delay) {
 void calibrate_panel(const Options& options, const rig::Rig& rig, Context& context) {
   const auto instead = "the latency of a touch panel can be measured on its screen only";
   if (!context.screens) return become_ui(context, instead);
-  const auto reference = options.reference == "photodiode" ? calibration::LatencyReference::photodiode
-                                                           : calibration::LatencyReference::button;
+  const auto reference =
+      options.reference == "photodiode" ? rig::LatencyReference::photodiode : rig::LatencyReference::button;
   const auto measured = with_screen(instead, [&] {
     return context.screens->latency({options.rig, reference});
   });
   if (!measured) throw std::runtime_error("calibrate --panel: no result was accepted, so no file is written");
   const auto made = maintenance::with_panel(rig, *measured, options.out);
-  const auto out =
-      options.out.empty() ? calibration::file_for(options.rig, calibration::today()) : options.out;
+  const auto out = options.out.empty() ? rig::file_for(options.rig, rig::today()) : options.out;
   maintenance::write_calibration(made, rig, out);
   if (context.json) {
     const Json json{{"file", out},
@@ -395,7 +393,7 @@ void calibrate_panel(const Options& options, const rig::Rig& rig, Context& conte
     context.out << json.dump(2, ' ', false, kInvalidBytes) << "\n";
     return;
   }
-  const auto say = [&](const char* what, const std::optional<calibration::Delay>& delay) {
+  const auto say = [&](const char* what, const std::optional<rig::Delay>& delay) {
     if (delay)
       fmt::print(context.out, "{}: median {} ms, jitter (SD) {} ms, {} taps, {} unmatched\n", what,
                  number(1e3 * delay->median_s, 4), number(1e3 * delay->sd_s, 3), delay->pairs,
@@ -424,11 +422,11 @@ void calibrate(const Options& options, Context& context) {
   const auto measurements = measurements_of(options);
   auto made = maintenance::calibrate(rig, measurements, options.valid_days, options.note);
   maintenance::keep_devices(rig, made, options.out);
-  const auto out = options.out.empty() ? calibration::file_for(options.rig, made.made_on) : options.out;
+  const auto out = options.out.empty() ? rig::file_for(options.rig, made.made_on) : options.out;
   const auto plots = options.plots.empty() ? out + ".svg" : options.plots;
   if (plots == out) throw UsageError("calibrate: --plots and the calibration file must be two files: " + out);
   static_cast<void>(maintenance::usable_toml(made, rig));  // nothing is written if this throws
-  system::write_file(plots, plot::render(maintenance::calibration_figure(made, measurements)));
+  system::write_file(plots, report::render(maintenance::calibration_figure(made, measurements)));
   maintenance::write_calibration(made, rig, out);
   if (context.json) {
     context.out << to_json(made, out, plots).dump(2, ' ', false, kInvalidBytes) << "\n";

@@ -10,20 +10,20 @@
 #include "station/cli/long_work.hpp"
 #include "station/cli/shared_options.hpp"
 #include "station/cli/sound.hpp"
-#include "station/programs/programs.hpp"
+#include "station/core/number.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/protocol/triggers.hpp"
-#include "station/setup/places.hpp"
-#include "station/setup/prepare.hpp"
-#include "station/simulation/check.hpp"
+#include "station/rehearsal/check.hpp"
+#include "station/session/places.hpp"
+#include "station/session/prepare.hpp"
+#include "station/session/programs.hpp"
 #include "station/system/fonts.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::cli {
 
 namespace check_command {
 
-using text::number;
+using core::number;
 
 struct Options {
   std::string protocol, rig, calibration;
@@ -31,18 +31,18 @@ struct Options {
   bool progress = false;
 };
 
-Json problems_json(const std::vector<text::Problem>& problems) {
+Json problems_json(const std::vector<core::Problem>& problems) {
   Json list = Json::array();
   for (const auto& problem : problems)
     list.push_back({{"file", problem.place.file},
                     {"line", problem.place.line > 0 ? Json(problem.place.line) : Json(nullptr)},
                     {"column", problem.place.line > 0 ? Json(problem.place.column) : Json(nullptr)},
-                    {"what", texts::say(problem.what, "en")},
-                    {"allowed", texts::say(problem.allowed, "en")}});
+                    {"what", core::say(problem.what, "en")},
+                    {"allowed", core::say(problem.allowed, "en")}});
   return list;
 }
 
-Json spread_json(const simulation::Spread& spread) {
+Json spread_json(const rehearsal::Spread& spread) {
   return {{"low", json_number(spread.low)},
           {"median", json_number(spread.median)},
           {"high", json_number(spread.high)},
@@ -87,7 +87,7 @@ Extremes extremes_of(const protocol::Survey& survey) {
   return found;
 }
 
-Json to_json(const simulation::Check& check, const std::string& signal) {
+Json to_json(const rehearsal::Check& check, const std::string& signal) {
   Json blocks = Json::array(), cues = Json::array(), triggers = Json::array();
   for (const auto& code : check.triggers)
     triggers.push_back({{"event", protocol::name(code.event)},
@@ -154,7 +154,7 @@ Json to_json(const simulation::Check& check, const std::string& signal) {
       {"defaults", {{"protocol", check.protocol_defaults}, {"rig", check.rig_defaults}}}};
 }
 
-std::string range(const simulation::Spread& spread, double unit) {
+std::string range(const rehearsal::Spread& spread, double unit) {
   const auto shown = [&](double value) { return number(std::round(value / unit * 10) / 10, 4); };
   const auto low = shown(spread.low), median = shown(spread.median), high = shown(spread.high);
   return low == high ? median : median + " (" + low + " to " + high + ")";
@@ -167,7 +167,7 @@ std::string between(double least, double most) {
                                          : fmt::format("{} to {}", percent(least), percent(most));
 }
 
-void print_cues(std::ostream& out, const simulation::CueGuard& cues) {
+void print_cues(std::ostream& out, const rehearsal::CueGuard& cues) {
   if (cues.stopped)
     fmt::print(out,
                "Cues: stopped after {} of them; it is not known whether the others give the answer away\n",
@@ -200,7 +200,7 @@ void print_cues(std::ostream& out, const simulation::CueGuard& cues) {
              between(least, most), cues.reports.size());
 }
 
-void print(std::ostream& out, const simulation::Check& check, const std::string& path) {
+void print(std::ostream& out, const rehearsal::Check& check, const std::string& path) {
   const bool known = check.cues.not_compared.empty() && !check.cues.stopped;
   fmt::print(out, "{} {} on \"{}\": {}\n", path, known ? "is good" : "can run", check.rig_name, check.title);
   for (const auto& line : check.measures) fmt::print(out, "Measures in {}\n", line);
@@ -259,20 +259,20 @@ void print(std::ostream& out, const simulation::Check& check, const std::string&
 }
 
 void check(const Options& options, Context& context) {
-  const auto rig = setup::rig_or_default(options.rig, context.err);
+  const auto rig = session::rig_or_default(options.rig, context.err);
   std::optional<rig::Rig> calibrated;
   const auto load_rig = [&](const std::string& path) {
-    calibrated = setup::calibrated_rig(path, options.calibration, context.err);
+    calibrated = session::calibrated_rig(path, options.calibration, context.err);
     return *calibrated;
   };
   LongWork work(options.progress);
-  simulation::CheckOptions wanted{options.sessions, true, true, load_rig, system::drawable};
+  rehearsal::CheckOptions wanted{options.sessions, true, true, load_rig, system::drawable};
   wanted.steps.finish = work.stop();
-  wanted.try_programs = programs::problems_of;
+  wanted.try_programs = session::problems_of;
   wanted.steps.progress = [&work](const char* what, int done, int of) { work.show(what, done, of); };
-  simulation::Check result;
+  rehearsal::Check result;
   try {
-    result = simulation::check(options.protocol, rig, wanted);
+    result = rehearsal::check(options.protocol, rig, wanted);
   } catch (const protocol::Abandoned&) {
     fmt::print(context.err, "turnpoint: stopped by {} while the scenes were planned; nothing was computed\n",
                work.end(context));
@@ -282,9 +282,9 @@ void check(const Options& options, Context& context) {
   if (result.problems.empty())
     for (const auto& name : rig::unproven_transducers(calibrated.value()))
       result.notes.push_back({{rig, 0, 0},
-                              texts::plain("no pick-up is calibrated for the transducer \"" + name +
-                                           "\", so its stimuli will be unproven"),
-                              texts::plain("add [[pickup]] to the calibration")});
+                              core::plain("no pick-up is calibrated for the transducer \"" + name +
+                                          "\", so its stimuli will be unproven"),
+                              core::plain("add [[pickup]] to the calibration")});
   if (!result.problems.empty()) context.exit_code = 2;
   for (const auto& problem : result.problems) fmt::print(context.err, "{}\n", format(problem));
   for (const auto& warning : result.warnings) fmt::print(context.err, "warning: {}\n", format(warning));
@@ -312,7 +312,7 @@ void add_check(CommandLine& app, Context& context) {
       ->add_option("--sessions", options->sessions,
                    "Number of sessions to simulate in order to predict trials and duration; 0 for none; by "
                    "default as many as are needed to know both to 3 %")
-      ->check(range(0, simulation::kMostSessions));
+      ->check(range(0, rehearsal::kMostSessions));
   add_progress(*command, options->progress);
   add_json(*command, context);
   command->footer("Example: turnpoint check demo");

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "station/cli/command_line.hpp"
-#include "station/terms/usage_error.hpp"
+#include "station/core/usage_error.hpp"
 
 namespace turnpoint::cli {
 
@@ -22,7 +22,7 @@ struct Context {
   const Screens* screens = nullptr;  ///< how to show windows; null in a program without a screen
 };
 
-using terms::UsageError;
+using core::UsageError;
 
 /// Calls `work`, which passes numbers from the command line to the physics library without checking them. If
 /// the library refuses a number, throws a UsageError.

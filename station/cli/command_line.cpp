@@ -9,15 +9,15 @@
 #include <cmath>
 #include <utility>
 
-#include "station/terms/usage_error.hpp"
-#include "station/text/number.hpp"
-#include "station/text/problem.hpp"
+#include "station/core/number.hpp"
+#include "station/core/problem.hpp"
+#include "station/core/usage_error.hpp"
 
 namespace turnpoint::cli {
 
 namespace {
 
-using terms::UsageError;
+using core::UsageError;
 
 template <class Number>
 std::optional<Number> parsed(const std::string& text) {
@@ -46,7 +46,7 @@ std::string joined(const std::vector<std::string>& words, const std::string& sep
 /// Returns "; did you mean KNOWN? ADVICE", or only "; ADVICE" if no known word resembles the typed one.
 std::string suggestion(const std::string& word, const std::vector<std::string>& known,
                        const std::string& advice) {
-  auto near = text::nearest(word, known);
+  auto near = core::nearest(word, known);
   // The beginning of a name (such as --lang) may differ from the whole name in many letters, so nearest() may
   // not find it.
   for (const auto& candidate : known)
@@ -123,7 +123,7 @@ Check range(std::int64_t least, std::int64_t most) {
 }
 
 Check between(double least, double most) {
-  return number_check<double>(fmt::format("{} to {}", text::number(least), text::number(most)),
+  return number_check<double>(fmt::format("{} to {}", core::number(least), core::number(most)),
                               [=](double n) { return n >= least && n <= most; });
 }
 

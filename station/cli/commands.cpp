@@ -9,8 +9,8 @@
 #include "station/cli/command.hpp"
 #include "station/cli/escaped_output.hpp"
 #include "station/cli/manual.hpp"
+#include "station/core/problem.hpp"
 #include "station/system/write_file.hpp"
-#include "station/text/problem.hpp"
 
 namespace turnpoint::cli {
 
@@ -97,7 +97,7 @@ int run(int argc, char** argv, std::ostream& raw_out, std::ostream& raw_err, con
 int exit_status(std::ostream& err, const std::function<int()>& work) {
   try {
     return work();
-  } catch (const text::BadInput& error) {
+  } catch (const core::BadInput& error) {
     err << without_passwords(error.what()) << "\n";
     return 2;
   } catch (const UsageError& error) {

@@ -5,8 +5,8 @@
 #include "station/cli/run.hpp"
 #include "station/cli/screens.hpp"
 #include "station/cli/shared_options.hpp"
-#include "station/setup/places.hpp"
-#include "station/setup/prepare.hpp"
+#include "station/session/places.hpp"
+#include "station/session/prepare.hpp"
 
 namespace turnpoint::cli {
 
@@ -29,8 +29,9 @@ void add_design(CommandLine& app, Context& context) {
   command->footer("Example: turnpoint design my-study.toml");
   command->callback([request, &context] {
     if (!context.screens) return become_ui(context, without_screen);
-    request->rig = setup::rig_or_default(request->rig, context.err);
-    setup::calibrated_rig(request->rig, "", context.err);  // refuses an unreadable rig before a window opens
+    request->rig = session::rig_or_default(request->rig, context.err);
+    session::calibrated_rig(request->rig, "",
+                            context.err);  // refuses an unreadable rig before a window opens
     with_screen(without_screen, [&] { context.screens->design(*request); });
   });
 }

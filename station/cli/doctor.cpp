@@ -13,21 +13,21 @@
 #include "station/cli/shared_options.hpp"
 #include "station/maintenance/doctor.hpp"
 #include "station/maintenance/drive_crosstalk.hpp"
+#include "station/session/places.hpp"
+#include "station/session/prepare.hpp"
 #include "station/session/stage.hpp"
-#include "station/setup/places.hpp"
-#include "station/setup/prepare.hpp"
 
 namespace turnpoint::cli {
 
 namespace doctor_command {
 
-const char* word(lines::Finding::Status status) {
+const char* word(io::Finding::Status status) {
   switch (status) {
-    case lines::Finding::Status::ok:
+    case io::Finding::Status::ok:
       return "ok";
-    case lines::Finding::Status::warning:
+    case io::Finding::Status::warning:
       return "warning";
-    case lines::Finding::Status::failed:
+    case io::Finding::Status::failed:
       return "failed";
   }
   return "?";
@@ -39,7 +39,7 @@ struct DoctorOptions {
 };
 
 /// Has the operator put a weight on the plate, and switches the drive on and off under it.
-std::vector<lines::Finding> weigh_under_drive(const rig::Rig& rig, bool arm, Context& context) {
+std::vector<io::Finding> weigh_under_drive(const rig::Rig& rig, bool arm, Context& context) {
   if (!session::simulates_capture(rig) && !arm)
     throw UsageError(
         "doctor: --weight plays tones through the amplifier; make sure that nobody touches the surface, and "
@@ -51,21 +51,22 @@ std::vector<lines::Finding> weigh_under_drive(const rig::Rig& rig, bool arm, Con
   std::string line;
   if (!std::getline(std::cin, line))
     throw UsageError("doctor: --weight asks for a weight; the input ended before it stood");
-  std::vector<lines::Finding> findings;
+  std::vector<io::Finding> findings;
   for (const auto& reading : maintenance::measure_drive_crosstalk(rig))
     findings.push_back(maintenance::judged(reading));
   return findings;
 }
 
 void doctor(const DoctorOptions& options, Context& context) {
-  const auto rig = setup::calibrated_rig(setup::rig_or_default(options.rig, context.err), "", context.err);
-  std::vector<lines::Finding> checks;
+  const auto rig =
+      session::calibrated_rig(session::rig_or_default(options.rig, context.err), "", context.err);
+  std::vector<io::Finding> checks;
   if (options.weight) checks = weigh_under_drive(rig, options.arm, context);
   for (auto& check : maintenance::examine(rig, options.data)) checks.push_back(std::move(check));
   Json list = Json::array();
   for (const auto& check : checks) {
-    const auto name = texts::say(check.name, "en"), what = texts::say(check.what, "en"),
-               mend = texts::say(check.mend, "en");
+    const auto name = core::say(check.name, "en"), what = core::say(check.what, "en"),
+               mend = core::say(check.mend, "en");
     list.push_back({{"name", name}, {"status", word(check.status)}, {"what", what}, {"mend", mend}});
     if (context.json) continue;
     fmt::print(context.out, "{:<20} {:<8} {}\n", name, word(check.status), what);
@@ -99,7 +100,7 @@ void add_doctor(CommandLine& app, Context& context) {
   command->footer("Example: turnpoint doctor");
   command->callback([options, &context] {
     if (options->data.empty())
-      options->data = std::filesystem::path(setup::default_database()).parent_path().string();
+      options->data = std::filesystem::path(session::default_database()).parent_path().string();
     doctor(*options, context);
   });
 }

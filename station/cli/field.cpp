@@ -11,11 +11,11 @@
 #include "station/cli/json.hpp"
 #include "station/cli/shared_options.hpp"
 #include "station/cli/tones.hpp"
+#include "station/core/number.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/planner.hpp"
-#include "station/setup/places.hpp"
-#include "station/setup/prepare.hpp"
-#include "station/text/number.hpp"
+#include "station/session/places.hpp"
+#include "station/session/prepare.hpp"
 
 namespace turnpoint::cli {
 
@@ -89,7 +89,7 @@ Json to_json(const physics::Surface& surface, const physics::Field& field, const
 
 void print(std::ostream& out, const physics::Field& field, const physics::FieldNotes& notes,
            const Choice& choice, const std::vector<double>& x_m, const std::vector<double>& friction) {
-  using text::number;
+  using core::number;
   fmt::print(out, "model {} ({}); error bound {} of the largest amplitude\n", physics::name(field.model),
              choice.why, number(notes.error_bound, 3));
   for (const auto& tone : field.tones)
@@ -107,7 +107,7 @@ void print(std::ostream& out, const physics::Field& field, const physics::FieldN
 
 void field(const Options& options, Context& context) {
   if ((options.points > 0) == !options.at.empty()) throw UsageError("field: give either --points or --at");
-  const auto rig = setup::calibrated_rig(setup::rig_or_default(options.rig, context.err), options.calibration,
+  const auto rig = session::calibrated_rig(session::rig_or_default(options.rig, context.err), options.calibration,
                                          context.err);
   const auto surface = rig::surface_of(rig);
   const auto tones = parse_tones(options.tones);

@@ -8,7 +8,7 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
-#include "station/plot/chart.hpp"
+#include "station/report/chart.hpp"
 #include "station/system/write_file.hpp"
 
 namespace turnpoint::cli {
@@ -19,25 +19,25 @@ struct Options {
   std::string out;
 };
 
-plot::Chart drawn(const physics::FigurePanel& panel, const std::string& x_label) {
-  plot::Chart result;
+report::Chart drawn(const physics::FigurePanel& panel, const std::string& x_label) {
+  report::Chart result;
   result.title = panel.title;
   std::vector<double> values;
   for (const auto& mark : panel.marks)
-    result.layers.emplace_back(plot::Rule{plot::Rule::Direction::vertical, mark.x_mm, mark.label});
+    result.layers.emplace_back(report::Rule{report::Rule::Direction::vertical, mark.x_mm, mark.label});
   int series = 0;
   for (const auto& curve : panel.curves) {
-    result.layers.emplace_back(plot::Line{curve.x_mm, curve.value, series++, curve.label});
+    result.layers.emplace_back(report::Line{curve.x_mm, curve.value, series++, curve.label});
     values.insert(values.end(), curve.value.begin(), curve.value.end());
   }
   const auto& x_mm = panel.curves.front().x_mm;
-  result.x = {x_label, x_mm.front(), x_mm.back(), plot::AxisScale::linear};
-  result.y = plot::fitted(panel.y_label, values);
+  result.x = {x_label, x_mm.front(), x_mm.back(), report::AxisScale::linear};
+  result.y = report::fitted(panel.y_label, values);
   return result;
 }
 
-plot::Figure drawn(const physics::Figure& figure) {
-  plot::Figure result;
+report::Figure drawn(const physics::Figure& figure) {
+  report::Figure result;
   result.title = figure.title;
   result.caption = figure.title + ". " + figure.note;
   result.chart_width_px = 760;
@@ -51,7 +51,7 @@ void figures(const Options& options, Context& context) {
   Json list = Json::array();
   for (const auto& figure : physics::figures()) {
     const auto path = (std::filesystem::path(options.out) / figure.id).string();
-    system::write_file(path + ".svg", plot::render(drawn(figure)));
+    system::write_file(path + ".svg", report::render(drawn(figure)));
     system::write_file(path + ".csv", physics::to_csv(figure));
     list.push_back({{"id", figure.id},
                     {"title", figure.title},

@@ -6,9 +6,9 @@
 #include <cctype>
 #include <filesystem>
 
-#include "station/setup/places.hpp"
+#include "station/core/letters.hpp"
+#include "station/session/places.hpp"
 #include "station/system/write_file.hpp"
-#include "station/terms/letters.hpp"
 
 namespace turnpoint::cli {
 namespace {
@@ -31,10 +31,10 @@ std::string roff(const std::string& text) {
 
 std::string head(const std::string& page, const std::string& summary) {
   std::string upper;
-  for (const char c : page) upper += terms::upper(c);
+  for (const char c : page) upper += core::upper(c);
   auto first = summary;
   if (first.size() > 1 && std::islower(static_cast<unsigned char>(first[1])))
-    first[0] = terms::lower(first[0]);
+    first[0] = core::lower(first[0]);
   return fmt::format(".TH {} 1 \"\" \"Turnpoint {}\" \"Turnpoint manual\"\n.ad l\n.nh\n.SH NAME\n{} \\- {}\n",
                      roff(upper), TURNPOINT_VERSION, roff(page), roff(first));
 }
@@ -50,7 +50,7 @@ std::string tail(const std::string& see_also) {
 
 std::string item(const OptionText& option) {
   auto kind = option.kind;
-  kind = terms::lower(kind);
+  kind = core::lower(kind);
   const std::string shown = option.positional ? option.name : kind;
   std::string text = ".TP\n";
   if (option.positional)
@@ -123,7 +123,7 @@ using Words = std::vector<std::string>;
 Words shipped_names(const std::string& folder) {
   Words names;
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(setup::shipped(folder), error))
+  for (const auto& entry : std::filesystem::directory_iterator(session::shipped(folder), error))
     if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;

@@ -12,16 +12,16 @@
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/shared_options.hpp"
-#include "station/plot/chart.hpp"
+#include "station/core/limits.hpp"
+#include "station/core/number.hpp"
+#include "station/report/chart.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/planner.hpp"
 #include "station/scene/transducer.hpp"
 #include "station/scene/under_finger.hpp"
-#include "station/setup/places.hpp"
-#include "station/setup/prepare.hpp"
+#include "station/session/places.hpp"
+#include "station/session/prepare.hpp"
 #include "station/system/write_file.hpp"
-#include "station/terms/limits.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::cli {
 
@@ -34,8 +34,8 @@ struct Options {
   bool budget = false;
 };
 
+using core::number;
 using physics::name;
-using text::number;
 
 std::string with_unit(double value, physics::Parameter parameter) {
   const auto unit = physics::unit(parameter);
@@ -95,14 +95,14 @@ void print(std::ostream& out, const std::optional<scene::FingerShift>& shift) {
 constexpr std::size_t most_lines = 6;  ///< most lines in the plot; more would repeat the colours and dashes
 
 /// Plots the largest contributions to the uncertainty, for all boundaries that the rig can present.
-plot::Figure figure_of(const rig::Rig& rig, const physics::Surface& surface, const physics::BoundaryMap& map,
-                       const std::vector<physics::MapAnswer>& answers) {
+report::Figure figure_of(const rig::Rig& rig, const physics::Surface& surface,
+                         const physics::BoundaryMap& map, const std::vector<physics::MapAnswer>& answers) {
   constexpr int points = 60;
   const double low_Hz = scene::lowest_frequency(rig, 0),
-               high_Hz = scene::highest_frequency(rig, terms::kHighestShareOfRate * rig.output.rate_Hz);
-  plot::Line total;
-  total.name = "total", total.series = plot::kNeutral;
-  std::map<physics::Parameter, plot::Line> lines;
+               high_Hz = scene::highest_frequency(rig, core::kHighestShareOfRate * rig.output.rate_Hz);
+  report::Line total;
+  total.name = "total", total.series = report::kNeutral;
+  std::map<physics::Parameter, report::Line> lines;
   for (int i = 0; i <= points; ++i) {
     const double f = low_Hz + (high_Hz - low_Hz) * i / points;
     const auto x = map.boundary_m(f);
@@ -120,16 +120,16 @@ plot::Figure figure_of(const rig::Rig& rig, const physics::Surface& surface, con
         "map: --plot needs standard deviations in the rig file, and boundaries that the rig can present");
   auto heights = total.y;
   heights.push_back(0);
-  plot::Chart chart{"Uncertainty of the boundary",
-                    plot::fitted("Boundary (mm)", total.x, 0),
-                    plot::fitted("One standard deviation (mm)", heights),
-                    {}};
+  report::Chart chart{"Uncertainty of the boundary",
+                      report::fitted("Boundary (mm)", total.x, 0),
+                      report::fitted("One standard deviation (mm)", heights),
+                      {}};
   for (const auto& answer : answers)
     if (answer.boundary_m)
-      chart.layers.push_back(plot::Rule{plot::Rule::Direction::vertical, *answer.boundary_m * 1e3, ""});
-  std::vector<plot::Line> largest;
+      chart.layers.push_back(report::Rule{report::Rule::Direction::vertical, *answer.boundary_m * 1e3, ""});
+  std::vector<report::Line> largest;
   for (auto& [parameter, line] : lines) largest.push_back(std::move(line));
-  const auto top = [](const plot::Line& line) { return *std::max_element(line.y.begin(), line.y.end()); };
+  const auto top = [](const report::Line& line) { return *std::max_element(line.y.begin(), line.y.end()); };
   std::stable_sort(largest.begin(), largest.end(),
                    [&](const auto& a, const auto& b) { return top(a) > top(b); });
   largest.resize(std::min(largest.size(), most_lines));
@@ -138,7 +138,7 @@ plot::Figure figure_of(const rig::Rig& rig, const physics::Surface& surface, con
     chart.layers.push_back(std::move(largest[k]));
   }
   chart.layers.push_back(total);
-  plot::Figure figure;
+  report::Figure figure;
   figure.title = "Uncertainty of the boundary, " + rig.name;
   figure.charts = {std::move(chart)};
   figure.chart_width_px = 620, figure.chart_height_px = 400;
@@ -193,8 +193,8 @@ void map(const Options& options, Context& context) {
   if (!options.plot.empty() && !options.budget) throw UsageError("map: --plot needs --budget");
   for (const double at : options.boundaries_mm)
     if (!std::isfinite(at)) throw UsageError(fmt::format("map: --boundary {}; a number of mm is needed", at));
-  const auto rig = setup::calibrated_rig(setup::rig_or_default(options.rig, context.err), options.calibration,
-                                         context.err);
+  const auto rig = session::calibrated_rig(session::rig_or_default(options.rig, context.err),
+                                           options.calibration, context.err);
   physics::MapOptions wanted;
   wanted.edge = physics::parse_edge(options.edge);
   if (!options.model.empty()) wanted.model = physics::parse_model(options.model);
@@ -209,8 +209,8 @@ void map(const Options& options, Context& context) {
     for (const double f : options.frequencies_Hz) answers.push_back(boundary_map.at_frequency(f));
   }
   if (!options.plot.empty())
-    system::write_file(options.plot,
-                       plot::render(figure_of(rig, surface, physics::BoundaryMap(surface, wanted), answers)));
+    system::write_file(options.plot, report::render(figure_of(
+                                         rig, surface, physics::BoundaryMap(surface, wanted), answers)));
   const auto budget_of = [&](const physics::MapAnswer& a) {
     return physics::boundary_budget(surface, *a.frequency_Hz, *a.boundary_m);
   };

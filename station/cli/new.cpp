@@ -7,12 +7,12 @@
 #include <system_error>
 
 #include "station/cli/command.hpp"
-#include "station/design/goals.hpp"
+#include "station/core/read_file.hpp"
+#include "station/core/toml.hpp"
 #include "station/protocol/protocol.hpp"
-#include "station/setup/places.hpp"
-#include "station/system/read_file.hpp"
+#include "station/session/places.hpp"
 #include "station/system/write_file.hpp"
-#include "station/text/toml.hpp"
+#include "station/view/goals.hpp"
 
 namespace turnpoint::cli {
 
@@ -25,24 +25,24 @@ struct Options {
 };
 
 // Finds a goal by its word, or by its number in the list.
-const design::Goal* find_goal(const std::string& answer) {
+const view::Goal* find_goal(const std::string& answer) {
   int number = 1;
-  for (const auto& goal : design::goals())
+  for (const auto& goal : view::goals())
     if (answer == std::to_string(number++)) return &goal;
-  return design::find_goal(answer);
+  return view::find_goal(answer);
 }
 
 std::string goal_words() {
   std::string all;
-  for (const auto& goal : design::goals()) all += (all.empty() ? "" : ", ") + std::string(goal.word);
+  for (const auto& goal : view::goals()) all += (all.empty() ? "" : ", ") + std::string(goal.word);
   return all;
 }
 
 // Asks on standard error, because standard output is for the command's result.
-const design::Goal& ask(Context& context) {
+const view::Goal& ask(Context& context) {
   fmt::print(context.err, "What do you want to measure?\n");
   int number = 1;
-  for (const auto& goal : design::goals())
+  for (const auto& goal : view::goals())
     fmt::print(context.err, "  {:>2}  {} ({})\n", number++, describe(goal, "en"), goal.word);
   for (;;) {
     fmt::print(context.err, "Type a number or the word in brackets: ");
@@ -60,9 +60,9 @@ void make(const Options& options, Context& context) {
   const auto* goal = options.goal.empty() ? &ask(context) : find_goal(options.goal);
   if (!goal)
     throw UsageError(fmt::format("--measure {}: the allowed words are {}", options.goal, goal_words()));
-  const auto from = fs::path(setup::shipped("protocols")) / (std::string(goal->file) + ".toml");
+  const auto from = fs::path(session::shipped("protocols")) / (std::string(goal->file) + ".toml");
   const auto id = options.id.empty() ? fs::path(options.file).stem().string() : options.id;
-  const auto source = design::study_from(*goal, system::read_file(from.string()), id);
+  const auto source = view::study_from(*goal, core::read_file(from.string()), id);
   protocol::parse(source, options.file);  // refuses an invalid id before anything is written
   system::write_file(options.file, source);
   fmt::print(context.out, "{}\n", options.file);

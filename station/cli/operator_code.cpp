@@ -1,4 +1,4 @@
-#include "station/desk/operator_code.hpp"
+#include "station/view/operator_code.hpp"
 
 #include <fmt/ostream.h>
 #include <termios.h>
@@ -58,8 +58,8 @@ std::string entered(Context& context) {
 }
 
 void set_operator_code(Context& context) {
-  const auto file = desk::operator_code_files().front();
-  desk::store_operator_code(desk::OperatorCode::of_digits(entered(context)), file);
+  const auto file = view::operator_code_files().front();
+  view::store_operator_code(view::OperatorCode::of_digits(entered(context)), file);
   fmt::print(context.out,
              "The hash of the operator's code was stored in {}. A running station uses the new code after a "
              "restart: sudo systemctl restart turnpoint\n",

@@ -7,14 +7,14 @@
 #include "station/cli/json.hpp"
 #include "station/cli/shared_options.hpp"
 #include "station/cli/sound.hpp"
-#include "station/desk/preview.hpp"
+#include "station/core/number.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/protocol/resolve.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/planner.hpp"
-#include "station/setup/places.hpp"
-#include "station/setup/prepare.hpp"
-#include "station/text/number.hpp"
+#include "station/session/places.hpp"
+#include "station/session/prepare.hpp"
+#include "station/view/preview.hpp"
 
 namespace turnpoint::cli {
 
@@ -130,7 +130,7 @@ Json to_json(scene::Planner& planner, const scene::DrivePlan& plan, const protoc
 }
 
 void print(std::ostream& out, const Touched& touched) {
-  using text::number;
+  using core::number;
   const auto& under = touched.under;
   fmt::print(out, "  under a finger at {} mm: {} um (people differ: {} to {}), without it {} um\n",
              number(under.finger_m * 1e3, 4), number(under.displacement_m * 1e6, 3),
@@ -150,7 +150,7 @@ void print(std::ostream& out, const Touched& touched) {
 
 void print(std::ostream& out, const scene::DrivePlan& plan, const std::optional<scene::SoundBound>& sound,
            const Touched& touched) {
-  using text::number;
+  using core::number;
   if (plan.scene.tones.empty())
     fmt::print(out, "Scene {}: boundary at {} mm ({} edge)\n", plan.scene.name,
                plan.boundary_m ? number(*plan.boundary_m * 1e3) : "none", physics::format(plan.scene.edge));
@@ -188,8 +188,8 @@ void print(std::ostream& out, const scene::DrivePlan& plan, const std::optional<
 
 void plan(const Options& options, Context& context) {
   const auto protocol = protocol::load(options.protocol);
-  const auto rig = setup::calibrated_rig(setup::rig_or_default(options.rig, context.err), options.calibration,
-                                         context.err);
+  const auto rig = session::calibrated_rig(session::rig_or_default(options.rig, context.err),
+                                           options.calibration, context.err);
   if (!protocol.scenes.count(options.scene)) {
     std::string known;
     for (const auto& [name, scene] : protocol.scenes) known += (known.empty() ? "" : ", ") + name;
@@ -197,7 +197,7 @@ void plan(const Options& options, Context& context) {
         fmt::format("--scene {}: the protocol has no such scene; its scenes are {}", options.scene, known));
   }
   std::vector<std::string> assumed;
-  const auto factors = desk::factors_for(protocol, options.set, assumed);
+  const auto factors = view::factors_for(protocol, options.set, assumed);
   for (const auto& name : assumed)
     std::visit([&](const auto& value) { fmt::print(context.err, "{} = {} (not --set)\n", name, value); },
                factors.at(name));

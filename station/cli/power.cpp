@@ -16,18 +16,18 @@
 #include "station/cli/json.hpp"
 #include "station/cli/long_work.hpp"
 #include "station/cli/shared_options.hpp"
-#include "station/programs/programs.hpp"
-#include "station/setup/places.hpp"
-#include "station/setup/prepare.hpp"
-#include "station/simulation/cue_guard.hpp"
-#include "station/simulation/parallel.hpp"
-#include "station/simulation/power.hpp"
-#include "station/simulation/power_figure.hpp"
-#include "station/simulation/power_session.hpp"
-#include "station/system/read_file.hpp"
+#include "station/core/number.hpp"
+#include "station/core/read_file.hpp"
+#include "station/core/usage_error.hpp"
+#include "station/rehearsal/cue_guard.hpp"
+#include "station/rehearsal/parallel.hpp"
+#include "station/rehearsal/power.hpp"
+#include "station/rehearsal/power_figure.hpp"
+#include "station/rehearsal/power_session.hpp"
+#include "station/session/places.hpp"
+#include "station/session/prepare.hpp"
+#include "station/session/programs.hpp"
 #include "station/system/write_file.hpp"
-#include "station/terms/usage_error.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::cli {
 
@@ -37,10 +37,10 @@ struct PowerPart {
   std::string protocol;  ///< the text of the protocol file
   std::string path;      ///< path of the protocol file, for messages
   std::string observer;  ///< the simulated observer as the user wrote it
-  simulation::PowerOptions options;
-  std::vector<simulation::SessionOutcome> sessions;
+  rehearsal::PowerOptions options;
+  std::vector<rehearsal::SessionOutcome> sessions;
   /// for each unwanted cue, what an observer could achieve with it alone; set in the first part only
-  std::vector<simulation::CueReport> cues;
+  std::vector<rehearsal::CueReport> cues;
   bool whole = true;  ///< false if a signal stopped the work
 };
 
@@ -53,8 +53,8 @@ PowerPart join_parts(const std::vector<std::string>& files);
 
 namespace {
 
-using simulation::SessionOutcome;
-using terms::UsageError;
+using core::UsageError;
+using rehearsal::SessionOutcome;
 
 constexpr auto kind = "part of a power study";
 
@@ -114,15 +114,15 @@ SessionOutcome session_of(const Json& json) {
     auto& interval = session.findings.back().interval.emplace();
     interval.low = number(ends.at(0)), interval.high = number(ends.at(1));
   }
-  std::map<std::string, simulation::GeneratingValues::Sum> sums;
+  std::map<std::string, rehearsal::GeneratingValues::Sum> sums;
   for (const auto& [name, sum] : json.at("conditions").items())
     sums[name] = {number(sum.at("deadline_s")), sum.at("one_deadline"), sum.at("trials"),
                   number(sum.at("correct"))};
-  session.generating = simulation::GeneratingValues::of_sums(sums);
+  session.generating = rehearsal::GeneratingValues::of_sums(sums);
   return session;
 }
 
-Json cue_json(const simulation::CueReport& cue) {
+Json cue_json(const rehearsal::CueReport& cue) {
   return {{"cue", cue.cue},
           {"accuracy", exact(cue.accuracy)},
           {"chance", exact(cue.chance)},
@@ -151,7 +151,7 @@ PowerPart part_of(const Json& json) {
 PowerPart read_part(const std::string& file, const std::string& first_file, Json& first) {
   const std::string remedy = "; such files are written by turnpoint power --part";
   try {
-    const auto json = Json::parse(system::read_file(file));
+    const auto json = Json::parse(core::read_file(file));
     if (!json.is_object() || json.value("kind", "") != kind)
       throw UsageError(fmt::format("{} is not a {}{}", file, kind, remedy));
     if (first.is_null()) first = json.at("study");
@@ -171,7 +171,7 @@ PowerPart read_part(const std::string& file, const std::string& first_file, Json
         options.part.of > options.observers)
       throw UsageError(fmt::format("{} is damaged: there is no part {} of {}", file, options.part.number,
                                    options.part.of));
-    const auto count = static_cast<std::size_t>(simulation::sessions_of(options.part, options.observers));
+    const auto count = static_cast<std::size_t>(rehearsal::sessions_of(options.part, options.observers));
     if (!part.whole || part.sessions.size() != count)
       throw UsageError(fmt::format("{} was stopped after {} of {} sessions; run part {}/{} again", file,
                                    part.sessions.size(), count, options.part.number, options.part.of));
@@ -231,7 +231,7 @@ PowerPart join_parts(const std::vector<std::string>& files) {
 
 namespace power_command {
 
-using text::number;
+using core::number;
 
 struct Options {
   std::string protocol, rig, calibration, observer = "sim", out, part;
@@ -241,7 +241,7 @@ struct Options {
   bool progress = false;
 };
 
-Json to_json(const simulation::Recovery& recovery) {
+Json to_json(const rehearsal::Recovery& recovery) {
   Json coverage = nullptr;
   if (recovery.coverage)
     coverage = {{"value", recovery.coverage->value},
@@ -265,7 +265,7 @@ Json to_json(const simulation::Recovery& recovery) {
           {"interval_width", json_number(recovery.interval_width)}};
 }
 
-Json to_json(const std::vector<simulation::CueReport>& cues) {
+Json to_json(const std::vector<rehearsal::CueReport>& cues) {
   Json list = Json::array();
   for (const auto& cue : cues)
     list.push_back({{"cue", cue.cue},
@@ -279,8 +279,8 @@ Json to_json(const std::vector<simulation::CueReport>& cues) {
 /// The result of a power study, either from sessions that this process simulated or from the files of its
 /// parts.
 struct Found {
-  simulation::Power power;
-  std::vector<simulation::CueReport> cues;
+  rehearsal::Power power;
+  std::vector<rehearsal::CueReport> cues;
   std::string id, title;  ///< id and title of the protocol
   std::string signal;     ///< the signal that stopped the work; usually ""
 };
@@ -302,12 +302,12 @@ Json to_json(const Found& found, const std::vector<std::string>& files) {
           {"files", files}};
 }
 
-void print(std::ostream& out, const simulation::Power& power) {
+void print(std::ostream& out, const rehearsal::Power& power) {
   fmt::print(out, "{}{} simulated sessions, on average {} trials and {} minutes each{}\n", power.observers,
              power.observers < power.asked ? fmt::format(" of {}", power.asked) : "", number(power.trials, 4),
              number(power.minutes, 3),
              power.accuracy ? fmt::format(", {} % right", number(100 * *power.accuracy, 3)) : "");
-  const auto named = [](const simulation::Recovery& r) {
+  const auto named = [](const rehearsal::Recovery& r) {
     return fmt::format("{} ({})", r.parameter, r.unit.empty() ? "no unit" : r.unit);
   };
   std::size_t widest = 34;
@@ -319,7 +319,7 @@ void print(std::ostream& out, const simulation::Power& power) {
     // Print no more digits than the spread between the simulated sessions justifies.
     const double spread = r.upper_quartile - r.lower_quartile;
     const auto shown = [spread](const std::optional<double>& value) {
-      return value ? text::estimated(*value, spread) : std::string("n/a");
+      return value ? core::estimated(*value, spread) : std::string("n/a");
     };
     const auto moment = [&](double value) { return r.heavy_tailed ? std::string("-") : shown(value); };
     const auto quartiles = shown(r.lower_quartile) + " to " + shown(r.upper_quartile);
@@ -337,7 +337,7 @@ void print(std::ostream& out, const simulation::Power& power) {
              power.interval_sessions);
 }
 
-void print(std::ostream& out, const std::vector<simulation::CueReport>& cues) {
+void print(std::ostream& out, const std::vector<rehearsal::CueReport>& cues) {
   if (cues.empty()) return;
   fmt::print(out, "An observer who uses only one cue, with the best rule for it:\n");
   for (const auto& cue : cues)
@@ -345,8 +345,8 @@ void print(std::ostream& out, const std::vector<simulation::CueReport>& cues) {
                number(100 * cue.chance, 3), cue.above_chance() ? ", above chance" : "");
 }
 
-simulation::Part part_of(const std::string& text, int observers) {
-  simulation::Part part;
+rehearsal::Part part_of(const std::string& text, int observers) {
+  rehearsal::Part part;
   const auto* end = text.data() + text.size();
   const auto [slash, no_number] = std::from_chars(text.data(), end, part.number);
   const bool two = no_number == std::errc{} && slash != end && *slash == '/';
@@ -367,7 +367,7 @@ void show(const Found& found, const Options& options, Context& context) {
   if (!options.out.empty()) {
     system::make_folder(options.out);
     files.push_back((std::filesystem::path(options.out) / (found.id + "-power.svg")).string());
-    system::write_file(files.back(), plot::render(simulation::figure_of(found.power, found.title)));
+    system::write_file(files.back(), report::render(rehearsal::figure_of(found.power, found.title)));
     const auto path = (std::filesystem::path(options.out) / (found.id + "-power.json")).string();
     system::write_file(path, to_json(found, files).dump(2, ' ', false, kInvalidBytes) + "\n");
     files.push_back(path);
@@ -383,9 +383,9 @@ void show(const Found& found, const Options& options, Context& context) {
 void join(const Options& options, Context& context) {
   auto all = join_parts(options.join);
   const auto protocol = protocol::parse(all.protocol, all.path);
-  all.options.observer = observer::parse(all.observer);
-  simulation::complete(protocol, all.options, all.sessions);
-  show({simulation::power_of(protocol, all.options, all.sessions), all.cues, protocol.id, protocol.title, ""},
+  all.options.observer = simulation::parse(all.observer);
+  rehearsal::complete(protocol, all.options, all.sessions);
+  show({rehearsal::power_of(protocol, all.options, all.sessions), all.cues, protocol.id, protocol.title, ""},
        options, context);
 }
 
@@ -397,40 +397,40 @@ void power(const Options& options, Context& context) {
   auto& wanted = part.options;
   wanted.observers = options.observers;
   wanted.interval_sessions = options.intervals;
-  if (programs::is_program(options.observer))
+  if (session::is_program(options.observer))
     throw UsageError(
         "--observer " + options.observer +
         ": a power study does not run separate programs; use sim:..., or simulate sessions one by one "
         "with `turnpoint run --observer program:...`");
-  wanted.observer = observer::parse(part.observer = options.observer);
+  wanted.observer = simulation::parse(part.observer = options.observer);
   wanted.seed = options.seed;
-  wanted.threads = simulation::processors();
+  wanted.threads = rehearsal::processors();
   if (!options.part.empty()) wanted.part = part_of(options.part, options.observers);
   const auto protocol = protocol::load(options.protocol);
   part.protocol = protocol.source, part.path = protocol.path;
-  const auto rig = setup::calibrated_rig(setup::rig_or_default(options.rig, context.err), options.calibration,
-                                         context.err);
+  const auto rig = session::calibrated_rig(session::rig_or_default(options.rig, context.err),
+                                           options.calibration, context.err);
   LongWork work(options.progress);
-  simulation::Steps steps;
+  rehearsal::Steps steps;
   steps.finish = wanted.stop = work.stop();
   steps.progress = [&work](const char* what, int done, int of) { work.show(what, done, of); };
   wanted.progress = steps.counted("simulated sessions");
   try {
     const auto survey = protocol::survey(protocol, rig, steps.finish, steps.counted("scenes planned"));
-    if (!survey.problems.empty()) throw text::BadInput(survey.problems);
-    part.sessions = simulation::simulate_sessions(protocol, wanted);
-    if (wanted.part.number == 1) part.cues = simulation::cue_guard(protocol, rig, survey, {}, steps).reports;
+    if (!survey.problems.empty()) throw core::BadInput(survey.problems);
+    part.sessions = rehearsal::simulate_sessions(protocol, wanted);
+    if (wanted.part.number == 1) part.cues = rehearsal::cue_guard(protocol, rig, survey, {}, steps).reports;
   } catch (const protocol::Abandoned&) {  // stopped before the first session
   }
   const auto signal = work.end(context);
   part.whole = signal.empty();
   if (!signal.empty())
     fmt::print(context.err, "turnpoint: stopped by {} after {} of {} simulated sessions\n", signal,
-               part.sessions.size(), simulation::sessions_of(wanted.part, wanted.observers));
+               part.sessions.size(), rehearsal::sessions_of(wanted.part, wanted.observers));
   if (!options.part.empty())
     context.out << to_json(part).dump(-1, ' ', false, kInvalidBytes) << "\n";
   else if (!part.sessions.empty())
-    show({simulation::power_of(protocol, wanted, part.sessions), part.cues, protocol.id, protocol.title,
+    show({rehearsal::power_of(protocol, wanted, part.sessions), part.cues, protocol.id, protocol.title,
           signal},
          options, context);
 }

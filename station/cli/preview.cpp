@@ -1,4 +1,4 @@
-#include "station/desk/preview.hpp"
+#include "station/view/preview.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
@@ -12,10 +12,10 @@
 #include "station/cli/run.hpp"
 #include "station/cli/screens.hpp"
 #include "station/cli/shared_options.hpp"
-#include "station/desk/scene_figures.hpp"
-#include "station/setup/places.hpp"
-#include "station/setup/prepare.hpp"
+#include "station/session/places.hpp"
+#include "station/session/prepare.hpp"
 #include "station/system/write_file.hpp"
+#include "station/view/scene_figures.hpp"
 
 namespace turnpoint::cli {
 
@@ -36,10 +36,10 @@ void write(const std::filesystem::path& path, const std::string& text, std::ostr
 /// Writes the pictures of every requested scene. If a scene cannot be presented, prints the reason, continues
 /// with the next scene, and sets a failing exit status at the end.
 void preview_to_files(const Options& options, Context& context) {
-  desk::Preview preview(protocol::load(options.protocol),
-                        setup::calibrated_rig(options.rig, "", context.err));
+  view::Preview preview(protocol::load(options.protocol),
+                        session::calibrated_rig(options.rig, "", context.err));
   std::vector<std::string> assumed;
-  const auto factors = desk::factors_for(preview.protocol(), options.set, assumed);
+  const auto factors = view::factors_for(preview.protocol(), options.set, assumed);
   const auto scenes = options.scene.empty() ? preview.scenes() : std::vector<std::string>{options.scene};
   system::make_folder(options.out);
   const std::filesystem::path folder = options.out;
@@ -55,10 +55,10 @@ void preview_to_files(const Options& options, Context& context) {
     fmt::print(context.out, "Scene {}\n", scene);
     for (const auto* list : {&look.facts, &look.cues})
       for (const auto& [label, value] : *list)
-        fmt::print(context.out, "  {}: {}\n", texts::say(label, "en"), texts::say(value, "en"));
-    write(folder / (scene + "-surface.svg"), desk::surface_svg(look, preview.rig()), context.out);
-    write(folder / (scene + "-profile.svg"), plot::render(desk::profile_figure({look})), context.out);
-    write(folder / (scene + "-spectrum.svg"), plot::render(desk::spectrum_figure(look)), context.out);
+        fmt::print(context.out, "  {}: {}\n", core::say(label, "en"), core::say(value, "en"));
+    write(folder / (scene + "-surface.svg"), view::surface_svg(look, preview.rig()), context.out);
+    write(folder / (scene + "-profile.svg"), report::render(view::profile_figure({look})), context.out);
+    write(folder / (scene + "-spectrum.svg"), report::render(view::spectrum_figure(look)), context.out);
   }
 }
 
@@ -81,7 +81,7 @@ void add_preview(CommandLine& app, Context& context) {
   command->footer("Example: turnpoint preview demo --scene edge --set offset_mm=9 --out looks");
   command->callback([options, &context] {
     if (options->out.empty() && !context.screens) return become_ui(context, without_screen);
-    options->rig = setup::rig_or_default(options->rig, context.err);
+    options->rig = session::rig_or_default(options->rig, context.err);
     if (!options->out.empty()) return preview_to_files(*options, context);
     with_screen(without_screen, [&] {
       context.screens->preview({options->protocol, options->rig, options->scene, options->set});

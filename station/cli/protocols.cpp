@@ -9,7 +9,7 @@
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/protocol/protocol.hpp"
-#include "station/setup/places.hpp"
+#include "station/session/places.hpp"
 
 namespace turnpoint::cli {
 
@@ -39,7 +39,7 @@ void protocols(const std::string& folder, Context& context) {
         fmt::print(context.out, "{:<24} {} ({})\n  {}\n", protocol.id, protocol.title, languages,
                    file.string());
       }
-    } catch (const text::BadInput& bad) {
+    } catch (const core::BadInput& bad) {
       fmt::print(context.err, "{}\n", bad.what());
       context.exit_code = 2;
     }
@@ -57,7 +57,7 @@ void add_protocols(CommandLine& app, Context& context) {
   add_json(*command, context);
   command->footer("Example: turnpoint protocols");
   command->callback(
-      [folder, &context] { protocols(folder->empty() ? setup::shipped("protocols") : *folder, context); });
+      [folder, &context] { protocols(folder->empty() ? session::shipped("protocols") : *folder, context); });
 }
 
 }  // namespace turnpoint::cli

@@ -1,4 +1,4 @@
-#include "station/desk/report_data.hpp"
+#include "station/view/report_data.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
@@ -12,15 +12,15 @@
 #include "station/cli/long_work.hpp"
 #include "station/cli/shared_options.hpp"
 #include "station/collector/fetch.hpp"
-#include "station/desk/study_data.hpp"
-#include "station/programs/program_estimator.hpp"
+#include "station/core/number.hpp"
+#include "station/core/usage_error.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/report/html.hpp"
 #include "station/report/stored_estimates.hpp"
+#include "station/session/program_estimator.hpp"
 #include "station/store/read.hpp"
 #include "station/system/write_file.hpp"
-#include "station/terms/usage_error.hpp"
-#include "station/text/number.hpp"
+#include "station/view/study_data.hpp"
 
 namespace turnpoint::cli {
 
@@ -40,7 +40,7 @@ void add_estimates(const std::string& estimator, const std::string& database, co
   const auto stored = store::read_session(database, session);
   const auto& start = stored.session.start;
   const auto protocol = protocol::parse(start.protocol_text, start.protocol_path);
-  const auto found = programs::estimated_by(estimator, protocol, stored.blocks);
+  const auto found = session::estimated_by(estimator, protocol, stored.blocks);
   report::add_estimator(found.program.name, found.estimates, protocol, data);
   data.facts.emplace_back("Estimator", fmt::format("{} {}, SHA-256 {}", found.program.name,
                                                    found.program.version, found.program.sha256));
@@ -48,14 +48,14 @@ void add_estimates(const std::string& estimator, const std::string& database, co
 
 void report_session(Options options, Context& context) {
   if (options.databases.size() > 1)
-    throw terms::UsageError("--db names " + std::to_string(options.databases.size()) +
-                            " files; the report of one session reads one, that of a study (--study) several");
+    throw core::UsageError("--db names " + std::to_string(options.databases.size()) +
+                           " files; the report of one session reads one, that of a study (--study) several");
   if (!options.tables.empty() || !options.protocol_version.empty() || !options.mode.empty())
-    throw terms::UsageError(
+    throw core::UsageError(
         "--tables, --protocol-version and --mode belong to the report of a study: add --study");
   const auto& database = options.databases.front();
-  const auto id = desk::session_to_report(database, options.filter);
-  auto collected = desk::report_data(database, id);
+  const auto id = view::session_to_report(database, options.filter);
+  auto collected = view::report_data(database, id);
   if (!options.estimator.empty()) add_estimates(options.estimator, database, id, collected);
   const auto summary = report::summarise(collected);
   if (context.json) context.out << report::to_json(summary) << "\n";
@@ -68,13 +68,13 @@ void report_session(Options options, Context& context) {
              data.participant, data.title, summary.outcomes.presented);
   for (const auto& estimate : data.estimates)
     fmt::print(context.out, "  {}: {} {}{}{}\n", estimate.procedure, estimate.parameter,
-               text::number(estimate.mean, 4),
-               estimate.sd ? fmt::format(" (SD {})", text::number(*estimate.sd, 3)) : "",
-               estimate.interval ? fmt::format(", 95 % {} to {}", text::number(estimate.interval->low, 3),
-                                               text::number(estimate.interval->high, 3))
+               core::number(estimate.mean, 4),
+               estimate.sd ? fmt::format(" (SD {})", core::number(*estimate.sd, 3)) : "",
+               estimate.interval ? fmt::format(", 95 % {} to {}", core::number(estimate.interval->low, 3),
+                                               core::number(estimate.interval->high, 3))
                                  : "");
   for (const auto& end : data.early_ends)
-    fmt::print(context.out, "  ended early in {}: {}\n", end.block, texts::say(end.why, "en"));
+    fmt::print(context.out, "  ended early in {}: {}\n", end.block, core::say(end.why, "en"));
 }
 
 /// The file trials.csv, which --tables asks for. It is written participant by participant.
@@ -98,7 +98,7 @@ class TrialFile {
 };
 
 std::string interval_in_words(double value, double low, double high) {
-  return fmt::format("{} [{}, {}]", text::number(value, 3), text::number(low, 3), text::number(high, 3));
+  return fmt::format("{} [{}, {}]", core::number(value, 3), core::number(low, 3), core::number(high, 3));
 }
 
 void print_study(std::ostream& out, const std::string& file, const report::Study& study) {
@@ -113,7 +113,7 @@ void print_study(std::ostream& out, const std::string& file, const report::Study
                  interval_in_words(value, interval.low, interval.high), study.settings.level_unit);
     }
     for (const auto& statement : group.result.statements)
-      fmt::print(out, "  {}: {}\n", name, texts::say(statement.text, "en"));
+      fmt::print(out, "  {}: {}\n", name, core::say(statement.text, "en"));
   }
   for (const auto& effect : study.effects) {
     if (!effect.difference) continue;
@@ -125,12 +125,12 @@ void print_study(std::ostream& out, const std::string& file, const report::Study
 
 void report_study(Options options, Context& context) {
   if (!options.filter.session_id.empty() || !options.filter.participant.empty())
-    throw terms::UsageError("--study covers all participants: leave out --session and --participant");
+    throw core::UsageError("--study covers all participants: leave out --session and --participant");
   if (!options.estimator.empty())
-    throw terms::UsageError("--estimator belongs to the report of one session: leave out --study");
+    throw core::UsageError("--estimator belongs to the report of one session: leave out --study");
   LongWork work(options.progress);
   TrialFile trials(options.tables);
-  const auto study = desk::study_data(
+  const auto study = view::study_data(
       {options.databases, options.names, options.filter.protocol_id, options.protocol_version, options.mode},
       [&](const auto& person, const auto& data) { trials.add(person, data); },
       [&](int done, int of) {

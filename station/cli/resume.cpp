@@ -7,12 +7,12 @@
 #include "station/cli/run.hpp"
 #include "station/cli/screens.hpp"
 #include "station/cli/shared_options.hpp"
-#include "station/setup/resume.hpp"
+#include "station/session/resume.hpp"
 
 namespace turnpoint::cli {
 
 void add_resume(CommandLine& app, Context& context) {
-  auto request = std::make_shared<setup::ResumeRequest>();
+  auto request = std::make_shared<session::ResumeRequest>();
   auto* command = app.add_subcommand("resume", "Continue the newest interrupted session");
   add_database(*command, request->database);
   command->add_option("--session", request->session_id,
@@ -31,7 +31,7 @@ void add_resume(CommandLine& app, Context& context) {
   command->footer("Example: turnpoint resume --db lab.sqlite");
   request->self_test = true;
   command->callback([request, &context] {
-    const auto setup = setup::prepare_resume(*request, context.err);
+    const auto setup = session::prepare_resume(*request, context.err);
     if (!setup && !request->session_id.empty())
       throw UsageError(fmt::format(
           "resume: {} has no interrupted session {}; `turnpoint sessions --db {}` lists the sessions",

@@ -12,9 +12,9 @@
 #include "station/cli/operator_console.hpp"
 #include "station/cli/screens.hpp"
 #include "station/cli/shared_options.hpp"
-#include "station/setup/places.hpp"
+#include "station/core/number.hpp"
+#include "station/session/places.hpp"
 #include "station/store/read.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::cli {
 
@@ -38,14 +38,14 @@ Json to_json(const session::Summary& summary) {
                          {"interval", json_interval(e.interval)},
                          {"basis", e.basis.empty() ? Json(nullptr) : Json(e.basis)}});
   Json early_ends = Json::array();
-  for (const auto& end : summary.early_ends) early_ends.push_back(texts::say(end, "en"));
+  for (const auto& end : summary.early_ends) early_ends.push_back(core::say(end, "en"));
   return {{"session_id", summary.session_id},
           {"early_ends", early_ends},
           {"participant", summary.participant},
           {"protocol", summary.protocol_id},
           {"database", summary.database},
           {"run_mode", summary.run_mode},
-          {"status", records::name(summary.status)},
+          {"status", core::name(summary.status)},
           {"reason", summary.reason},
           {"seed", summary.seed},
           {"blocks", summary.blocks},
@@ -67,9 +67,9 @@ Json to_json(const session::Summary& summary) {
 }
 
 void print_summary(std::ostream& out, const session::Summary& s) {
-  using text::number;
+  using core::number;
   fmt::print(out, "Session {} ({}, {}): {}{}\n", s.session_id, s.protocol_id, s.run_mode,
-             records::name(s.status), s.reason.empty() ? "" : ": " + s.reason);
+             core::name(s.status), s.reason.empty() ? "" : ": " + s.reason);
   fmt::print(out, "  participant {}, seed {}, {} {}, {} trials in {} min\n", s.participant, s.seed, s.blocks,
              s.blocks == 1 ? "block" : "blocks", s.trials, number(s.duration_s / 60, 3));
   fmt::print(out, "  {} answered, {} too late, {} too early, {} void\n", s.answered, s.timeouts,
@@ -100,7 +100,7 @@ void print_how_to_resume(std::ostream& out, const session::Summary& s, const std
 
 void show_summary(Context& context, const session::Summary& summary, const std::string& resume_options) {
   using namespace run_command;
-  const bool interrupted = summary.status == records::SessionStatus::interrupted;
+  const bool interrupted = summary.status == core::SessionStatus::interrupted;
   if (interrupted) context.exit_code = 1;
   if (context.json) {
     context.out << to_json(summary).dump(2, ' ', false, kInvalidBytes) << "\n";
@@ -112,7 +112,7 @@ void show_summary(Context& context, const session::Summary& summary, const std::
 
 namespace run_command {
 
-void add_conditions(Command& command, setup::RunRequest& request) {
+void add_conditions(Command& command, session::RunRequest& request) {
   auto& conditions = request.conditions;
   command.add_flag(
       "--self-test", request.self_test,
@@ -128,7 +128,7 @@ void add_conditions(Command& command, setup::RunRequest& request) {
   command.add_option("--cleaned", request.cleaned, "Whether the surface was cleaned just before the session")
       ->check(one_of({"yes", "no"}));
   command.add_option("--finger", conditions.finger, "Hand and finger on the surface, such as right-index")
-      ->check(one_of({terms::fingers.begin(), terms::fingers.end()}));
+      ->check(one_of({core::fingers.begin(), core::fingers.end()}));
   command
       .add_option("--skin-moisture", conditions.skin_moisture,
                   "Moisture of the fingertip, as a moisture meter reads it, in the meter's unit")
@@ -137,8 +137,8 @@ void add_conditions(Command& command, setup::RunRequest& request) {
 
 }  // namespace run_command
 
-std::shared_ptr<setup::RunRequest> add_run_options(Command& command) {
-  auto request = std::make_shared<setup::RunRequest>();
+std::shared_ptr<session::RunRequest> add_run_options(Command& command) {
+  auto request = std::make_shared<session::RunRequest>();
   add_protocol(command, request->protocol);
   add_rig(command, request->rig);
   command.add_option("--participant", request->participant,
@@ -202,11 +202,11 @@ void add_run(CommandLine& app, Context& context) {
     if (on_screen && !context.screens) return become_ui(context, instead);
     if (!on_screen && request->participant.empty())
       throw UsageError("run: --participant is missing; only a screen can ask for it");
-    request->rig = setup::rig_or_default(request->rig, context.err);
+    request->rig = session::rig_or_default(request->rig, context.err);
     if (on_screen)
       return show_summary(
           context, with_screen(instead, [&] { return context.screens->session(*request, std::nullopt); }));
-    run_without_screen(context, setup::prepare(*request));
+    run_without_screen(context, session::prepare(*request));
   });
 }
 

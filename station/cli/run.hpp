@@ -4,16 +4,16 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/screens.hpp"
-#include "station/setup/prepare.hpp"
+#include "station/session/prepare.hpp"
 
 namespace turnpoint::cli {
 
 /// Adds the options of `turnpoint run` to a command. turnpoint-ui accepts the same options.
-std::shared_ptr<setup::RunRequest> add_run_options(Command& command);
+std::shared_ptr<session::RunRequest> add_run_options(Command& command);
 
 /// Adds the options of `turnpoint station`. amplifier-off accepts them too, so that it can be called with the
 /// command line of the station.
-std::shared_ptr<setup::StationRequest> add_station_options(Command& command);
+std::shared_ptr<session::StationRequest> add_station_options(Command& command);
 
 /// Replaces this process by the program turnpoint-ui in the same folder, with the same command line. Never
 /// returns; throws if turnpoint-ui cannot be started. `instead` is advice on what to do without a screen.

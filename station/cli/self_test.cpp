@@ -7,9 +7,9 @@
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/shared_options.hpp"
+#include "station/session/places.hpp"
+#include "station/session/prepare.hpp"
 #include "station/session/self_test_rig.hpp"
-#include "station/setup/places.hpp"
-#include "station/setup/prepare.hpp"
 
 namespace turnpoint::cli {
 
@@ -27,11 +27,11 @@ void ask(const session::Request& request, std::ostream& err) {
   if (request.kind == Kind::press_button) err << "press the button \"" << request.name << "\"" << std::endl;
 }
 
-Json to_json(const std::vector<records::CheckRow>& checks) {
+Json to_json(const std::vector<core::CheckRow>& checks) {
   Json list = Json::array();
   for (const auto& check : checks)
     list.push_back({{"name", check.name},
-                    {"verdict", terms::name(check.verdict)},
+                    {"verdict", core::name(check.verdict)},
                     {"value", json_number(check.value)},
                     {"limit", json_number(check.limit)},
                     {"unit", check.unit},
@@ -39,19 +39,19 @@ Json to_json(const std::vector<records::CheckRow>& checks) {
   return list;
 }
 
-void print(std::ostream& out, const std::vector<records::CheckRow>& checks) {
+void print(std::ostream& out, const std::vector<core::CheckRow>& checks) {
   for (const auto& check : checks)
-    fmt::print(out, "{:<22} {:<13} {}\n", check.name, terms::name(check.verdict), check.what);
+    fmt::print(out, "{:<22} {:<13} {}\n", check.name, core::name(check.verdict), check.what);
 }
 
 void self_test(const Options& options, Context& context) {
-  const auto rig = setup::calibrated_rig(setup::rig_or_default(options.rig, context.err), options.calibration,
-                                         context.err);
+  const auto rig = session::calibrated_rig(session::rig_or_default(options.rig, context.err),
+                                           options.calibration, context.err);
   session::AskOperator asks;
   if (!options.unattended) asks = [&context](const session::Request& request) { ask(request, context.err); };
   const auto found = session::self_test(rig, asks, options.data);
   const bool good = session::passed(found);
-  std::vector<records::CheckRow> checks;
+  std::vector<core::CheckRow> checks;
   for (const auto& check : found) checks.push_back(session::row_of(check));
   context.exit_code = good ? 0 : 1;
   if (context.json) {
@@ -90,7 +90,7 @@ void add_self_test(CommandLine& app, Context& context) {
       "off the surface, and leave nothing on it.");
   command->callback([options, &context] {
     if (options->data.empty())
-      options->data = std::filesystem::path(setup::default_database()).parent_path().string();
+      options->data = std::filesystem::path(session::default_database()).parent_path().string();
     self_test(*options, context);
   });
 }

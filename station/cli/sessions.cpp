@@ -29,8 +29,8 @@ Json to_json(const store::SessionRecord& session) {
           {"sequence_index", session.sequence_index},
           {"planned_session", start.planned_session ? Json(*start.planned_session) : Json(nullptr)},
           {"group", start.group.empty() ? Json(nullptr) : Json(start.group)},
-          {"run_mode", records::name(start.run_mode)},
-          {"status", records::name(session.status)},
+          {"run_mode", core::name(start.run_mode)},
+          {"status", core::name(session.status)},
           {"status_reason", session.status_reason},
           {"started", start.started_local},
           {"trials", session.trials},
@@ -47,7 +47,7 @@ void print(std::ostream& out, const std::vector<store::SessionRecord>& sessions)
              "protocol", "no", "mode", "status", "trials", "started");
   for (const auto& s : sessions) {
     fmt::print(out, "{:<36}  {:<12} {:<24} {:>3} {:<9} {:<11} {:>6}  {}{}\n", s.session_id, s.person,
-               s.start.protocol_id, s.session_index, records::name(s.start.run_mode), records::name(s.status),
+               s.start.protocol_id, s.session_index, core::name(s.start.run_mode), core::name(s.status),
                s.trials, s.start.started_local,
                s.segments > 1 ? fmt::format(", resumed {} times", s.segments - 1) : "");
     for (const auto& note : s.annotations) fmt::print(out, "{:>38}note: {}\n", "", note);

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "station/collector/fetch.hpp"
-#include "station/setup/places.hpp"
+#include "station/session/places.hpp"
 
 namespace turnpoint::cli {
 
@@ -54,7 +54,7 @@ Check database() { return database(Missing::refused); }
 Option* add_protocol(Command& command, std::string& target) {
   return command.add_option("protocol", target, "Protocol file, or a name that `turnpoint protocols` lists")
       ->value("PROTOCOL")
-      ->transform([](const std::string& named) { return setup::file_or_shipped(named, "protocols"); });
+      ->transform([](const std::string& named) { return session::file_or_shipped(named, "protocols"); });
 }
 
 Option* add_calibration(Command& command, std::string& target) {
@@ -68,7 +68,7 @@ Option* add_rig(Command& command, std::string& target, const std::string& when) 
   return command
       .add_option("--rig", target, "Rig file, or the name of a rig that comes with the program; " + when)
       ->value("RIG")
-      ->transform([](const std::string& named) { return setup::file_or_shipped(named, "deploy/rigs"); });
+      ->transform([](const std::string& named) { return session::file_or_shipped(named, "deploy/rigs"); });
 }
 
 void add_database(Command& command, std::string& target, const std::string& help) {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "station/cli/json.hpp"
+#include "station/core/number.hpp"
 #include "station/scene/sound.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::cli {
 
@@ -15,8 +15,8 @@ inline std::string in_words(const std::optional<scene::SoundBound>& sound) {
   if (!sound)
     return "no upper limit of the level is known for this surface; a live session needs measured levels";
   return fmt::format("at most {} dB at an ear {} m away ({} kHz); recommended: at most {} dB{}",
-                     text::number(sound->level_dB, 4), text::number(scene::kEarDistance_m),
-                     text::number(1e-3 * sound->frequency_Hz, 4), text::number(sound->allowed_dB),
+                     core::number(sound->level_dB, 4), core::number(scene::kEarDistance_m),
+                     core::number(1e-3 * sound->frequency_Hz, 4), core::number(sound->allowed_dB),
                      sound->level_dB > sound->allowed_dB ? "; a live session needs measured levels" : "");
 }
 
@@ -31,7 +31,7 @@ inline Json json_sound(const std::optional<scene::SoundBound>& sound) {
 /// Formats the uncertainty of a boundary (one standard deviation) for a line of text.
 inline std::string uncertainty_in_words(double uncertainty_m) {
   if (!(uncertainty_m > 0)) return "uncertainty not known: the rig file states no standard deviations";
-  return "uncertain by " + text::number(1e3 * uncertainty_m, 3) +
+  return "uncertain by " + core::number(1e3 * uncertainty_m, 3) +
          " mm (SD) because of the rig's parameters; see `turnpoint map --budget`";
 }
 

@@ -4,14 +4,14 @@
 #include "station/cli/run.hpp"
 #include "station/cli/screens.hpp"
 #include "station/cli/shared_options.hpp"
-#include "station/desk/operator_code.hpp"
-#include "station/setup/places.hpp"
-#include "station/setup/prepare.hpp"
+#include "station/session/places.hpp"
+#include "station/session/prepare.hpp"
+#include "station/view/operator_code.hpp"
 
 namespace turnpoint::cli {
 
-std::shared_ptr<setup::StationRequest> add_station_options(Command& command) {
-  auto request = std::make_shared<setup::StationRequest>();
+std::shared_ptr<session::StationRequest> add_station_options(Command& command) {
+  auto request = std::make_shared<session::StationRequest>();
   command
       .add_option("--protocols", request->protocols,
                   "Folder with protocol files; by default the shipped protocols")
@@ -33,15 +33,15 @@ void add_station(CommandLine& app, Context& context) {
   auto request = add_station_options(*command);
   command->footer("Example: turnpoint station --db lab.sqlite");
   command->callback([request, &context] {
-    if (request->locked && desk::operator_code().is_built_in())
+    if (request->locked && view::operator_code().is_built_in())
       throw UsageError(
           "station: --locked needs your own operator's code, because the built-in code is public; store one "
           "with: sudo turnpoint operator-code");
     const auto instead = "the station needs a screen; without one, run each session with turnpoint run";
     if (!context.screens) return become_ui(context, instead);
-    request->rig = setup::rig_or_default(request->rig, context.err);
-    if (request->protocols.empty()) request->protocols = setup::shipped("protocols");
-    if (request->database.empty()) request->database = setup::default_database();
+    request->rig = session::rig_or_default(request->rig, context.err);
+    if (request->protocols.empty()) request->protocols = session::shipped("protocols");
+    if (request->database.empty()) request->database = session::default_database();
     with_screen(instead, [&] { context.screens->station(*request); });
   });
 }

@@ -5,17 +5,17 @@
 #include <memory>
 #include <numbers>
 
+#include "station/audio/engine.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/shared_options.hpp"
 #include "station/cli/tones.hpp"
-#include "station/drive/engine.hpp"
+#include "station/core/number.hpp"
 #include "station/maintenance/play_armed.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/transducer.hpp"
+#include "station/session/places.hpp"
 #include "station/session/stage.hpp"
-#include "station/setup/places.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::cli {
 
@@ -28,8 +28,8 @@ struct Options {
   bool arm = false;
 };
 
-drive::Burst burst_for(const rig::Rig& rig, const Options& options) {
-  drive::Burst burst;
+audio::Burst burst_for(const rig::Rig& rig, const Options& options) {
+  audio::Burst burst;
   const auto frames = [&rig](double s) {
     return static_cast<std::int64_t>(std::llround(s * rig.output.rate_Hz));
   };
@@ -37,12 +37,12 @@ drive::Burst burst_for(const rig::Rig& rig, const Options& options) {
   burst.ramp.frames = frames(options.ramp_ms * 1e-3);
   if (2 * burst.ramp.frames > burst.length_frames)
     throw UsageError(fmt::format("synth: two ramps of {} ms do not fit into {} s; use --ramp-ms {} or less",
-                                 text::number(options.ramp_ms), text::number(options.seconds),
-                                 text::number(500 * options.seconds)));
+                                 core::number(options.ramp_ms), core::number(options.seconds),
+                                 core::number(500 * options.seconds)));
   const auto tones = parse_tones(options.tones);
-  if (tones.size() > static_cast<std::size_t>(drive::max_tones))
+  if (tones.size() > static_cast<std::size_t>(audio::max_tones))
     throw UsageError(
-        fmt::format("synth: {} tones were given; at most {} are allowed", tones.size(), drive::max_tones));
+        fmt::format("synth: {} tones were given; at most {} are allowed", tones.size(), audio::max_tones));
   for (const auto& tone : tones) {
     scene::DrivenTone driven;
     driven.frequency_Hz = tone.frequency_Hz;
@@ -56,7 +56,7 @@ drive::Burst burst_for(const rig::Rig& rig, const Options& options) {
   return burst;
 }
 
-Json to_json(const drive::PlayReport& report, const Options& options) {
+Json to_json(const audio::PlayReport& report, const Options& options) {
   const auto& c = report.counters;
   return {{"out", options.out},
           {"frames", c.frames},
@@ -73,12 +73,12 @@ Json to_json(const drive::PlayReport& report, const Options& options) {
 }
 
 /// Plays the tones to the device or file. Without `--arm` the amplifier is not touched and stays off.
-drive::PlayReport play(const rig::Rig& rig, const Options& options) {
+audio::PlayReport play(const rig::Rig& rig, const Options& options) {
   const auto burst = burst_for(rig, options);
   if (!options.arm) {
     auto config = session::stream_of(rig);
     config.output.uri = options.out;
-    return drive::play(config, burst);
+    return audio::play(config, burst);
   }
   if (!options.out.starts_with("alsa:"))
     throw UsageError("synth: --arm with --out " + options.out +
@@ -86,19 +86,19 @@ drive::PlayReport play(const rig::Rig& rig, const Options& options) {
   if (options.seconds > rig.limits.continuous_s)
     throw UsageError(fmt::format(
         "synth: with --arm for {} s the amplifier would run too long; the rig allows {} s without a pause",
-        text::number(options.seconds), text::number(rig.limits.continuous_s)));
+        core::number(options.seconds), core::number(rig.limits.continuous_s)));
   return maintenance::play_armed(rig, options.out, {burst});
 }
 
 void synth(const Options& options, Context& context) {
-  const auto rig = rig::load(setup::rig_or_default(options.rig, context.err));
+  const auto rig = rig::load(session::rig_or_default(options.rig, context.err));
   const auto report = play(rig, options);
   if (context.json) {
     context.out << to_json(report, options).dump(2, ' ', false, kInvalidBytes) << "\n";
     return;
   }
   fmt::print(context.out, "{}: {} frames, onset at frame {}, peak {} of full scale, {} underruns\n",
-             options.out, report.counters.frames, report.onset_frame, text::number(report.peak, 6),
+             options.out, report.counters.frames, report.onset_frame, core::number(report.peak, 6),
              report.counters.underruns);
 }
 

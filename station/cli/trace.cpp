@@ -6,10 +6,10 @@
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/shared_options.hpp"
+#include "station/core/number.hpp"
 #include "station/procedure/trace.hpp"
-#include "station/programs/programs.hpp"
 #include "station/protocol/protocol.hpp"
-#include "station/text/number.hpp"
+#include "station/session/programs.hpp"
 
 namespace turnpoint::cli {
 
@@ -40,7 +40,7 @@ procedure::Context context_of(const protocol::Protocol& protocol) {
 void trace(const Options& options, Context& context) {
   const auto protocol = protocol::load(options.protocol);
   const auto& spec = find(protocol, options.procedure);
-  programs::Programs programs(protocol.path);
+  session::Programs programs(protocol.path);
   auto around = context_of(protocol);
   around.programs = &programs;
   const auto result = procedure::trace(
@@ -64,14 +64,14 @@ void trace(const Options& options, Context& context) {
     return;
   }
   for (std::size_t i = 0; i < result.levels.size(); ++i)
-    fmt::print(context.out, "{:>4} {:>10} {}{}\n", i + 1, text::number(result.levels[i]),
-               spec.second ? fmt::format("{:>10} ", text::number(result.second[i])) : "", options.answers[i]);
+    fmt::print(context.out, "{:>4} {:>10} {}{}\n", i + 1, core::number(result.levels[i]),
+               spec.second ? fmt::format("{:>10} ", core::number(result.second[i])) : "", options.answers[i]);
   fmt::print(context.out, "next {}{}\n",
-             result.next ? text::number(*result.next) : "none, because the procedure has stopped",
-             result.next_second ? ", " + spec.second->level + " " + text::number(*result.next_second) : "");
+             result.next ? core::number(*result.next) : "none, because the procedure has stopped",
+             result.next_second ? ", " + spec.second->level + " " + core::number(*result.next_second) : "");
   for (const auto& [parameter, e] : result.estimates)
-    fmt::print(context.out, "{}: mode {}, mean {}{}{}\n", parameter, text::number(e.mode),
-               text::number(e.mean), e.sd ? ", SD " + text::number(*e.sd) : "",
+    fmt::print(context.out, "{}: mode {}, mean {}{}{}\n", parameter, core::number(e.mode),
+               core::number(e.mean), e.sd ? ", SD " + core::number(*e.sd) : "",
                e.basis.empty() ? "" : ", " + e.basis);
 }
 

@@ -184,7 +184,7 @@ PushedSession push_session(Database& database, const store::SessionRecord& sessi
   if (!pushed.problem.empty()) return pushed;
   const auto annotations = static_cast<std::int64_t>(session.annotations.size());
   if (known != nullptr && known->last.sha256 == pushed.sha256 && known->annotations == annotations &&
-      known->last.status == records::name(session.status) &&
+      known->last.status == core::name(session.status) &&
       known->last.status_reason == session.status_reason) {
     pushed.what = What::unchanged;
     return pushed;

@@ -4,10 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "station/core/read_file.hpp"
+#include "station/core/usage_error.hpp"
 #include "station/store/places.hpp"
-#include "station/system/read_file.hpp"
 #include "station/system/write_file.hpp"
-#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::collector {
 
@@ -57,13 +57,13 @@ void write_received(const Received& received, const std::string& path) {
 Received read_received(const std::string& path) {
   Received received;
   try {
-    const auto json = nlohmann::json::parse(system::read_file(path));
+    const auto json = nlohmann::json::parse(core::read_file(path));
     for (const auto& stone : json.at("tombstones"))
       received.tombstones.push_back({stone.at("session_id"), stone.at("salt"), stone.at("participant_sha256"),
                                      stone.at("withdrawn_realtime_ns"), stone.at("station_id")});
     received.places = json.at("places");
   } catch (const nlohmann::json::exception& error) {
-    throw terms::UsageError(
+    throw core::UsageError(
         fmt::format("{}: {}; name the file that `turnpoint push --received` wrote", path, error.what()));
   }
   return received;

@@ -29,7 +29,7 @@ store::Withdrawal carry_out(const Received& received, const std::string& databas
 // the server sent in a file, and another user, who may write to the database, applies it.
 
 void write_received(const Received& received, const std::string& path);
-/// Throws text::BadInput if the file was not written by write_received().
+/// Throws core::BadInput if the file was not written by write_received().
 Received read_received(const std::string& path);
 
 }  // namespace turnpoint::collector

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "station/collector/tables.hpp"
-#include "station/records/records.hpp"
+#include "station/core/records.hpp"
 #include "station/store/checksum.hpp"
 #include "station/store/schema.hpp"
 
@@ -401,9 +401,9 @@ BEGIN
           "  END IF;\n",
           table.name, quoted(table.chain->counter), table.chain->last);
   sql += take_shared(collected_table("annotation"), "an annotation differs on the server");
-  const std::string running = name(records::SessionStatus::running),
-                    interrupted = name(records::SessionStatus::interrupted),
-                    abandoned = name(records::SessionStatus::abandoned);
+  const std::string running = name(core::SessionStatus::running),
+                    interrupted = name(core::SessionStatus::interrupted),
+                    abandoned = name(core::SessionStatus::abandoned);
   sql += fmt::format(R"sql(
   -- A session whose process died changes its status without a link.
   IF NOT ((s.status, s.status_reason) = (p.status, p.status_reason)
@@ -421,7 +421,7 @@ BEGIN
   RETURN QUERY SELECT p.link_index, p.sha256, turnpoint.annotations_sha256(id);
 END $fn$;
 )sql",
-                     running, interrupted, abandoned, records::kLostReason, records::kAbandonedReason);
+                     running, interrupted, abandoned, core::kLostReason, core::kAbandonedReason);
   return sql;
 }
 

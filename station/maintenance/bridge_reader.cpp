@@ -10,8 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "station/drive/alsa_capture.hpp"
-#include "station/drive/engine.hpp"
+#include "station/audio/alsa_capture.hpp"
+#include "station/audio/engine.hpp"
+#include "station/core/limits.hpp"
+#include "station/core/texts.hpp"
 #include "station/maintenance/force_weights.hpp"
 #include "station/sensing/own_clock.hpp"
 #include "station/session/capture_feed.hpp"
@@ -19,26 +21,24 @@
 #include "station/session/simulated_room.hpp"
 #include "station/session/stage.hpp"
 #include "station/system/clocks.hpp"
-#include "station/terms/limits.hpp"
-#include "station/texts/texts.hpp"
 
 namespace turnpoint::maintenance {
 namespace {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 constexpr double kSettle_s = 1, kRead_s = 1, kGlance_s = 0.12, kPatience_s = 5;
 constexpr double kTap_s = 3.5;                  // time in which the operator taps, and the plate rings
 constexpr double kBlow_N = 1, kBlow_s = 0.005;  // a tap in the simulated laboratory
 constexpr double kLeastReference = 0.02;  // smallest accepted amplitude of the reference; 1 is full scale
 
-texts::Phrase digits_of(double value) { return plain(fmt::format("{:.3g}", value)); }
+core::Phrase digits_of(double value) { return plain(fmt::format("{:.3g}", value)); }
 
 sensing::BridgeOptions bridge_options(const rig::Rig& rig, double reference_amplitude) {
   const auto& capture = *rig.capture;
   sensing::BridgeOptions options;
   options.rate_Hz = rig.output.rate_Hz;
-  options.carrier_Hz = terms::kForceCarrier_Hz;
+  options.carrier_Hz = core::kForceCarrier_Hz;
   options.channels = capture.channels;
   options.reference = capture.reference;
   options.bridges = {capture.bridges[0], capture.bridges[1], capture.bridges[2]};
@@ -83,7 +83,7 @@ class BridgeMean {
       // skip the first 17 ms, in which the filter is still settling
       if (point.index >= 20) points.push_back(point);
     });
-    if (points.empty()) throw texts::Failure(phrase("weights.nothing_captured"));
+    if (points.empty()) throw core::Failure(phrase("weights.nothing_captured"));
     for (const auto& point : points) check(point);
     return points;
   }
@@ -96,7 +96,7 @@ class BridgeMean {
       if (point.index >= 20) amplitude = point.reference;
     });
     if (!(amplitude > kLeastReference))
-      throw texts::Failure(
+      throw core::Failure(
           phrase("weights.no_excitation",
                  {plain(options.reference), plain(rig_.capture->excitation_channel.value_or(0))}));
     return amplitude;
@@ -109,16 +109,16 @@ class BridgeMean {
       case sensing::WireFault::none:
         return;
       case sensing::WireFault::reference:
-        throw texts::Failure(
+        throw core::Failure(
             phrase("weights.reference_off",
                    {plain(rig_.capture->reference), digits_of(point.reference), digits_of(reference_)}));
       case sensing::WireFault::quadrature:
-        throw texts::Failure(phrase("weights.wire_off", {plain(cells[point.bridge]), plain(channel),
-                                                         digits_of(point.quadrature[point.bridge])}));
+        throw core::Failure(phrase("weights.wire_off", {plain(cells[point.bridge]), plain(channel),
+                                                        digits_of(point.quadrature[point.bridge])}));
       case sensing::WireFault::overload:
-        throw texts::Failure(phrase("weights.overloaded", {plain(cells[point.bridge]), plain(channel)}));
+        throw core::Failure(phrase("weights.overloaded", {plain(cells[point.bridge]), plain(channel)}));
       case sensing::WireFault::silent:
-        throw texts::Failure(phrase("weights.silent", {plain(cells[point.bridge]), plain(channel)}));
+        throw core::Failure(phrase("weights.silent", {plain(cells[point.bridge]), plain(channel)}));
     }
   }
 
@@ -137,11 +137,11 @@ class BridgeMean {
 /// Reads the bridges of a simulated surface, on which it puts the weights.
 class SimulatedBridges : public BridgeReader {
  public:
-  SimulatedBridges(const rig::Rig& rig, const std::function<void(plant::Setup&)>& laboratory)
+  SimulatedBridges(const rig::Rig& rig, const std::function<void(simulation::Setup&)>& laboratory)
       : rig_(rig), room_(rig_, laboratory), mean_(rig_) {
     auto config = session::session_stream(rig_);
     config.output.uri = "null:";
-    stream_ = drive::open_synchronous(config);
+    stream_ = audio::open_synchronous(config);
     stream_->listen([this](std::int64_t first_frame, std::span<const std::int32_t> played) {
       const auto block = room_.advance(first_frame, played);
       if (keep_) samples_.insert(samples_.end(), block.samples.begin(), block.samples.end());
@@ -164,8 +164,8 @@ class SimulatedBridges : public BridgeReader {
     samples_.clear();
     keep_ = true;
     pass(0.5 * kTap_s);
-    plant.set_load(where == Tap::along ? plant::Load{0, kBlow_N, middle_m}
-                                       : plant::Load{kBlow_N, 0, middle_m});
+    plant.set_load(where == Tap::along ? simulation::Load{0, kBlow_N, middle_m}
+                                       : simulation::Load{kBlow_N, 0, middle_m});
     pass(kBlow_s);
     plant.set_load({});
     pass(0.5 * kTap_s);
@@ -190,7 +190,7 @@ class SimulatedBridges : public BridgeReader {
   const rig::Rig rig_;
   session::SimulatedRoom room_;
   BridgeMean mean_;
-  std::unique_ptr<drive::SynchronousStream> stream_;
+  std::unique_ptr<audio::SynchronousStream> stream_;
   std::vector<std::int32_t> samples_;
   bool keep_ = false;
 };
@@ -225,7 +225,7 @@ class CardBridges : public BridgeReader {
     const auto until_ns = system::monotonic_ns() + static_cast<std::int64_t>(1e9 * (seconds + kPatience_s));
     while (samples.size() < wanted) {
       if (system::monotonic_ns() > until_ns)
-        throw texts::Failure(phrase("weights.device_silent", {plain(uri)}));
+        throw core::Failure(phrase("weights.device_silent", {plain(uri)}));
       while (stream.poll()) {
       }
       bool taken = false;
@@ -237,10 +237,10 @@ class CardBridges : public BridgeReader {
       if (!taken) devices_.pause();
     }
     const auto after = capture.counters();
-    if (!after.present) throw texts::Failure(phrase("weights.device_gone", {plain(uri)}));
+    if (!after.present) throw core::Failure(phrase("weights.device_gone", {plain(uri)}));
     if (after.lost_frames != before.lost_frames || after.numbering != before.numbering ||
         stream.counters().underruns != underruns)
-      throw texts::Failure(phrase("weights.frames_lost", {plain(uri)}));
+      throw core::Failure(phrase("weights.frames_lost", {plain(uri)}));
     return samples;
   }
 
@@ -256,12 +256,12 @@ std::unique_ptr<BridgeReader> card_bridges(const rig::Rig& rig, BridgeDevices de
 }
 
 std::unique_ptr<BridgeReader> open_bridges(const rig::Rig& rig,
-                                           const std::function<void(plant::Setup&)>& laboratory) {
-  if (!rig::has_force_cells(rig)) throw texts::Refusal(phrase("weights.no_cells", {plain(rig.name)}));
+                                           const std::function<void(simulation::Setup&)>& laboratory) {
+  if (!rig::has_force_cells(rig)) throw core::Refusal(phrase("weights.no_cells", {plain(rig.name)}));
   if (rig.capture->converter) return converter_bridges(*rig.capture->converter);
   if (session::simulates_capture(rig)) return std::make_unique<SimulatedBridges>(rig, laboratory);
   const auto card = session::card_capture_of(rig).value().device;
-  return card_bridges(rig, {drive::open_realtime(session::session_stream(rig)), drive::open_capture(card),
+  return card_bridges(rig, {audio::open_realtime(session::session_stream(rig)), audio::open_capture(card),
                             [] { std::this_thread::sleep_for(std::chrono::milliseconds(2)); }});
 }
 
@@ -273,7 +273,7 @@ constexpr double kConverterSettle_s = 1, kConverterRead_s = 1, kConverterGlance_
 /// Means of the samples of a converter with a clock of its own. The samples count the time.
 class ConverterBridges : public BridgeReader {
  public:
-  ConverterBridges(const rig::CellConverter& converter, std::unique_ptr<iio::Converter> opened)
+  ConverterBridges(const rig::CellConverter& converter, std::unique_ptr<io::Converter> opened)
       : rig_(converter), converter_(std::move(opened)) {}
 
   BridgeReading read(const WeightStep&) override {
@@ -291,17 +291,17 @@ class ConverterBridges : public BridgeReader {
  private:
   /// Returns the samples of this length of time, which begins `settle_s` from now. Older samples may still
   /// wait in the buffer of the kernel.
-  std::vector<iio::Sample> collect(double settle_s, double seconds) {
+  std::vector<io::Sample> collect(double settle_s, double seconds) {
     const auto from_ns = system::monotonic_ns() + static_cast<std::int64_t>(1e9 * settle_s);
     const auto wanted = static_cast<std::size_t>(std::ceil(seconds * rig_.rate_Hz));
-    std::vector<iio::Sample> samples;
+    std::vector<io::Sample> samples;
     while (samples.size() < wanted)
       for (const auto& sample : converter_->read())
         if (sample.time_ns >= from_ns) samples.push_back(sample);
     return samples;
   }
 
-  BridgeReading mean_of(const std::vector<iio::Sample>& samples) const {
+  BridgeReading mean_of(const std::vector<io::Sample>& samples) const {
     constexpr std::array<const char*, 3> cells{"a", "b", "lateral"};
     sensing::OwnClock clock({.rate_Hz = rig_.rate_Hz});
     BridgeReading reading;
@@ -310,18 +310,17 @@ class ConverterBridges : public BridgeReader {
       clock.push({sample.time_ns, sample.value, sample.at_limit}, {}, [](const sensing::BridgePoint&) {});
       for (std::size_t cell = 0; cell < cells.size(); ++cell) {
         if (sample.at_limit[cell])
-          throw texts::Failure(
-              phrase("weights.overloaded", {plain(cells[cell]), plain(rig_.channels[cell])}));
+          throw core::Failure(phrase("weights.overloaded", {plain(cells[cell]), plain(rig_.channels[cell])}));
         reading.ratio[cell] += sample.value[cell] / count;
       }
     }
     if (const auto silent = clock.silent_cell())
-      throw texts::Failure(phrase("weights.silent", {plain(cells[*silent]), plain(rig_.channels[*silent])}));
+      throw core::Failure(phrase("weights.silent", {plain(cells[*silent]), plain(rig_.channels[*silent])}));
     if (clock.counters().lost + clock.counters().disorder > 0)
       throw std::runtime_error(fmt::format("{}: {} samples were lost", rig_.uri, clock.counters().lost));
     if (const auto rate_Hz = clock.rate_Hz())
       if (const auto wrong = session::wrong_rate(rig_.uri.substr(4), *rate_Hz, rig_.rate_Hz))
-        throw texts::Failure(*wrong);
+        throw core::Failure(*wrong);
     for (const auto& sample : samples)
       for (std::size_t cell = 0; cell < cells.size(); ++cell)
         reading.sd[cell] += std::pow(sample.value[cell] - reading.ratio[cell], 2) / count;
@@ -330,14 +329,14 @@ class ConverterBridges : public BridgeReader {
   }
 
   const rig::CellConverter rig_;
-  std::unique_ptr<iio::Converter> converter_;
+  std::unique_ptr<io::Converter> converter_;
 };
 
 }  // namespace
 
 std::unique_ptr<BridgeReader> converter_bridges(
     const rig::CellConverter& converter,
-    const std::function<std::unique_ptr<iio::Converter>(const iio::Config&)>& open) {
+    const std::function<std::unique_ptr<io::Converter>(const io::Config&)>& open) {
   return std::make_unique<ConverterBridges>(converter, open(session::converter_of(converter)));
 }
 

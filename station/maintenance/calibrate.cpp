@@ -7,30 +7,30 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "station/calibration/apply.hpp"
-#include "station/drive/engine.hpp"
+#include "station/audio/engine.hpp"
+#include "station/core/problem.hpp"
+#include "station/core/texts.hpp"
+#include "station/core/usage_error.hpp"
 #include "station/maintenance/play_armed.hpp"
+#include "station/rig/apply.hpp"
 #include "station/rig/csv.hpp"
 #include "station/scene/planner.hpp"
 #include "station/session/self_test.hpp"
 #include "station/session/stage.hpp"
 #include "station/system/write_file.hpp"
-#include "station/terms/usage_error.hpp"
-#include "station/text/problem.hpp"
-#include "station/texts/texts.hpp"
 
 namespace turnpoint::maintenance {
 namespace {
 
-using calibration::BoundaryFit;
-using calibration::Calibration;
-using calibration::Measurements;
-using plot::fitted;
-using plot::Line;
-using plot::Points;
+using report::fitted;
+using report::Line;
+using report::Points;
+using rig::BoundaryFit;
+using rig::Calibration;
+using rig::Measurements;
 
 std::vector<std::vector<double>> rows_of(const std::string& path, const std::vector<std::string>& columns) {
-  text::Findings findings;
+  core::Findings findings;
   auto rows = rig::read_table(path, columns, {path, 0, 0}, findings);
   findings.throw_if_any();
   return rows;
@@ -42,24 +42,24 @@ struct Comparison {
   std::vector<double> x, measured, fit_x, fit_y, residuals;
 };
 
-void add(plot::Figure& figure, const Comparison& c) {
+void add(report::Figure& figure, const Comparison& c) {
   auto range = c.measured;
   range.insert(range.end(), c.fit_y.begin(), c.fit_y.end());
-  plot::Chart fit{c.title, fitted(c.x_label, c.x), fitted(c.y_label, range), {}};
+  report::Chart fit{c.title, fitted(c.x_label, c.x), fitted(c.y_label, range), {}};
   Line line;
   line.x = c.fit_x, line.y = c.fit_y, line.series = 0, line.name = "fit";
   Points points;
   points.x = c.x, points.y = c.measured, points.series = 1, points.name = "measured";
   fit.layers = {line, points};
-  plot::Chart rest{"Residuals", fitted(c.x_label, c.x), fitted(c.residual_label, c.residuals), {}};
+  report::Chart rest{"Residuals", fitted(c.x_label, c.x), fitted(c.residual_label, c.residuals), {}};
   Points residuals;
   residuals.x = c.x, residuals.y = c.residuals, residuals.series = 1;
-  rest.layers = {plot::Rule{plot::Rule::Direction::horizontal, 0, ""}, residuals};
+  rest.layers = {report::Rule{report::Rule::Direction::horizontal, 0, ""}, residuals};
   figure.charts.push_back(std::move(fit));
   figure.charts.push_back(std::move(rest));
 }
 
-void add_response(plot::Figure& figure, const Calibration::Transducer& transducer,
+void add_response(report::Figure& figure, const Calibration::Transducer& transducer,
                   const Measurements::Sweep& sweep) {
   Comparison level, phase;
   level.title = transducer.name + ": response";
@@ -87,7 +87,7 @@ void add_response(plot::Figure& figure, const Calibration::Transducer& transduce
   add(figure, phase);
 }
 
-void add_boundary(plot::Figure& figure, const BoundaryFit& fit) {
+void add_boundary(report::Figure& figure, const BoundaryFit& fit) {
   Comparison c;
   c.title = "Boundary: " + fit.edge;
   c.x_label = "Frequency (kHz)", c.y_label = "Boundary (mm)", c.residual_label = "Residual (mm)";
@@ -106,7 +106,7 @@ void add_boundary(plot::Figure& figure, const BoundaryFit& fit) {
   add(figure, c);
 }
 
-double friction_at(const calibration::FrictionFit& fit, double displacement_m) {
+double friction_at(const rig::FrictionFit& fit, double displacement_m) {
   const auto& points = fit.points;
   const auto above = std::find_if(points.begin(), points.end(),
                                   [=](const auto& p) { return p.displacement_m >= displacement_m; });
@@ -117,7 +117,7 @@ double friction_at(const calibration::FrictionFit& fit, double displacement_m) {
   return below->relative_friction + u * (above->relative_friction - below->relative_friction);
 }
 
-void add_friction(plot::Figure& figure, const calibration::FrictionFit& fit, const std::string& csv) {
+void add_friction(report::Figure& figure, const rig::FrictionFit& fit, const std::string& csv) {
   Comparison c;
   c.title = "Friction";
   c.x_label = "Displacement (um)", c.y_label = "Relative friction", c.residual_label = "Residual";
@@ -133,13 +133,13 @@ void add_friction(plot::Figure& figure, const calibration::FrictionFit& fit, con
   add(figure, c);
 }
 
-void add_sound(plot::Figure& figure, const std::vector<calibration::SoundPoint>& sound) {
+void add_sound(report::Figure& figure, const std::vector<rig::SoundPoint>& sound) {
   Line line;
   for (const auto& point : sound) {
     line.x.push_back(point.frequency_Hz * 1e-3);
     line.y.push_back(point.level_dB);
   }
-  plot::Chart panel{
+  report::Chart panel{
       "Sound level at full scale", fitted("Frequency (kHz)", line.x), fitted("Level (dB SPL)", line.y), {}};
   panel.layers = {line};
   figure.charts.push_back(std::move(panel));
@@ -148,12 +148,12 @@ void add_sound(plot::Figure& figure, const std::vector<calibration::SoundPoint>&
 /// Calls `work`. If something in it says that numbers cannot be used, throws a UsageError that says so.
 template <class Work>
 auto as_unusable(Work work) {
-  const auto refuse = [](const std::string& why) -> texts::Refusal {
-    return texts::Refusal(texts::phrase("series.unusable", {texts::plain(why)}));
+  const auto refuse = [](const std::string& why) -> core::Refusal {
+    return core::Refusal(core::phrase("series.unusable", {core::plain(why)}));
   };
   try {
     return work();
-  } catch (const text::BadInput& error) {
+  } catch (const core::BadInput& error) {
     if (error.problems().front().place.file != "calibration") throw;
     throw refuse(error.what());
   } catch (const std::invalid_argument& error) {
@@ -176,10 +176,10 @@ bool can_plan(const rig::Rig& rig) try {
 
 Calibration calibrate(const rig::Rig& rig, const Measurements& measurements, int valid_days,
                       const std::string& note) {
-  auto calibration = as_unusable([&] { return calibration::fit_measurements(measurements, rig); });
+  auto calibration = as_unusable([&] { return rig::fit_measurements(measurements, rig); });
   calibration.rig_name = rig.name;
   calibration.rig_sha256 = rig.sha256;
-  calibration.made_on = calibration::today();
+  calibration.made_on = rig::today();
   calibration.valid_days = valid_days;
   calibration.note = note;
   static_cast<void>(usable_toml(calibration, rig));
@@ -188,8 +188,8 @@ Calibration calibrate(const rig::Rig& rig, const Measurements& measurements, int
 
 std::string usable_toml(const Calibration& calibration, const rig::Rig& rig) {
   return as_unusable([&] {
-    auto toml = calibration::to_toml(calibration);
-    const auto used = calibration::applied(calibration::parse(toml, "calibration"), rig);
+    auto toml = rig::to_toml(calibration);
+    const auto used = rig::applied(rig::parse_calibration(toml, "calibration"), rig);
     // A rig with which nothing can be planned is not the calibration's fault.
     if (can_plan(rig)) scene::Planner planner(used);
     return toml;
@@ -201,14 +201,14 @@ void write_calibration(Calibration calibration, const rig::Rig& rig, const std::
     auto earlier = rig;
     earlier.mixer = calibration.mixer;
     if (const auto reading = session::read_mixer(earlier); !reading.changes.empty())
-      throw texts::Refusal(texts::phrase("series.other_mixer", {reading.changes.front()}));
+      throw core::Refusal(core::phrase("series.other_mixer", {reading.changes.front()}));
     calibration.mixer = std::move(now);
   }
   system::write_file(path, usable_toml(calibration, rig), 0666, system::Replaces::input);
 }
 
-plot::Figure calibration_figure(const Calibration& calibration, const Measurements& measurements) {
-  plot::Figure figure;
+report::Figure calibration_figure(const Calibration& calibration, const Measurements& measurements) {
+  report::Figure figure;
   figure.title = "Calibration of " + calibration.rig_name + ", " + calibration.made_on;
   figure.columns = 2;
   for (std::size_t k = 0; k < calibration.transducers.size(); ++k)
@@ -221,8 +221,8 @@ plot::Figure calibration_figure(const Calibration& calibration, const Measuremen
 
 namespace {
 
-drive::Burst burst_of(const SweepStep& step, int rate_Hz) {
-  drive::Burst burst;
+audio::Burst burst_of(const SweepStep& step, int rate_Hz) {
+  audio::Burst burst;
   burst.start_frame = std::llround(step.start_s * rate_Hz);
   burst.length_frames = std::llround(step.length_s * rate_Hz);
   burst.ramp.frames = std::min(std::llround(0.05 * rate_Hz), static_cast<long long>(burst.length_frames / 2));
@@ -232,7 +232,7 @@ drive::Burst burst_of(const SweepStep& step, int rate_Hz) {
 }
 
 /// Renders each tone exactly at its planned frame, so that a vibrometer can find the tones by their times.
-void render(drive::SynchronousStream& stream, const std::vector<drive::Burst>& bursts) {
+void render(audio::SynchronousStream& stream, const std::vector<audio::Burst>& bursts) {
   for (const auto& burst : bursts) {
     stream.schedule(burst);
     stream.advance(burst.start_frame + burst.length_frames - stream.frame());
@@ -246,14 +246,14 @@ void render(drive::SynchronousStream& stream, const std::vector<drive::Burst>& b
 }  // namespace
 
 std::vector<SweepStep> sweep_plan(const rig::Rig& rig, const SweepOptions& options) {
-  if (options.points < 5) throw terms::UsageError("sweep: there must be at least 5 points");
+  if (options.points < 5) throw core::UsageError("sweep: there must be at least 5 points");
   if (!(options.full_scale > 0 && options.full_scale <= 1))
-    throw terms::UsageError(fmt::format(
+    throw core::UsageError(fmt::format(
         "sweep: the amplitude must be above 0 and at most 1 (full scale), not {}", options.full_scale));
   if (!(options.length_s >= 0.2 && options.pause_s >= 0.2))
-    throw terms::UsageError("sweep: tones and pauses must last 0.2 s or more");
+    throw core::UsageError("sweep: tones and pauses must last 0.2 s or more");
   if (options.length_s > rig.limits.duty * (options.length_s + options.pause_s))
-    throw terms::UsageError(
+    throw core::UsageError(
         fmt::format("sweep: the pauses must be longer, because the rig's limit on the duty cycle is {}",
                     rig.limits.duty));
   std::vector<SweepStep> steps;
@@ -279,12 +279,12 @@ std::string to_csv(const std::vector<SweepStep>& steps) {
 void play_sweep(const rig::Rig& rig, const std::vector<SweepStep>& steps, const std::string& uri) {
   auto config = session::stream_of(rig);
   config.output.uri = uri;
-  std::vector<drive::Burst> bursts;
+  std::vector<audio::Burst> bursts;
   for (const auto& step : steps) bursts.push_back(burst_of(step, config.output.rate_Hz));
   if (uri.starts_with("alsa:")) {
     play_armed(rig, uri, bursts);
   } else {
-    render(*drive::open_synchronous(config), bursts);
+    render(*audio::open_synchronous(config), bursts);
   }
 }
 

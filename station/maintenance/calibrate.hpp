@@ -2,32 +2,31 @@
 #include <string>
 #include <vector>
 
-#include "station/calibration/calibration.hpp"
-#include "station/plot/chart.hpp"
+#include "station/report/chart.hpp"
+#include "station/rig/calibration.hpp"
 #include "station/rig/rig.hpp"
 
 namespace turnpoint::maintenance {
 
-/// Makes a calibration of this rig from measurements, with today's date. Throws text::BadInput with all
-/// problems of all files. Throws terms::UsageError if the points do not determine a fit, if the rig does not
+/// Makes a calibration of this rig from measurements, with today's date. Throws core::BadInput with all
+/// problems of all files. Throws core::UsageError if the points do not determine a fit, if the rig does not
 /// have the transducer, or if the band is empty.
-calibration::Calibration calibrate(const rig::Rig& rig, const calibration::Measurements& measurements,
-                                   int valid_days, const std::string& note);
+rig::Calibration calibrate(const rig::Rig& rig, const rig::Measurements& measurements, int valid_days,
+                           const std::string& note);
 
 /// Returns the text of the calibration file. Reads it back first, applies it to the rig, and plans with it as
-/// sessions do. Throws terms::UsageError if any of this fails, so that no command writes a calibration that
+/// sessions do. Throws core::UsageError if any of this fails, so that no command writes a calibration that
 /// another one cannot use.
-std::string usable_toml(const calibration::Calibration& calibration, const rig::Rig& rig);
+std::string usable_toml(const rig::Calibration& calibration, const rig::Rig& rig);
 
 /// Writes the file with usable_toml() and with the present levels of the sound card's mixer. It may replace
-/// the calibration from which this one was continued. Throws texts::Refusal if that one was measured with
+/// the calibration from which this one was continued. Throws core::Refusal if that one was measured with
 /// other levels of the mixer. Where no mixer can be read, its levels stay as they were.
-void write_calibration(calibration::Calibration calibration, const rig::Rig& rig, const std::string& path);
+void write_calibration(rig::Calibration calibration, const rig::Rig& rig, const std::string& path);
 
 /// Plots the measured points with their fit, and the residuals below. There is a chart for each quantity that
 /// was measured: response (amplitude and phase), boundary, friction, sound level.
-plot::Figure calibration_figure(const calibration::Calibration& calibration,
-                                const calibration::Measurements& measurements);
+report::Figure calibration_figure(const rig::Calibration& calibration, const rig::Measurements& measurements);
 
 /// One tone of a stepped sweep. In a vibrometer's recording, the tones are found by their times.
 struct SweepStep {
@@ -44,7 +43,7 @@ struct SweepOptions {
   double length_s = 0.5, pause_s = 0.25;
 };
 
-/// Plans a sweep with equal steps of frequency over each transducer's band. Throws terms::UsageError for
+/// Plans a sweep with equal steps of frequency over each transducer's band. Throws core::UsageError for
 /// fewer than 5 points, an amplitude outside 0 to 1, tones shorter than 0.2 s, or lengths that exceed the
 /// rig's duty cycle.
 std::vector<SweepStep> sweep_plan(const rig::Rig& rig, const SweepOptions& options);

@@ -10,21 +10,21 @@
 #include <thread>
 #include <utility>
 
-#include "station/drive/engine.hpp"
+#include "station/audio/engine.hpp"
+#include "station/core/texts.hpp"
 #include "station/maintenance/play_armed.hpp"
 #include "station/sensing/pilot.hpp"
 #include "station/session/capture_feed.hpp"
 #include "station/session/session.hpp"
 #include "station/session/simulated_room.hpp"
 #include "station/session/stage.hpp"
-#include "station/texts/texts.hpp"
 
 namespace turnpoint::maintenance {
 
-CaptureThread::CaptureThread(const drive::OutputConfig& device, OnBlock on_block)
+CaptureThread::CaptureThread(const audio::OutputConfig& device, OnBlock on_block)
     : device_(device),
       on_block_(std::move(on_block)),
-      capture_(drive::open_capture(device)),
+      capture_(audio::open_capture(device)),
       thread_([this](const std::stop_token& stop) {
         while (!stop.stop_requested()) {
           take();
@@ -32,13 +32,12 @@ CaptureThread::CaptureThread(const drive::OutputConfig& device, OnBlock on_block
         }
       }) {}
 
-drive::CaptureCounters CaptureThread::end() {
+audio::CaptureCounters CaptureThread::end() {
   thread_.request_stop();
   thread_.join();
   take();
   const auto counters = capture_->counters();
-  if (!counters.present)
-    throw texts::Failure(texts::phrase("played.disconnected", {texts::plain(device_.uri)}));
+  if (!counters.present) throw core::Failure(core::phrase("played.disconnected", {core::plain(device_.uri)}));
   return counters;
 }
 
@@ -50,7 +49,7 @@ namespace {
 
 constexpr double kTail_s = 0.5;
 
-drive::StreamConfig silent_stream(const rig::Rig& rig) {
+audio::StreamConfig silent_stream(const rig::Rig& rig) {
   auto config = session::stream_of(rig);
   config.output.uri = "null:";
   return config;
@@ -65,8 +64,8 @@ void append(const sensing::CaptureBlock& block, std::vector<std::vector<double>>
 /// Records everything that a device captures.
 class Recorder {
  public:
-  explicit Recorder(const drive::OutputConfig& device)
-      : device_(device), thread_(device, [this](const drive::CapturedBlock& block) { take(block); }) {}
+  explicit Recorder(const audio::OutputConfig& device)
+      : device_(device), thread_(device, [this](const audio::CapturedBlock& block) { take(block); }) {}
 
   /// Ends the recording. The samples are interleaved. Throws std::runtime_error if frames are missing.
   std::vector<std::int32_t> end() {
@@ -77,14 +76,14 @@ class Recorder {
   }
 
  private:
-  void take(const drive::CapturedBlock& block) {
+  void take(const audio::CapturedBlock& block) {
     const auto next = static_cast<std::int64_t>(samples_.size()) / device_.channels;
     lost_ = lost_ || block.first_frame != next || block.numbering != 0;
     const auto used = block.used();
     samples_.insert(samples_.end(), used.begin(), used.end());
   }
 
-  const drive::OutputConfig device_;
+  const audio::OutputConfig device_;
   std::vector<std::int32_t> samples_;
   bool lost_ = false;
   // The last member, so that its thread ends before the objects that it uses are destroyed.
@@ -93,8 +92,8 @@ class Recorder {
 
 }  // namespace
 
-std::vector<double> rendered(const rig::Rig& rig, const drive::Burst& burst, int channel) {
-  const auto stream = drive::open_synchronous(silent_stream(rig));
+std::vector<double> rendered(const rig::Rig& rig, const audio::Burst& burst, int channel) {
+  const auto stream = audio::open_synchronous(silent_stream(rig));
   auto at_start = burst;
   at_start.start_frame = 0;
   std::vector<double> samples;
@@ -109,11 +108,12 @@ std::vector<double> rendered(const rig::Rig& rig, const drive::Burst& burst, int
   return samples;
 }
 
-Captured capture_simulated(const rig::Rig& rig, const std::vector<drive::Burst>& bursts,
-                           const std::function<void(plant::Setup&)>& laboratory, const plant::Load& load) {
+Captured capture_simulated(const rig::Rig& rig, const std::vector<audio::Burst>& bursts,
+                           const std::function<void(simulation::Setup&)>& laboratory,
+                           const simulation::Load& load) {
   session::SimulatedRoom room(rig, laboratory);
   room.plant().set_load(load);
-  const auto stream = drive::open_synchronous(silent_stream(rig));
+  const auto stream = audio::open_synchronous(silent_stream(rig));
   Captured made;
   made.channels.resize(static_cast<std::size_t>(rig.capture.value().channels));
   made.delay_frames = room.capture().delay_frames;
@@ -130,7 +130,7 @@ Captured capture_simulated(const rig::Rig& rig, const std::vector<drive::Burst>&
   return made;
 }
 
-Captured capture_armed(const rig::Rig& rig, const std::vector<drive::Burst>& bursts) {
+Captured capture_armed(const rig::Rig& rig, const std::vector<audio::Burst>& bursts) {
   const auto plan = session::card_capture_of(rig).value();
   auto all = bursts;
   all.insert(all.begin(), sensing::pilot_burst(plan.pilot, 0));

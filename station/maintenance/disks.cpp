@@ -18,8 +18,8 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "station/system/file_descriptor.hpp"
-#include "station/texts/texts.hpp"
+#include "station/core/file_descriptor.hpp"
+#include "station/core/texts.hpp"
 
 namespace turnpoint::maintenance {
 
@@ -93,8 +93,8 @@ Ended run(std::vector<std::string> words) {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0)
     throw std::system_error(errno, std::generic_category(), "cannot make a pipe");
-  const system::FileDescriptor reading(ends[0]);
-  system::FileDescriptor writing(ends[1]);
+  const core::FileDescriptor reading(ends[0]);
+  core::FileDescriptor writing(ends[1]);
   posix_spawn_file_actions_t actions{};
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
@@ -105,7 +105,7 @@ Ended run(std::vector<std::string> words) {
   if (error != 0)
     throw std::system_error(error, std::generic_category(),
                             "cannot start " + words[0] + " (Debian package udisks2)");
-  writing = system::FileDescriptor();
+  writing = core::FileDescriptor();
   Ended ended;
   std::array<char, 512> buffer{};
   for (ssize_t count = 0; (count = ::read(reading.get(), buffer.data(), buffer.size())) != 0;) {
@@ -178,18 +178,18 @@ std::string mount(const Disk& disk, const DiskSources& sources) {
   const auto ended = ask_udisks(sources, "mount", disk.device);
   for (const auto& now : removable_disks(sources))
     if (now.device == disk.device && !now.folder.empty()) return now.folder;
-  throw texts::Failure(
-      texts::phrase("operator.cannot_mount",
-                    {texts::plain(disk.name), texts::plain(disk.device),
-                     ended.said.empty() ? texts::phrase("operator.no_reason") : texts::plain(ended.said)}));
+  throw core::Failure(
+      core::phrase("operator.cannot_mount",
+                   {core::plain(disk.name), core::plain(disk.device),
+                    ended.said.empty() ? core::phrase("operator.no_reason") : core::plain(ended.said)}));
 }
 
 void eject(const Disk& disk, const DiskSources& sources) {
   ::sync();
   if (const auto ended = ask_udisks(sources, "unmount", disk.device); ended.status != 0)
-    throw texts::Failure(
-        texts::phrase("operator.still_in_use",
-                      {texts::plain(disk.name), texts::plain(disk.device), texts::plain(ended.said)}));
+    throw core::Failure(
+        core::phrase("operator.still_in_use",
+                     {core::plain(disk.name), core::plain(disk.device), core::plain(ended.said)}));
   ask_udisks(sources, "power-off", disk.device);
 }
 

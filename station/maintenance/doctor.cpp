@@ -16,35 +16,35 @@
 #include <system_error>
 #include <utility>
 
-#include "station/drive/alsa_capture.hpp"
-#include "station/drive/alsa_device.hpp"
-#include "station/drive/engine.hpp"
-#include "station/iio/converter.hpp"
+#include "station/audio/alsa_capture.hpp"
+#include "station/audio/alsa_device.hpp"
+#include "station/audio/engine.hpp"
+#include "station/io/converter.hpp"
 #include "station/sensing/own_clock.hpp"
 #include "station/session/cell_feed.hpp"
+#include "station/session/places.hpp"
 #include "station/session/self_test.hpp"
 #include "station/session/stage.hpp"
-#include "station/setup/places.hpp"
 #include "station/system/clocks.hpp"
 #include "station/system/condition.hpp"
 
 namespace turnpoint::maintenance {
 namespace {
 
-using Status = lines::Finding::Status;
-using texts::Phrase, texts::phrase, texts::plain;
+using Status = io::Finding::Status;
+using core::Phrase, core::phrase, core::plain;
 
 Phrase number(auto value) { return plain(fmt::format("{}", value)); }
 
 // Measures the rate of the device's own clock. Plays silence for two and a half seconds, or longer if the
 // device's time stamps are coarse.
-lines::Finding measured_clock(drive::Stream& stream) {
+io::Finding measured_clock(audio::Stream& stream) {
   for (int k = 0; k < 220; ++k) {
     system::sleep_until_ns(system::monotonic_ns() + 100'000'000);
     while (stream.poll()) {
     }
     if (const auto rate = stream.measured_rate()) {
-      const bool good = std::abs(rate->deviation_ppm) <= drive::RateCheck::tolerance_ppm;
+      const bool good = std::abs(rate->deviation_ppm) <= audio::RateCheck::tolerance_ppm;
       return {phrase("doctor.converter_clock"), good ? Status::ok : Status::failed,
               phrase("doctor.clock_rate", {plain(fmt::format("{:.2f}", rate->rate_Hz)),
                                            plain(fmt::format("{:+.1f}", rate->deviation_ppm)),
@@ -66,8 +66,8 @@ std::string card_of(std::string_view uri) {
 // A PCM512x mutes its analogue outputs after 1024 frames of zeros (5 ms at 192 kHz), and unmutes them at the
 // next onset (TI, PCM512x data sheet, zero data detection). Between stimuli, a session plays nothing but
 // zeros.
-void converter_mute(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
-  const auto on = drive::card_switch(rig.output.uri, "Auto Mute Switch");
+void converter_mute(const rig::Rig& rig, std::vector<io::Finding>& checks) {
+  const auto on = audio::card_switch(rig.output.uri, "Auto Mute Switch");
   if (!on) return;
   checks.push_back({phrase("doctor.converter_mute"), *on ? Status::failed : Status::ok,
                     phrase(*on ? "doctor.mute_on" : "doctor.mute_off"),
@@ -75,10 +75,10 @@ void converter_mute(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
 }
 
 // Compares the card's levels with those of the calibration.
-void mixer(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
+void mixer(const rig::Rig& rig, std::vector<io::Finding>& checks) {
   const auto check = session::judged(session::read_mixer(rig));
-  if (check.verdict == records::Verdict::not_possible) return;
-  const bool good = check.verdict == records::Verdict::passed;
+  if (check.verdict == core::Verdict::not_possible) return;
+  const bool good = check.verdict == core::Verdict::passed;
   checks.push_back({check.name, good ? Status::ok : Status::failed, check.what,
                     good ? Phrase() : phrase("refusal.mixer")});
 }
@@ -96,14 +96,14 @@ Phrase sound_mend(const std::exception& error, const char* otherwise) {
   return phrase(rights ? "doctor.sound_rights_mend" : otherwise);
 }
 
-void converter(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
+void converter(const rig::Rig& rig, std::vector<io::Finding>& checks) {
   const auto uri = plain(rig.output.uri), name = phrase("doctor.converter");
   if (!rig.output.uri.starts_with("alsa:")) {
     checks.push_back({name, Status::ok, phrase("doctor.no_converter", {uri}), {}});
     return;
   }
   try {
-    const auto stream = drive::open_realtime(session::stream_of(rig));
+    const auto stream = audio::open_realtime(session::stream_of(rig));
     checks.push_back(
         {name,
          Status::ok,
@@ -117,15 +117,15 @@ void converter(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
                       phrase("doctor.underruns", {number(underruns)}),
                       underruns == 0 ? Phrase() : phrase("doctor.underruns_mend")});
   } catch (const std::exception& error) {
-    checks.push_back({name, Status::failed, lines::reported(error), sound_mend(error, "doctor.converter_mend")});
+    checks.push_back({name, Status::failed, io::reported(error), sound_mend(error, "doctor.converter_mend")});
   }
 }
 
 // Opens the capture device and captures for half a second.
-lines::Finding capture(const session::CardCapture& plan) {
+io::Finding capture(const session::CardCapture& plan) {
   const auto name = phrase("doctor.capture"), mend = phrase("doctor.capture_mend");
   try {
-    const auto opened = drive::open_capture(plan.device);
+    const auto opened = audio::open_capture(plan.device);
     for (int k = 0; k < 50; ++k) {
       system::sleep_until_ns(system::monotonic_ns() + 10'000'000);
       while (opened->take() != nullptr) {
@@ -139,11 +139,11 @@ lines::Finding capture(const session::CardCapture& plan) {
                                        number(plan.device.rate_Hz), number(counters.frames), number(lost)}),
             good ? Phrase() : mend};
   } catch (const std::exception& error) {
-    return {name, Status::failed, lines::reported(error), sound_mend(error, "doctor.capture_mend")};
+    return {name, Status::failed, io::reported(error), sound_mend(error, "doctor.capture_mend")};
   }
 }
 
-lines::Finding pick_ups(const rig::Rig& rig) {
+io::Finding pick_ups(const rig::Rig& rig) {
   const auto unproven = rig::unproven_transducers(rig);
   const auto name = phrase("operator.measured_pick_ups");
   if (unproven.empty()) return {name, Status::ok, phrase("doctor.pick_ups_good"), {}};
@@ -153,11 +153,11 @@ lines::Finding pick_ups(const rig::Rig& rig) {
 }
 
 // Reads the converter of the force cells for half a second.
-lines::Finding force_converter(const rig::CellConverter& converter) {
+io::Finding force_converter(const rig::CellConverter& converter) {
   const auto name = phrase("doctor.force_converter"), mend = phrase("doctor.force_converter_mend");
   try {
     const auto config = session::converter_of(converter);
-    const auto opened = iio::open(config);
+    const auto opened = io::open(config);
     sensing::OwnClock clock({.rate_Hz = converter.rate_Hz});
     std::int64_t first_ns = 0, last_ns = 0;
     for (bool begun = false; !begun || last_ns - first_ns < 500'000'000;)
@@ -177,11 +177,11 @@ lines::Finding force_converter(const rig::CellConverter& converter) {
                                       number(lost), number(disorder)}),
             lost + disorder == 0 ? Phrase() : mend};
   } catch (const std::exception& error) {
-    return {name, Status::failed, lines::reported(error), mend};
+    return {name, Status::failed, io::reported(error), mend};
   }
 }
 
-lines::Finding force_cells(const rig::Rig& rig) {
+io::Finding force_cells(const rig::Rig& rig) {
   const auto name = phrase("operator.measured_forces");
   if (rig.capture->forces) return {name, Status::ok, phrase("doctor.forces_good"), {}};
   return {name, Status::warning, phrase("doctor.forces_missing"), phrase("doctor.forces_mend")};
@@ -189,15 +189,15 @@ lines::Finding force_cells(const rig::Rig& rig) {
 
 // Warns if the touch panel is simulated although the converter is real. A new rig file has a simulated panel,
 // and people forget to replace it.
-lines::Finding touch(const rig::Rig& rig) {
-  auto check = lines::check_touch(phrase("doctor.touch"), *rig.touch_uri);
+io::Finding touch(const rig::Rig& rig) {
+  auto check = io::check_touch(phrase("doctor.touch"), *rig.touch_uri);
   if (check.status == Status::ok && *rig.touch_uri == "sim:" && rig.output.uri.starts_with("alsa:"))
     return {check.name, Status::warning, phrase("doctor.touch_simulated"),
             phrase("doctor.touch_simulated_mend")};
   return check;
 }
 
-void rights(std::vector<lines::Finding>& checks) {
+void rights(std::vector<io::Finding>& checks) {
   rlimit priority{}, memory{};
   ::getrlimit(RLIMIT_RTPRIO, &priority);
   ::getrlimit(RLIMIT_MEMLOCK, &memory);
@@ -215,10 +215,10 @@ void rights(std::vector<lines::Finding>& checks) {
                     locked ? Phrase() : phrase("doctor.memory_mend")});
 }
 
-void display(std::vector<lines::Finding>& checks) {
+void display(std::vector<io::Finding>& checks) {
   std::error_code ignored;
   const bool session = std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
-  const bool direct = !setup::screen_card().empty() || std::filesystem::exists("/dev/fb0", ignored);
+  const bool direct = !session::screen_card().empty() || std::filesystem::exists("/dev/fb0", ignored);
   checks.push_back({phrase("doctor.display"), session || direct ? Status::ok : Status::warning,
                     phrase(session  ? "doctor.desktop"
                            : direct ? "doctor.screen"
@@ -228,9 +228,9 @@ void display(std::vector<lines::Finding>& checks) {
 
 // On a desktop, the display server reads the input devices. Without a desktop, the program must be able to
 // read them itself.
-void input(std::vector<lines::Finding>& checks) {
+void input(std::vector<io::Finding>& checks) {
   if (std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY")) return;
-  const auto devices = lines::try_input_devices();
+  const auto devices = io::try_input_devices();
   const auto name = phrase("doctor.input");
   if (!devices.refused.empty())
     checks.push_back(
@@ -244,12 +244,12 @@ void input(std::vector<lines::Finding>& checks) {
 }
 
 // Converts a check of the self-test to a finding of the doctor. `mend` says what to do if the check failed.
-lines::Finding finding(const session::Check& check, const Phrase& mend) {
-  if (check.verdict == records::Verdict::failed) return {check.name, Status::failed, check.what, mend};
+io::Finding finding(const session::Check& check, const Phrase& mend) {
+  if (check.verdict == core::Verdict::failed) return {check.name, Status::failed, check.what, mend};
   return {check.name, Status::ok, check.what, {}};
 }
 
-lines::Finding disk(const std::string& path) {
+io::Finding disk(const std::string& path) {
   const auto state = system::read_disk(path);
   return finding(session::judged(state),
                  !state.error.empty() ? phrase("doctor.disk_mount_mend")
@@ -259,7 +259,7 @@ lines::Finding disk(const std::string& path) {
 
 }  // namespace
 
-lines::Finding check_file_system(const std::string& file_system) {
+io::Finding check_file_system(const std::string& file_system) {
   const auto is = [&](std::initializer_list<const char*> names) {
     return std::any_of(names.begin(), names.end(), [&](const char* name) { return file_system == name; });
   };
@@ -271,7 +271,7 @@ lines::Finding check_file_system(const std::string& file_system) {
 
 namespace {
 
-lines::Finding clock() {
+io::Finding clock() {
   const session::ClockReading reading{system::read_wall_clock(), std::nullopt};
   auto found = finding(session::judged(reading), phrase("doctor.date_mend"));
   if (found.status == Status::ok && !reading.clock.steered) {
@@ -281,13 +281,13 @@ lines::Finding clock() {
   return found;
 }
 
-lines::Finding temperature() {
+io::Finding temperature() {
   return finding(session::judged_temperature(system::hottest_C()), phrase("doctor.temperature_mend"));
 }
 
 }  // namespace
 
-lines::Finding check_swap(const std::string& swaps) {
+io::Finding check_swap(const std::string& swaps) {
   const auto name = phrase("doctor.swap");
   std::ifstream file(swaps);
   if (!file)
@@ -302,7 +302,7 @@ lines::Finding check_swap(const std::string& swaps) {
   return {name, Status::failed, phrase("doctor.swap_on", {plain(active)}), phrase("doctor.swap_mend")};
 }
 
-lines::Finding check_watchdog(const std::string& folder) {
+io::Finding check_watchdog(const std::string& folder) {
   const auto name = phrase("doctor.watchdog");
   std::ifstream file(folder + "/watchdog0/state");
   std::string state;
@@ -313,8 +313,8 @@ lines::Finding check_watchdog(const std::string& folder) {
           phrase("doctor.watchdog_mend")};
 }
 
-std::vector<lines::Finding> examine(const rig::Rig& rig, const std::string& data_path) {
-  std::vector<lines::Finding> checks;
+std::vector<io::Finding> examine(const rig::Rig& rig, const std::string& data_path) {
+  std::vector<io::Finding> checks;
   converter(rig, checks);
   converter_mute(rig, checks);
   mixer(rig, checks);
@@ -325,12 +325,12 @@ std::vector<lines::Finding> examine(const rig::Rig& rig, const std::string& data
     if (rig::has_force_cells(rig)) checks.push_back(force_cells(rig));
   }
   const auto lines = [&checks](const char* device, const std::string& uri) {
-    for (auto& check : lines::check_lines(phrase(device), uri)) checks.push_back(std::move(check));
+    for (auto& check : io::check_lines(phrase(device), uri)) checks.push_back(std::move(check));
   };
   lines("doctor.amplifier", rig.amplifier_uri);
   if (rig.buttons_uri) lines("doctor.buttons", *rig.buttons_uri);
   if (rig.contact_uri && rig.contact_uri->starts_with("evdev:"))
-    checks.push_back(lines::check_touch(phrase("doctor.contact"), *rig.contact_uri));
+    checks.push_back(io::check_touch(phrase("doctor.contact"), *rig.contact_uri));
   else if (rig.contact_uri)
     lines("doctor.contact", *rig.contact_uri);
   if (rig.trigger_lines_uri) lines("doctor.trigger", *rig.trigger_lines_uri);
@@ -349,9 +349,9 @@ std::vector<lines::Finding> examine(const rig::Rig& rig, const std::string& data
   return checks;
 }
 
-bool fit_for_use(const std::vector<lines::Finding>& checks) {
+bool fit_for_use(const std::vector<io::Finding>& checks) {
   return std::none_of(checks.begin(), checks.end(),
-                      [](const lines::Finding& check) { return check.status == Status::failed; });
+                      [](const io::Finding& check) { return check.status == Status::failed; });
 }
 
 }  // namespace turnpoint::maintenance

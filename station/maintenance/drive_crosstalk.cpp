@@ -9,19 +9,19 @@
 #include <cstdint>
 #include <stdexcept>
 
+#include "station/core/limits.hpp"
+#include "station/core/usage_error.hpp"
 #include "station/maintenance/captured_sweep.hpp"
 #include "station/maintenance/force_weights.hpp"
 #include "station/session/self_test.hpp"
 #include "station/session/stage.hpp"
 #include "station/session/vibration_watch.hpp"
-#include "station/terms/limits.hpp"
-#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::maintenance {
 
 namespace {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 // The drive is off, on, off, on and off again, for kDriveState_s each. The plate settles for kDriveSettle_s
 // after each change. The pilot before needs the first two seconds.
@@ -31,16 +31,16 @@ constexpr double kDriveShare = 0.5, kMostDrive = 0.9;
 
 void require_cells(const rig::Rig& rig) {
   if (!rig::has_force_cells(rig) || rig.capture->converter)
-    throw terms::UsageError(
+    throw core::UsageError(
         "doctor: --weight needs force cells that the rig's sound card captures (bridges in "
         "its [capture])");
   if (!rig.capture->forces)
-    throw terms::UsageError(
+    throw core::UsageError(
         "doctor: --weight needs calibrated force cells; calibrate them with `turnpoint calibrate --forces`");
 }
 
-drive::Tone drive_tone(const rig::Rig& rig, const rig::Transducer& transducer) {
-  const double low_Hz = std::clamp(terms::kAudible_Hz, transducer.low_Hz, transducer.high_Hz);
+audio::Tone drive_tone(const rig::Rig& rig, const rig::Transducer& transducer) {
+  const double low_Hz = std::clamp(core::kAudible_Hz, transducer.low_Hz, transducer.high_Hz);
   double m_per_full_scale = transducer.m_per_full_scale.value_or(0);
   for (const auto& point : transducer.response)
     m_per_full_scale = std::max(m_per_full_scale, point.m_per_full_scale);
@@ -50,14 +50,14 @@ drive::Tone drive_tone(const rig::Rig& rig, const rig::Transducer& transducer) {
 }
 
 /// The carrier of the bridges, and a tone that is switched on and off.
-drive::Burst toggled_drive(const rig::Rig& rig, const drive::Tone& tone) {
+audio::Burst toggled_drive(const rig::Rig& rig, const audio::Tone& tone) {
   const auto frames = [&](double s) { return std::llround(s * rig.output.rate_Hz); };
-  drive::Burst burst;
+  audio::Burst burst;
   burst.start_frame = frames(kDriveFirst_s);
   burst.length_frames = frames(kDriveStates * kDriveState_s);
   burst.ramp.frames = frames(kDriveRamp_s);
   burst.tones.count = 1;
-  burst.tones.tones[0] = {terms::kForceCarrier_Hz, session::kCarrier, 0, *rig.capture->excitation_channel};
+  burst.tones.tones[0] = {core::kForceCarrier_Hz, session::kCarrier, 0, *rig.capture->excitation_channel};
   auto both = burst.tones;
   both.count = 2;
   both.tones[1] = tone;
@@ -94,7 +94,7 @@ struct DriveState {
 };
 
 std::array<DriveState, kDriveStates> drive_states(const rig::Rig& rig, const Captured& captured,
-                                                  const drive::Burst& burst) {
+                                                  const audio::Burst& burst) {
   const auto finger = session::calibrated_finger(rig).value();
   sensing::BridgeDemodulator demodulator(finger.bridges);
   std::array<DriveState, kDriveStates> states;
@@ -119,14 +119,14 @@ std::array<DriveState, kDriveStates> drive_states(const rig::Rig& rig, const Cap
 
 }  // namespace
 
-std::vector<DriveCrosstalk> measure_drive_crosstalk(const rig::Rig& rig,
-                                                    const std::function<void(plant::Setup&)>& laboratory) {
+std::vector<DriveCrosstalk> measure_drive_crosstalk(
+    const rig::Rig& rig, const std::function<void(simulation::Setup&)>& laboratory) {
   require_cells(rig);
   std::vector<DriveCrosstalk> readings;
   for (const auto& transducer : rig.transducers) {
     const auto tone = drive_tone(rig, transducer);
     const auto burst = toggled_drive(rig, tone);
-    const plant::Load weight{1e-3 * kRestingMass_g * kGravity_m_s2, 0, 0.5 * rig.surface.length_m};
+    const simulation::Load weight{1e-3 * kRestingMass_g * kGravity_m_s2, 0, 0.5 * rig.surface.length_m};
     const auto captured = session::simulates_capture(rig)
                               ? capture_simulated(rig, {burst}, laboratory, weight)
                               : capture_armed(rig, {burst});
@@ -146,8 +146,8 @@ std::vector<DriveCrosstalk> measure_drive_crosstalk(const rig::Rig& rig,
   return readings;
 }
 
-lines::Finding judged(const DriveCrosstalk& reading) {
-  using Status = lines::Finding::Status;
+io::Finding judged(const DriveCrosstalk& reading) {
+  using Status = io::Finding::Status;
   const auto name = phrase("doctor.drive_force", {plain(reading.transducer)});
   if (reading.restless_mN > session::kNoiseLimit_mN)
     return {name, Status::failed,
@@ -160,7 +160,7 @@ lines::Finding judged(const DriveCrosstalk& reading) {
                                           plain(fmt::format("{:+.2f}", reading.normal_mN + 0.0)),
                                           plain(fmt::format("{:+.2f}", reading.lateral_mN + 0.0)),
                                           plain(fmt::format("{:.0f}", kCrosstalkLimit_mN))}),
-          good ? texts::Phrase() : phrase("doctor.drive_changes_mend")};
+          good ? core::Phrase() : phrase("doctor.drive_changes_mend")};
 }
 
 }  // namespace turnpoint::maintenance

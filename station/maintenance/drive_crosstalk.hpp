@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "station/lines/probe.hpp"
-#include "station/plant/setup.hpp"
+#include "station/io/probe.hpp"
 #include "station/rig/rig.hpp"
+#include "station/simulation/setup.hpp"
 
 namespace turnpoint::maintenance {
 
@@ -26,12 +26,12 @@ inline constexpr double kCrosstalkLimit_mN = 1;
 /// Switches the drive of each transducer on and off, twice, while a weight rests on the plate. The tone has
 /// half of the displacement that the rig allows. On a real rig this arms the amplifier, so only an operator
 /// may request it; in the simulated laboratory, which `laboratory` may change, the weight stands in the
-/// middle. Throws terms::UsageError for a rig without calibrated force cells on its sound card,
+/// middle. Throws core::UsageError for a rig without calibrated force cells on its sound card,
 /// std::runtime_error if a wire is off or frames were lost, and the errors of play_armed().
 std::vector<DriveCrosstalk> measure_drive_crosstalk(
-    const rig::Rig& rig, const std::function<void(plant::Setup&)>& laboratory = {});
+    const rig::Rig& rig, const std::function<void(simulation::Setup&)>& laboratory = {});
 
 /// Judges one reading.
-lines::Finding judged(const DriveCrosstalk& reading);
+io::Finding judged(const DriveCrosstalk& reading);
 
 }  // namespace turnpoint::maintenance

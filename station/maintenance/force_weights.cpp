@@ -7,20 +7,20 @@
 #include <optional>
 #include <stdexcept>
 
-#include "station/calibration/apply.hpp"
+#include "station/core/limits.hpp"
+#include "station/core/number.hpp"
+#include "station/core/texts.hpp"
+#include "station/core/usage_error.hpp"
 #include "station/maintenance/calibrate.hpp"
 #include "station/maintenance/panel_latency.hpp"
+#include "station/rig/apply.hpp"
 #include "station/sensing/tap.hpp"
-#include "station/terms/limits.hpp"
-#include "station/terms/usage_error.hpp"
-#include "station/text/number.hpp"
-#include "station/texts/texts.hpp"
 
 namespace turnpoint::maintenance {
 
 namespace {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 constexpr double kRatedLoad_N = 10;
 // largest allowed change and SD of the zero reading; sessions use the same limits before a trial
@@ -42,10 +42,10 @@ constexpr std::array<const char*, 3> kCells{"a", "b", "lateral"};
 double newtons(double grams) { return 1e-3 * grams * kGravity_m_s2; }
 
 /// Grams and place of a weight, and the grams that pull if there are any.
-std::vector<texts::Phrase> values_of(const WeightStep& step) {
-  std::vector<texts::Phrase> values{texts::plain(text::number(step.mass_g)),
-                                    texts::plain(text::number(step.position_mm, 4))};
-  if (step.pull_g != 0) values.push_back(texts::plain(text::number(std::abs(step.pull_g))));
+std::vector<core::Phrase> values_of(const WeightStep& step) {
+  std::vector<core::Phrase> values{core::plain(core::number(step.mass_g)),
+                                   core::plain(core::number(step.position_mm, 4))};
+  if (step.pull_g != 0) values.push_back(core::plain(core::number(std::abs(step.pull_g))));
   return values;
 }
 
@@ -72,7 +72,7 @@ std::array<double, 3> rotations(const std::vector<Weighed>& all) {
   const double most = *std::max_element(largest.begin(), largest.end());
   for (std::size_t cell = 0; cell < 3; ++cell)
     if (!(largest[cell] > kDeaf_share * most))
-      throw texts::Refusal(phrase("weights.no_response", {plain(kCells[cell])}));
+      throw core::Refusal(phrase("weights.no_response", {plain(kCells[cell])}));
   return rotation;
 }
 
@@ -133,8 +133,8 @@ sensing::Readings readings_under(const sensing::ForceCalibration::Matrix& k,
 sensing::WeightFit fit_of(const std::vector<sensing::DeadWeight>& weights) {
   try {
     return sensing::fit_weights(weights);
-  } catch (const terms::UsageError&) {
-    throw texts::Refusal(phrase("weights.not_apart"));
+  } catch (const core::UsageError&) {
+    throw core::Refusal(phrase("weights.not_apart"));
   }
 }
 
@@ -142,7 +142,7 @@ sensing::WeightFit fit_of(const std::vector<sensing::DeadWeight>& weights) {
 class Weighing {
  public:
   Weighing(BridgeReader& bridges, const std::function<bool(const WeightStep&)>& ready,
-           const std::function<bool(const texts::Phrase&)>& failed)
+           const std::function<bool(const core::Phrase&)>& failed)
       : bridges_(bridges), ready_(ready), failed_(failed) {}
 
   void take(const WeightStep& step) {
@@ -151,7 +151,7 @@ class Weighing {
     if (step.tare)
       tares_.push_back(*reading);
     else if (tares_.empty())
-      throw texts::Refusal(phrase("weights.first_step"));
+      throw core::Refusal(phrase("weights.first_step"));
     else
       all_.push_back({step, *reading, tares_.back()});
   }
@@ -169,8 +169,8 @@ class Weighing {
       auto step = all_[index].step;
       const auto found = found_without(weights, index);
       if (!step.remark.empty() || repeated_.size() == kMostRepeats)
-        throw texts::Refusal(phrase("weights.still_disagrees", {step.name(), found}));
-      step.remark = texts::phrase("weights.disagrees", {step.name(), found});
+        throw core::Refusal(phrase("weights.still_disagrees", {step.name(), found}));
+      step.remark = core::phrase("weights.disagrees", {step.name(), found});
       repeated_.push_back(step);
       all_.erase(all_.begin() + static_cast<std::ptrdiff_t>(index));
       take({true, 0, 0, 0, step.remark});
@@ -187,7 +187,7 @@ class Weighing {
         if (const auto found_Hz = bridges_.tapped_Hz(where)) return found_Hz;
         if (!failed_(phrase("weights.no_ring"))) return std::nullopt;
       } catch (const std::runtime_error& error) {
-        if (!failed_(texts::phrase_of(error))) throw;
+        if (!failed_(core::phrase_of(error))) throw;
       }
     return std::nullopt;
   }
@@ -198,7 +198,7 @@ class Weighing {
 
  private:
   void enough() const {
-    if (all_.size() < kFewest) throw texts::Refusal(phrase("weights.too_few", {plain(kFewest)}));
+    if (all_.size() < kFewest) throw core::Refusal(phrase("weights.too_few", {plain(kFewest)}));
   }
 
   std::optional<BridgeReading> read(const WeightStep& step) {
@@ -206,10 +206,10 @@ class Weighing {
         const auto reading = bridges_.read(step);
         rests(reading);
         return reading;
-      } catch (const terms::UsageError&) {
+      } catch (const core::UsageError&) {
         throw;
       } catch (const std::runtime_error& error) {
-        if (!failed_(texts::phrase_of(error))) throw;
+        if (!failed_(core::phrase_of(error))) throw;
       }
     return std::nullopt;
   }
@@ -219,28 +219,28 @@ class Weighing {
     for (std::size_t cell = 0; cell < 3; ++cell) {
       const double before = tares_.front().sd[cell];
       if (reading.sd[cell] > kRestlessShare * before + kRipple * std::abs(reading.ratio[cell]))
-        throw texts::Failure(
+        throw core::Failure(
             phrase("weights.restless",
                    {plain(kCells[cell]), plain(fmt::format("{:.0f}", reading.sd[cell] / before))}));
     }
   }
 
   /// Returns the load that a calibration with the other weights finds for weight `index`, as text.
-  static texts::Phrase found_without(std::vector<sensing::DeadWeight> weights, std::size_t index) {
+  static core::Phrase found_without(std::vector<sensing::DeadWeight> weights, std::size_t index) {
     const auto readings = weights[index].readings;
     weights.erase(weights.begin() + static_cast<std::ptrdiff_t>(index));
     const auto force = sensing::fit_weights(weights).calibration.force(readings);
     const auto tenths = [](double value) {
-      return texts::plain(text::number(std::round(10 * value) / 10 + 0.0, 5));
+      return core::plain(core::number(std::round(10 * value) / 10 + 0.0, 5));
     };
     const auto grams = [&](double force_N) { return tenths(1e3 * force_N / kGravity_m_s2); };
-    return texts::phrase("weights.found", {grams(force.normal_N), tenths(force.moment_Nmm / force.normal_N),
-                                           grams(force.lateral_N)});
+    return core::phrase("weights.found", {grams(force.normal_N), tenths(force.moment_Nmm / force.normal_N),
+                                          grams(force.lateral_N)});
   }
 
   BridgeReader& bridges_;
   const std::function<bool(const WeightStep&)>& ready_;
-  const std::function<bool(const texts::Phrase&)>& failed_;
+  const std::function<bool(const core::Phrase&)>& failed_;
   std::vector<Weighed> all_;
   std::vector<BridgeReading> tares_;
   std::vector<WeightStep> repeated_;
@@ -252,32 +252,32 @@ void check(const ForceResult& made, const std::vector<BridgeReading>& tares) {
   constexpr std::array<const char*, 3> loads{"weights.normal", "weights.pull", "weights.place"};
   for (std::size_t k = 0; k < 3; ++k)
     if (!(made.misfit[k] < kMostMisfit))
-      throw texts::Refusal(
-          phrase("weights.misfit", {phrase(loads[k]), plain(text::number(made.misfit[k], 2))}));
+      throw core::Refusal(
+          phrase("weights.misfit", {phrase(loads[k]), plain(core::number(made.misfit[k], 2))}));
   double shaken_N = 0;
   for (const auto& tare : tares)
     for (std::size_t cell = 0; cell < 3; ++cell)
       shaken_N = std::max(shaken_N, kRatedLoad_N * tare.sd[cell] / made.cells.rated_ratio[cell]);
   if (shaken_N > kRestless_N)
-    throw texts::Refusal(phrase("weights.unsteady", {plain(text::number(1e3 * shaken_N, 2)),
-                                                     plain(text::number(1e3 * kRestless_N, 2))}));
+    throw core::Refusal(phrase("weights.unsteady", {plain(core::number(1e3 * shaken_N, 2)),
+                                                    plain(core::number(1e3 * kRestless_N, 2))}));
   if (made.zero_moved_mN > 1e3 * kMoved_N)
-    throw texts::Refusal(phrase("weights.zero_moved", {plain(text::number(made.zero_moved_mN, 3))}));
+    throw core::Refusal(phrase("weights.zero_moved", {plain(core::number(made.zero_moved_mN, 3))}));
 }
 
 }  // namespace
 
-texts::Phrase WeightStep::name() const {
-  if (pull_g == 0) return texts::phrase("weights.weight", values_of(*this));
-  return texts::phrase(pull_g > 0 ? "weights.weight_narrow" : "weights.weight_wide", values_of(*this));
+core::Phrase WeightStep::name() const {
+  if (pull_g == 0) return core::phrase("weights.weight", values_of(*this));
+  return core::phrase(pull_g > 0 ? "weights.weight_narrow" : "weights.weight_wide", values_of(*this));
 }
 
-texts::Phrase WeightStep::text() const {
-  if (tare) return texts::phrase("weights.clear");
-  if (tap == Tap::from_above) return texts::phrase("weights.tap_above");
-  if (tap == Tap::along) return texts::phrase("weights.tap_along");
-  if (pull_g == 0) return texts::phrase("weights.put", values_of(*this));
-  return texts::phrase(pull_g > 0 ? "weights.pull_narrow" : "weights.pull_wide", values_of(*this));
+core::Phrase WeightStep::text() const {
+  if (tare) return core::phrase("weights.clear");
+  if (tap == Tap::from_above) return core::phrase("weights.tap_above");
+  if (tap == Tap::along) return core::phrase("weights.tap_along");
+  if (pull_g == 0) return core::phrase("weights.put", values_of(*this));
+  return core::phrase(pull_g > 0 ? "weights.pull_narrow" : "weights.pull_wide", values_of(*this));
 }
 
 std::vector<WeightStep> weight_steps(double length_mm) {
@@ -307,7 +307,7 @@ std::optional<double> ringing_of(const std::array<std::vector<double>, 3>& readi
 
 ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
                   const std::function<bool(const WeightStep&)>& ready,
-                  const std::function<bool(const texts::Phrase&)>& failed) {
+                  const std::function<bool(const core::Phrase&)>& failed) {
   Weighing weighing(bridges, ready, failed);
   for (const auto& step : weight_steps(1e3 * rig.surface.length_m)) weighing.take(step);
   weighing.repeat_outliers();
@@ -323,7 +323,7 @@ ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
   made.cells.changes = fit.calibration.changes();
   const auto& tares = weighing.tares();
   made.cells.reference_amplitude = tares.front().reference;
-  if (tares.front().reference > 0) made.cells.carrier_Hz = terms::kForceCarrier_Hz;
+  if (tares.front().reference > 0) made.cells.carrier_Hz = core::kForceCarrier_Hz;
   made.cells.rated_ratio = rated_ratios(weights);
   const double middle_Nmm = 0.5 * 0.5e3 * rig.surface.length_m;
   made.sd = fit.calibration.sd(readings_under(made.cells.matrix, {0.5, 0.25, middle_Nmm}));
@@ -344,7 +344,7 @@ ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
 std::string write_forces(const rig::Rig& rig, const rig::ForceCells& cells, const std::string& path) {
   auto made = known_calibration(rig, path);
   made.forces = cells;
-  const auto out = path.empty() ? calibration::file_for(rig.path, calibration::today()) : path;
+  const auto out = path.empty() ? rig::file_for(rig.path, rig::today()) : path;
   write_calibration(made, rig, out);
   return out;
 }

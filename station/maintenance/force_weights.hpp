@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "station/calibration/calibration.hpp"
-#include "station/drive/alsa_capture.hpp"
-#include "station/drive/engine.hpp"
-#include "station/iio/converter.hpp"
-#include "station/plant/setup.hpp"
+#include "station/audio/alsa_capture.hpp"
+#include "station/audio/engine.hpp"
+#include "station/core/texts.hpp"
+#include "station/io/converter.hpp"
+#include "station/rig/calibration.hpp"
 #include "station/rig/rig.hpp"
 #include "station/sensing/force_calibration.hpp"
-#include "station/texts/texts.hpp"
+#include "station/simulation/setup.hpp"
 
 namespace turnpoint::maintenance {
 
@@ -28,12 +28,12 @@ struct WeightStep {
   double mass_g = 0, position_mm = 0;
   /// mass that hangs on the string and so pulls along the surface; negative if it pulls towards the wide edge
   double pull_g = 0;
-  texts::Phrase remark = {};  ///< why the step is repeated; usually empty
+  core::Phrase remark = {};  ///< why the step is repeated; usually empty
   Tap tap = Tap::none;
 
   /// text() is what the operator is asked to do; name() is what messages call a weight.
-  texts::Phrase text() const;
-  texts::Phrase name() const;
+  core::Phrase text() const;
+  core::Phrase name() const;
 };
 
 /// The steps for a surface of this length: a tare (a reading without a weight), then 20, 50, 100 and 200 g at
@@ -71,8 +71,8 @@ std::optional<double> ringing_of(const std::array<std::vector<double>, 3>& readi
 /// The sound card of a rig whose force cells are read. `pause` is called to wait while nothing new was
 /// captured.
 struct BridgeDevices {
-  std::unique_ptr<drive::Stream> stream;
-  std::unique_ptr<drive::Capture> capture;
+  std::unique_ptr<audio::Stream> stream;
+  std::unique_ptr<audio::Capture> capture;
   std::function<void()> pause;
 };
 std::unique_ptr<BridgeReader> card_bridges(const rig::Rig& rig, BridgeDevices devices);
@@ -80,13 +80,13 @@ std::unique_ptr<BridgeReader> card_bridges(const rig::Rig& rig, BridgeDevices de
 /// Reads cells on a converter with a clock of its own. `open` opens it.
 std::unique_ptr<BridgeReader> converter_bridges(
     const rig::CellConverter& converter,
-    const std::function<std::unique_ptr<iio::Converter>(const iio::Config&)>& open = iio::open);
+    const std::function<std::unique_ptr<io::Converter>(const io::Config&)>& open = io::open);
 
 /// Opens the reader for the rig's force cells. Only the carrier is played, and the amplifier stays off.
-/// `laboratory` changes the simulated laboratory; for tests. Throws terms::UsageError for a rig without force
+/// `laboratory` changes the simulated laboratory; for tests. Throws core::UsageError for a rig without force
 /// cells.
 std::unique_ptr<BridgeReader> open_bridges(const rig::Rig& rig,
-                                           const std::function<void(plant::Setup&)>& laboratory = {});
+                                           const std::function<void(simulation::Setup&)>& laboratory = {});
 
 /// The result of a calibration with dead weights.
 struct ForceResult {
@@ -112,11 +112,11 @@ struct ForceResult {
 /// leave it out. If a reading fails, `failed` gets the reason and returns true to repeat the step; otherwise
 /// the error is thrown. A weight that does not agree with the others is asked for once more, with a remark.
 /// The last two steps are taps, from above and along the plate; a tap that is left out, or that is not
-/// repeated although nothing rang, leaves the resonance unknown. Throws terms::UsageError if too many steps
+/// repeated although nothing rang, leaves the resonance unknown. Throws core::UsageError if too many steps
 /// were left out, if a cell does not respond, if a weight still does not agree, or if the zero moved.
 ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
                   const std::function<bool(const WeightStep&)>& ready,
-                  const std::function<bool(const texts::Phrase&)>& failed);
+                  const std::function<bool(const core::Phrase&)>& failed);
 
 /// Adds the force cells to the newest valid calibration of the rig, and writes it: to `path`, or beside the
 /// rig file with today's date if `path` is empty. Returns the path.

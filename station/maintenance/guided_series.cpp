@@ -9,15 +9,15 @@
 #include <iterator>
 #include <utility>
 
-#include "station/calibration/apply.hpp"
-#include "station/drive/burst.hpp"
+#include "station/audio/burst.hpp"
+#include "station/core/limits.hpp"
+#include "station/core/texts.hpp"
+#include "station/core/usage_error.hpp"
 #include "station/maintenance/calibrate.hpp"
 #include "station/maintenance/panel_latency.hpp"
+#include "station/rig/apply.hpp"
 #include "station/scene/transducer.hpp"
 #include "station/system/write_file.hpp"
-#include "station/terms/limits.hpp"
-#include "station/terms/usage_error.hpp"
-#include "station/texts/texts.hpp"
 
 namespace turnpoint::maintenance {
 
@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kTone_s = 4, kRamp_s = 0.05, kToneRest_s = 0.5;
 constexpr double kQuiet = 0.1;  // amplitude of a response or sound measurement
-constexpr double kLowest_Hz = terms::kAudible_Hz,
+constexpr double kLowest_Hz = core::kAudible_Hz,
                  kHighest_Hz = 46'000;  // inaudible, and what a station can sample
 constexpr double kSand_um = 1;          // enough to move sand at these frequencies
 constexpr double kSand_sd_mm = 1.5;     // of the edge of sand, read by eye on a scale
@@ -82,13 +82,13 @@ const char* word(Series series) {
 
 /// Beside the calibration file: RIG.boundaries-2026-03-01.csv.
 std::string path_beside(const rig::Rig& rig, const std::string& what) {
-  auto path = calibration::file_for(rig.path, calibration::today());
+  auto path = rig::file_for(rig.path, rig::today());
   path.replace(path.rfind("calibration-"), std::string("calibration").size(), what);
   return std::filesystem::path(path).replace_extension(".csv").string();
 }
 
 /// The newest valid calibration, with what was measured now in the place of what it had.
-calibration::Calibration merged(const rig::Rig& rig, Series series, const calibration::Calibration& made) {
+rig::Calibration merged(const rig::Rig& rig, Series series, const rig::Calibration& made) {
   auto all = known_calibration(rig);
   all.made_on = made.made_on;
   if (series == Series::response) {
@@ -104,7 +104,7 @@ calibration::Calibration merged(const rig::Rig& rig, Series series, const calibr
   } else {
     all.sound = made.sound;
   }
-  static_cast<void>(calibration::applied(all, rig));  // throws if the rig cannot use it
+  static_cast<void>(rig::applied(all, rig));  // throws if the rig cannot use it
   return all;
 }
 
@@ -161,8 +161,8 @@ void play_point(const rig::Rig& rig, const SeriesPoint& point, const std::stop_t
   const auto transducer = std::find_if(rig.transducers.begin(), rig.transducers.end(),
                                        [&](const auto& one) { return one.name == point.transducer; });
   if (transducer == rig.transducers.end())
-    throw terms::UsageError("the rig has no transducer named " + point.transducer);
-  drive::Burst burst;
+    throw core::UsageError("the rig has no transducer named " + point.transducer);
+  audio::Burst burst;
   burst.length_frames = frames(tone_length_s(rig));
   burst.ramp.frames = frames(kRamp_s);
   burst.tones.count = 1;
@@ -174,10 +174,10 @@ SeriesResult finish_series(const rig::Rig& rig, Series series, const std::vector
   const auto read =
       std::count_if(points.begin(), points.end(), [](const auto& p) { return p.value.has_value(); });
   if (read < least_points(series))
-    throw texts::Refusal(texts::phrase("series.too_few", {texts::plain(read), texts::plain(points.size()),
-                                                          texts::plain(least_points(series))}));
+    throw core::Refusal(core::phrase("series.too_few", {core::plain(read), core::plain(points.size()),
+                                                        core::plain(least_points(series))}));
   SeriesResult result;
-  calibration::Measurements measurements;
+  rig::Measurements measurements;
   if (series == Series::response) {
     for (const auto& transducer : rig.transducers) {
       std::vector<SeriesPoint> mine;
@@ -198,7 +198,7 @@ SeriesResult finish_series(const rig::Rig& rig, Series series, const std::vector
   const auto made = calibrate(rig, measurements, kValidDays, "");
   result.figure = calibration_figure(made, measurements);
   result.made = merged(rig, series, made);
-  result.file = calibration::file_for(rig.path, made.made_on);
+  result.file = rig::file_for(rig.path, made.made_on);
   write_calibration(result.made, rig, result.file);
   return result;
 }

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "station/calibration/calibration.hpp"
 #include "station/maintenance/tone_readings.hpp"
-#include "station/plot/chart.hpp"
+#include "station/report/chart.hpp"
+#include "station/rig/calibration.hpp"
 #include "station/rig/rig.hpp"
 
 namespace turnpoint::maintenance {
@@ -44,14 +44,14 @@ void play_point(const rig::Rig& rig, const SeriesPoint& point, const std::stop_t
 
 /// A calibration with a series that was measured anew.
 struct SeriesResult {
-  std::string file;     ///< the calibration file that was written
-  std::string csv;      ///< the file with what was read
-  plot::Figure figure;  ///< the readings with their fit, and the residuals
-  calibration::Calibration made;
+  std::string file;       ///< the calibration file that was written
+  std::string csv;        ///< the file with what was read
+  report::Figure figure;  ///< the readings with their fit, and the residuals
+  rig::Calibration made;
 };
 /// Writes the readings beside the rig file, fits them, and writes a calibration with today's date: the newest
-/// valid one with this series replaced. Points without a value are left out. Throws terms::UsageError and
-/// text::BadInput like calibrate().
+/// valid one with this series replaced. Points without a value are left out. Throws core::UsageError and
+/// core::BadInput like calibrate().
 SeriesResult finish_series(const rig::Rig& rig, Series series, const std::vector<SeriesPoint>& points);
 
 }  // namespace turnpoint::maintenance

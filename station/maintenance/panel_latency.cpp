@@ -3,25 +3,25 @@
 #include <filesystem>
 #include <utility>
 
-#include "station/calibration/apply.hpp"
-#include "station/lines/buttons.hpp"
+#include "station/core/texts.hpp"
+#include "station/io/buttons.hpp"
+#include "station/io/touch_reader.hpp"
 #include "station/maintenance/calibrate.hpp"
-#include "station/setup/open_touch.hpp"
-#include "station/texts/texts.hpp"
-#include "station/touch/touch_reader.hpp"
+#include "station/rig/apply.hpp"
+#include "station/session/open_touch.hpp"
 
 namespace turnpoint::maintenance {
 
-using texts::phrase;
+using core::phrase;
 
 namespace {
 
-std::optional<calibration::Calibration> in_force(const rig::Rig& rig, const std::string& path) {
+std::optional<rig::Calibration> in_force(const rig::Rig& rig, const std::string& path) {
   if (path.empty()) return std::nullopt;
-  auto newest = calibration::load(path);
+  auto newest = rig::load_calibration(path);
   // A calibration that has only friction or sound levels is not used by sessions, but what is in it still
   // counts when more is measured.
-  const int left_days = calibration::days_left(newest, calibration::today());
+  const int left_days = rig::days_left(newest, rig::today());
   const bool current = left_days >= 0 && left_days <= newest.valid_days;
   return newest.rig_sha256 == rig.sha256 && current ? std::optional(newest) : std::nullopt;
 }
@@ -30,13 +30,13 @@ std::optional<calibration::Calibration> in_force(const rig::Rig& rig, const std:
 
 LatencyDevices::LatencyDevices(const rig::Rig& rig, OnEdge on_edge) {
   if (!rig.buttons_uri || *rig.buttons_uri == "sim:")
-    throw texts::Refusal(
+    throw core::Refusal(
         phrase("refusal.no_button_lines",
-               {rig.buttons_uri ? texts::plain(*rig.buttons_uri) : phrase("refusal.buttons_absent")}));
-  touch_ = setup::open_touch(rig, [](touch::TouchPanelState) {});
-  lines::ButtonsHandlers handlers;
-  handlers.press = [edge = std::move(on_edge)](const lines::Press& press) { edge(press.time_ns); };
-  buttons_ = lines::open_buttons(lines::ButtonsConfig{*rig.buttons_uri}, std::nullopt, std::move(handlers));
+               {rig.buttons_uri ? core::plain(*rig.buttons_uri) : phrase("refusal.buttons_absent")}));
+  touch_ = session::open_touch(rig, [](io::TouchPanelState) {});
+  io::ButtonsHandlers handlers;
+  handlers.press = [edge = std::move(on_edge)](const io::Press& press) { edge(press.time_ns); };
+  buttons_ = io::open_buttons(io::ButtonsConfig{*rig.buttons_uri}, std::nullopt, std::move(handlers));
 }
 
 LatencyDevices::~LatencyDevices() = default;
@@ -45,24 +45,23 @@ std::optional<std::int64_t> LatencyDevices::claim(double x, double y, std::int64
   return touch_ ? touch_->claim(x, y, seen_ns) : std::nullopt;
 }
 
-calibration::Calibration known_calibration(const rig::Rig& rig, const std::string& out) {
+rig::Calibration known_calibration(const rig::Rig& rig, const std::string& out) {
   const bool continued = !out.empty() && std::filesystem::exists(out);
-  const auto found = in_force(rig, continued ? out : calibration::newest_for(rig.path));
-  if (continued && !found) throw texts::Refusal(phrase("refusal.other_calibration", {texts::plain(out)}));
-  auto made = found.value_or(calibration::Calibration{});
+  const auto found = in_force(rig, continued ? out : rig::newest_for(rig.path));
+  if (continued && !found) throw core::Refusal(phrase("refusal.other_calibration", {core::plain(out)}));
+  auto made = found.value_or(rig::Calibration{});
   if (made.rig_sha256.empty()) {
     made.rig_name = rig.name;
     made.rig_sha256 = rig.sha256;
-    made.made_on = calibration::today();
+    made.made_on = rig::today();
   }
   return made;
 }
 
-calibration::Calibration with_panel(const rig::Rig& rig, const calibration::PanelLatency& measured,
-                                    const std::string& out) {
+rig::Calibration with_panel(const rig::Rig& rig, const rig::PanelLatency& measured, const std::string& out) {
   auto made = known_calibration(rig, out);
   auto panel = measured;
-  panel.made_on = calibration::today();
+  panel.made_on = rig::today();
   if (made.panel && made.panel->quality == panel.quality) {
     if (!panel.touch) panel.touch = made.panel->touch;
     if (!panel.flash) panel.flash = made.panel->flash;
@@ -71,13 +70,13 @@ calibration::Calibration with_panel(const rig::Rig& rig, const calibration::Pane
   return made;
 }
 
-std::string keep_panel(const rig::Rig& rig, const calibration::PanelLatency& measured) {
-  const auto file = calibration::file_for(rig.path, calibration::today());
+std::string keep_panel(const rig::Rig& rig, const rig::PanelLatency& measured) {
+  const auto file = rig::file_for(rig.path, rig::today());
   write_calibration(with_panel(rig, measured), rig, file);
   return file;
 }
 
-void keep_devices(const rig::Rig& rig, calibration::Calibration& made, const std::string& out) {
+void keep_devices(const rig::Rig& rig, rig::Calibration& made, const std::string& out) {
   const auto known = known_calibration(rig, out);
   made.panel = known.panel;
   made.pick_ups = known.pick_ups;

@@ -6,21 +6,21 @@
 #include <cmath>
 #include <numbers>
 
-#include "station/calibration/apply.hpp"
+#include "station/core/usage_error.hpp"
 #include "station/maintenance/captured_sweep.hpp"
 #include "station/maintenance/panel_latency.hpp"
+#include "station/rig/apply.hpp"
 #include "station/rig/csv.hpp"
 #include "station/sensing/sweep.hpp"
 #include "station/session/session.hpp"
 #include "station/session/stage.hpp"
-#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::maintenance {
 
 namespace {
 
-using calibration::DisplacementPoint;
-using calibration::PickUp;
+using rig::DisplacementPoint;
+using rig::PickUp;
 
 constexpr double kFirst_s = 2, kPause_s = 1;
 constexpr double kOverload = 0.98;  // a sample of this fraction of full scale counts as overload
@@ -33,7 +33,7 @@ constexpr double kMostContrast = 20;
 
 std::vector<sensing::Sweep> sweeps_of(const rig::Rig& rig, const PickUpOptions& options) {
   if (!(options.full_scale > 0 && options.full_scale <= 1))
-    throw terms::UsageError(
+    throw core::UsageError(
         fmt::format("pick-ups: the amplitude of the sweep must be above 0 and at most 1 (full scale), not {}",
                     options.full_scale));
   std::vector<sensing::Sweep> sweeps;
@@ -46,7 +46,7 @@ std::vector<sensing::Sweep> sweeps_of(const rig::Rig& rig, const PickUpOptions& 
     sweep.amplitude = options.full_scale;
     sweep.channel = transducer.channel;
     if (!(sweep.high_Hz - sweep.low_Hz >= 1000))
-      throw terms::UsageError(fmt::format(
+      throw core::UsageError(fmt::format(
           "pick-ups: the band of transducer \"{}\" leaves less than 1 kHz between {} and {} Hz to sweep",
           transducer.name, options.low_Hz, options.high_Hz));
     sweeps.push_back(sweep);
@@ -55,7 +55,7 @@ std::vector<sensing::Sweep> sweeps_of(const rig::Rig& rig, const PickUpOptions& 
 }
 
 Captured captured(const rig::Rig& rig, const std::vector<sensing::Sweep>& sweeps,
-                  std::vector<drive::Burst>& bursts, const PickUpOptions& options) {
+                  std::vector<audio::Burst>& bursts, const PickUpOptions& options) {
   double start_s = kFirst_s;
   for (const auto& sweep : sweeps) {
     bursts.push_back(sensing::sweep_burst(sweep, std::llround(start_s * sweep.rate_Hz)));
@@ -67,7 +67,7 @@ Captured captured(const rig::Rig& rig, const std::vector<sensing::Sweep>& sweeps
 
 /// Returns the part of a recording that sensing::sweep_response() needs.
 std::span<const double> part_of(const Captured& recording, int channel, const sensing::Sweep& sweep,
-                                const drive::Burst& burst) {
+                                const audio::Burst& burst) {
   const auto quiet = std::llround(sensing::kSweepQuiet_s * sweep.rate_Hz);
   const auto& samples = recording.channels.at(static_cast<std::size_t>(channel));
   const auto first = burst.start_frame - quiet - recording.first_frame;
@@ -79,21 +79,21 @@ std::span<const double> part_of(const Captured& recording, int channel, const se
 
 PickUp fitted(int channel, const sensing::Sweep& sweep, const sensing::SweepResponse& response) {
   if (response.largest_sample >= kOverload)
-    throw terms::UsageError(fmt::format(
+    throw core::UsageError(fmt::format(
         "the pick-up on channel {} overloads the converter; use a smaller --full-scale or less gain",
         channel));
-  std::vector<calibration::SweptPoint> points;
+  std::vector<rig::SweptPoint> points;
   double largest = 0;
   for (const auto& [f, value] : response.points) {
     points.push_back({f, value});
     largest = std::max(largest, std::abs(value));
   }
   if (!(largest > kLeastOverNoise * response.noise))
-    throw terms::UsageError(fmt::format(
+    throw core::UsageError(fmt::format(
         "the pick-up on channel {} captures nothing but noise while output channel {} sweeps; check its wire "
         "and the amplifier",
         channel, sweep.channel));
-  return calibration::fit_pick_up(channel, sweep.channel, points, response.noise);
+  return rig::fit_pick_up(channel, sweep.channel, points, response.noise);
 }
 
 /// A table of measured displacements, and the captured channel of the pick-up to which they belong.
@@ -106,20 +106,20 @@ struct ScaleTable {
 std::optional<ScaleTable> scale_table(const PickUpOptions& options) {
   const bool by_vibrometer = !options.vibrometer.empty();
   if (by_vibrometer && !options.accelerometer.empty())
-    throw terms::UsageError("pick-ups: give either --vibrometer or --accelerometer");
+    throw core::UsageError("pick-ups: give either --vibrometer or --accelerometer");
   const auto& given = by_vibrometer ? options.vibrometer : options.accelerometer;
   if (given.empty()) return std::nullopt;
   const auto equals = given.find('=');
   const auto digits = given.substr(0, equals);
   if (equals == std::string::npos || equals == 0 || equals + 1 == given.size() || digits.size() > 2 ||
       digits.find_first_not_of("0123456789") != std::string::npos)
-    throw terms::UsageError("pick-ups: \"" + given + "\"; write CHANNEL=FILE.csv with the captured channel");
+    throw core::UsageError("pick-ups: \"" + given + "\"; write CHANNEL=FILE.csv with the captured channel");
   if (!(options.table_full_scale > 0 && options.table_full_scale <= 1))
-    throw terms::UsageError(
+    throw core::UsageError(
         fmt::format("the table was measured at {} of full scale; it must be above 0 and at most 1",
                     options.table_full_scale));
   ScaleTable table{std::stoi(digits), given.substr(equals + 1), {}};
-  text::Findings findings;
+  core::Findings findings;
   const auto rows =
       rig::read_table(table.file, {"frequency_Hz", by_vibrometer ? "displacement_um" : "acceleration_m_s2"},
                       {table.file, 0, 0}, findings, 1);
@@ -139,7 +139,7 @@ void compare(const ScaleTable& table, const rig::Transducer& transducer) {
   for (const auto& point : transducer.response) stated_um = std::max(stated_um, 1e6 * point.m_per_full_scale);
   for (const auto& point : table.points) largest_um = std::max(largest_um, point.um_per_full_scale);
   if (stated_um > 0 && (largest_um > kMostContrast * stated_um || largest_um * kMostContrast < stated_um))
-    throw terms::UsageError(
+    throw core::UsageError(
         fmt::format("{}: at full scale the surface would move by {:.3g} um, but the rig file says {:.3g} um; "
                     "check the unit and --full-scale",
                     table.file, largest_um, stated_um));
@@ -149,14 +149,14 @@ void compare(const ScaleTable& table, const rig::Transducer& transducer) {
 
 std::vector<PickUp> calibrate_pick_ups(const rig::Rig& rig, const PickUpOptions& options) {
   if (!rig.capture || rig.capture->pick_ups.empty())
-    throw terms::UsageError("the rig \"" + rig.name + "\" has no pick-ups; add [capture] to the rig file");
+    throw core::UsageError("the rig \"" + rig.name + "\" has no pick-ups; add [capture] to the rig file");
   const auto table = scale_table(options);
   const auto& channels = rig.capture->pick_ups;
   if (table && std::find(channels.begin(), channels.end(), table->channel) == channels.end())
-    throw terms::UsageError(fmt::format("the rig has no pick-up on captured channel {}", table->channel));
+    throw core::UsageError(fmt::format("the rig has no pick-up on captured channel {}", table->channel));
   if (table) compare(*table, rig.transducers.front());
   const auto sweeps = sweeps_of(rig, options);
-  std::vector<drive::Burst> bursts;
+  std::vector<audio::Burst> bursts;
   const auto recording = captured(rig, sweeps, bursts, options);
   std::vector<PickUp> made;
   for (std::size_t k = 0; k < sweeps.size(); ++k) {
@@ -173,14 +173,13 @@ std::vector<PickUp> calibrate_pick_ups(const rig::Rig& rig, const PickUpOptions&
   const auto measured = std::find_if(made.begin(), made.end(), [&](const PickUp& pick_up) {
     return pick_up.response.channel == table->channel;
   });
-  const auto scale = calibration::fit_scale(*measured, options.sensor, table->points, options.instrument_sd);
+  const auto scale = rig::fit_scale(*measured, options.sensor, table->points, options.instrument_sd);
   for (auto& pick_up : made)
     if (pick_up.response.channel == table->channel) pick_up.scale = scale;
   return made;
 }
 
-calibration::Calibration with_pick_ups(const rig::Rig& rig, std::vector<PickUp> pick_ups,
-                                       const std::string& out) {
+rig::Calibration with_pick_ups(const rig::Rig& rig, std::vector<PickUp> pick_ups, const std::string& out) {
   auto made = known_calibration(rig, out);
   made.pick_ups = std::move(pick_ups);
   return made;

@@ -5,18 +5,18 @@
 #include <cstdint>
 #include <functional>
 
-#include "station/drive/prepared_burst.hpp"
-#include "station/lines/amplifier.hpp"
+#include "station/audio/prepared_burst.hpp"
+#include "station/core/number.hpp"
+#include "station/core/texts.hpp"
+#include "station/io/amplifier.hpp"
 #include "station/session/burst.hpp"
 #include "station/session/stage.hpp"
 #include "station/system/clocks.hpp"
 #include "station/system/stop_signals.hpp"
-#include "station/text/number.hpp"
-#include "station/texts/texts.hpp"
 
 namespace turnpoint::maintenance {
 
-using texts::Failure, texts::phrase, texts::plain;
+using core::Failure, core::phrase, core::plain;
 
 namespace {
 
@@ -28,22 +28,22 @@ constexpr std::int64_t kPoll_ns = 5'000'000;
 constexpr std::int64_t kFirstBlocks_ns = 200'000'000;
 
 /// Returns the reason why the tones were not played correctly; nothing for normal events.
-texts::Phrase trouble_of(const drive::Event& event, const drive::OutputConfig& output) {
+core::Phrase trouble_of(const audio::Event& event, const audio::OutputConfig& output) {
   switch (event.kind) {
-    case drive::EventKind::underrun:
+    case audio::EventKind::underrun:
       return phrase("played.lost", {plain(output.uri), plain(event.frames)});
-    case drive::EventKind::device_lost:
+    case audio::EventKind::device_lost:
       return phrase("played.disconnected", {plain(output.uri)});
-    case drive::EventKind::burst_missed:
+    case audio::EventKind::burst_missed:
       return phrase("played.too_late", {plain(output.uri)});
-    case drive::EventKind::rate_wrong:
+    case audio::EventKind::rate_wrong:
       return phrase("played.rate",
-                    {plain(output.uri), plain(text::number(1e-3 * static_cast<double>(event.frames), 7)),
+                    {plain(output.uri), plain(core::number(1e-3 * static_cast<double>(event.frames), 7)),
                      plain(output.rate_Hz)});
-    case drive::EventKind::burst_started:
-    case drive::EventKind::burst_ended:
-    case drive::EventKind::burst_heard:
-    case drive::EventKind::device_back:
+    case audio::EventKind::burst_started:
+    case audio::EventKind::burst_ended:
+    case audio::EventKind::burst_heard:
+    case audio::EventKind::device_back:
       return {};
   }
   return {};
@@ -52,7 +52,7 @@ texts::Phrase trouble_of(const drive::Event& event, const drive::OutputConfig& o
 /// Until `done` returns true, reads the stream's events and keeps reporting to the amplifier that this
 /// program is running. Returns at once if a stop is requested. Throws if a tone was not played correctly, or
 /// after a termination signal.
-void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::stop_token& stop,
+void attend(audio::Stream& stream, audio::Amplifier& amplifier, const std::stop_token& stop,
             const std::function<bool()>& done) {
   for (;;) {
     const bool last = done();  // call done() before polling, so that all events up to then are processed
@@ -62,8 +62,8 @@ void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::stop_
         throw Failure(trouble);
     if (const auto clipped = stream.counters().saturated; clipped > 0)
       throw Failure(phrase("played.clipped", {plain(stream.config().output.uri), plain(clipped)}));
-    if (amplifier.state() == drive::AmplifierState::faulted)
-      throw Failure(phrase("played.amplifier", {texts::phrase_of(amplifier.fault())}));
+    if (amplifier.state() == audio::AmplifierState::faulted)
+      throw Failure(phrase("played.amplifier", {core::phrase_of(amplifier.fault())}));
     if (const auto signal = system::StopSignals::told(); !signal.empty())
       throw Failure(phrase("played.signal", {plain(signal)}));
     if (last || stop.stop_requested()) return;
@@ -72,7 +72,7 @@ void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::stop_
 }
 
 /// Plays the bursts. Returns the frame of the first onset.
-std::int64_t play(drive::Stream& stream, drive::Amplifier& amplifier, const std::vector<drive::Burst>& bursts,
+std::int64_t play(audio::Stream& stream, audio::Amplifier& amplifier, const std::vector<audio::Burst>& bursts,
                   const std::stop_token& stop) {
   const int rate_Hz = stream.config().output.rate_Hz;
   const auto margin = std::llround(kMargin_s * rate_Hz);
@@ -102,44 +102,44 @@ std::int64_t play(drive::Stream& stream, drive::Amplifier& amplifier, const std:
   return onset;
 }
 
-double largest_peak(const std::vector<drive::Burst>& bursts, const drive::StreamConfig& config) {
+double largest_peak(const std::vector<audio::Burst>& bursts, const audio::StreamConfig& config) {
   double peak = 0;
   for (const auto& burst : bursts)
-    for (const double channel : drive::prepare(burst, format_of(config.output), config.limits).peak)
+    for (const double channel : audio::prepare(burst, format_of(config.output), config.limits).peak)
       peak = std::max(peak, channel);
   return peak;
 }
 
 }  // namespace
 
-drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
-                             const std::vector<drive::Burst>& bursts) {
+audio::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
+                             const std::vector<audio::Burst>& bursts) {
   system::StopSignals signals;
   signals.take_over();
   return play_armed(rig, uri, bursts, {});
 }
 
-drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
-                             const std::vector<drive::Burst>& bursts, const std::stop_token& stop) {
+audio::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
+                             const std::vector<audio::Burst>& bursts, const std::stop_token& stop) {
   auto config = session::stream_of(rig);
   config.output.uri = uri;
   // this may throw, so do it before anything is opened
   const auto peak = largest_peak(bursts, config);
-  const auto amplifier = lines::open_amplifier(rig.amplifier_uri);  // the amplifier must outlive the stream
+  const auto amplifier = io::open_amplifier(rig.amplifier_uri);  // the amplifier must outlive the stream
   config.amplifier = amplifier.get();
   // the stream's destructor ramps down tones that are playing
-  const auto stream = drive::open_realtime(config);
+  const auto stream = audio::open_realtime(config);
   attend(*stream, *amplifier, stop, [until_ns = system::monotonic_ns() + kFirstBlocks_ns] {
     return system::monotonic_ns() >= until_ns;
   });
-  if (stop.stop_requested()) return drive::report_of(*stream);
+  if (stop.stop_requested()) return audio::report_of(*stream);
   for (const auto& refusal : {amplifier->arm(), amplifier->enable()})
-    if (refusal) throw Failure(phrase("played.amplifier", {texts::phrase_of(*refusal)}));
+    if (refusal) throw Failure(phrase("played.amplifier", {core::phrase_of(*refusal)}));
   const auto onset_frame = play(*stream, *amplifier, bursts, stop);
   // after a request to stop, tones may still be playing: the stream ramps them down before the amplifier goes
   // off
   if (!stop.stop_requested()) amplifier->disarm();
-  auto report = drive::report_of(*stream);
+  auto report = audio::report_of(*stream);
   report.peak = peak;
   report.onset_frame = onset_frame;
   return report;
@@ -147,11 +147,11 @@ drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
 
 bool can_be_felt(const rig::Rig& rig) { return rig.output.uri.starts_with("alsa:"); }
 
-drive::PlayReport play_on_rig(const rig::Rig& rig, const drive::Burst& burst, const std::stop_token& stop) {
+audio::PlayReport play_on_rig(const rig::Rig& rig, const audio::Burst& burst, const std::stop_token& stop) {
   if (can_be_felt(rig)) return play_armed(rig, rig.output.uri, {burst}, stop);
   auto config = session::stream_of(rig);
   config.output.uri = "null:";
-  return drive::play(config, burst);
+  return audio::play(config, burst);
 }
 
 namespace {

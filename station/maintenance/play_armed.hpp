@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "station/drive/engine.hpp"
+#include "station/audio/engine.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/rig/rig.hpp"
 
@@ -15,22 +15,22 @@ namespace turnpoint::maintenance {
 /// until after the last. A stop signal (see StopSignals) ramps down the tones that are playing and then
 /// switches the amplifier off.
 ///
-/// Throws the errors of drive::open_realtime and lines::open_amplifier. Throws texts::Failure if the
+/// Throws the errors of audio::open_realtime and io::open_amplifier. Throws core::Failure if the
 /// amplifier cannot be armed, after a fault, for lost frames, or after a stop signal.
-drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
-                             const std::vector<drive::Burst>& bursts);
+audio::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
+                             const std::vector<audio::Burst>& bursts);
 
 /// Like the function above, for a program that handles stop signals itself. After a request to stop, the
 /// tones are ramped down, the amplifier is switched off, and the function returns normally.
-drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
-                             const std::vector<drive::Burst>& bursts, const std::stop_token& stop);
+audio::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
+                             const std::vector<audio::Burst>& bursts, const std::stop_token& stop);
 
 /// True if the rig's output drives a surface that can be felt; false if it is simulated.
 bool can_be_felt(const rig::Rig& rig);
 
 /// Plays one burst on the rig at an operator's request: with play_armed() on a rig that can be felt;
-/// otherwise the sound is only computed. Throws the errors of play_armed(), and drive::BurstRefused.
-drive::PlayReport play_on_rig(const rig::Rig& rig, const drive::Burst& burst, const std::stop_token& stop);
+/// otherwise the sound is only computed. Throws the errors of play_armed(), and audio::BurstRefused.
+audio::PlayReport play_on_rig(const rig::Rig& rig, const audio::Burst& burst, const std::stop_token& stop);
 
 /// What was played when somebody tried out a scene.
 struct FeltScene {
@@ -42,7 +42,7 @@ struct FeltScene {
 
 /// Plays a scene of a protocol once, for as long as an interval of the task lasts, but for at most 5 s and
 /// within the rig's limits. See play_on_rig(). `stop` ends it at once. Throws scene::Unreachable,
-/// drive::BurstRefused, and the errors of play_armed().
+/// audio::BurstRefused, and the errors of play_armed().
 FeltScene feel_scene(const rig::Rig& rig, const protocol::Protocol& protocol, const std::string& scene,
                      const protocol::Factors& factors, const std::stop_token& stop);
 

@@ -7,9 +7,9 @@
 #include <span>
 #include <utility>
 
-#include "station/drive/engine.hpp"
-#include "station/drive/prepared_burst.hpp"
-#include "station/drive/sine.hpp"
+#include "station/audio/engine.hpp"
+#include "station/audio/prepared_burst.hpp"
+#include "station/audio/sine.hpp"
 #include "station/maintenance/captured_sweep.hpp"
 #include "station/maintenance/panel_latency.hpp"
 #include "station/maintenance/play_armed.hpp"
@@ -56,7 +56,7 @@ class Reader {
   /// The tone, whenever it begins: its phase does not matter for the amplitude.
   static sensing::FollowedTone followed(double frequency_Hz, int rate_Hz) {
     sensing::FollowedTone made;
-    made.partial.increment = drive::phase_increment(frequency_Hz, rate_Hz);
+    made.partial.increment = audio::phase_increment(frequency_Hz, rate_Hz);
     return made;
   }
 
@@ -79,17 +79,17 @@ class Reader {
 };
 
 /// Plays the tone in the simulated laboratory, at the pace of real time.
-void play_simulated(const rig::Rig& rig, const drive::Burst& tone, const std::stop_token& stop,
+void play_simulated(const rig::Rig& rig, const audio::Burst& tone, const std::stop_token& stop,
                     Reader& reader) {
   session::SimulatedRoom room(rig);
   auto config = session::stream_of(rig);
   config.output.uri = "null:";
-  const auto stream = drive::open_synchronous(config);
+  const auto stream = audio::open_synchronous(config);
   stream->listen([&](std::int64_t first_frame, std::span<const std::int32_t> played) {
     const auto captured = room.advance(first_frame, played);
     reader.push(captured.samples, captured.first_frame);
   });
-  room.expect(std::vector{drive::prepare(tone, drive::format_of(config.output), config.limits)});
+  room.expect(std::vector{audio::prepare(tone, audio::format_of(config.output), config.limits)});
   stream->schedule(tone);
   const auto begun_ns = system::monotonic_ns();
   const auto step = std::llround(kEvery_s * rig.output.rate_Hz);
@@ -106,7 +106,7 @@ bool reads_tones(const rig::Rig& rig) {
   return can_be_felt(rig) == !session::simulates_capture(rig);
 }
 
-void play_and_read(const rig::Rig& rig, const drive::Burst& tone, const std::stop_token& stop,
+void play_and_read(const rig::Rig& rig, const audio::Burst& tone, const std::stop_token& stop,
                    const OnToneReadings& on_readings) {
   if (!reads_tones(rig)) {
     play_on_rig(rig, tone, stop);
@@ -116,7 +116,7 @@ void play_and_read(const rig::Rig& rig, const drive::Burst& tone, const std::sto
   if (!can_be_felt(rig)) return play_simulated(rig, tone, stop, reader);
   CaptureThread capture(
       session::card_capture_of(rig).value().device,
-      [&reader](const drive::CapturedBlock& block) { reader.push(block.used(), block.first_frame); });
+      [&reader](const audio::CapturedBlock& block) { reader.push(block.used(), block.first_frame); });
   play_on_rig(rig, tone, stop);
   capture.end();
 }

@@ -4,7 +4,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "station/drive/burst.hpp"
+#include "station/audio/burst.hpp"
 #include "station/rig/rig.hpp"
 
 namespace turnpoint::maintenance {
@@ -24,7 +24,7 @@ bool reads_tones(const rig::Rig& rig);
 /// Plays one tone on the rig at an operator's request, as play_on_rig() does, and reads the pick-ups
 /// meanwhile. A simulated tone takes as long as a real one. Without pick-ups (see reads_tones) it only plays.
 /// Throws the errors of play_on_rig() and of CaptureThread.
-void play_and_read(const rig::Rig& rig, const drive::Burst& tone, const std::stop_token& stop,
+void play_and_read(const rig::Rig& rig, const audio::Burst& tone, const std::stop_token& stop,
                    const OnToneReadings& on_readings);
 
 }  // namespace turnpoint::maintenance

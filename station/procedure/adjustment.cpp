@@ -11,7 +11,7 @@
 
 namespace turnpoint::procedure {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 void Adjustment::record_setting(double setting) {
   if (!std::isfinite(setting)) throw std::invalid_argument("adjustment: a setting must be a finite number");
@@ -45,12 +45,12 @@ namespace {
 /// Reads "start", or "start_below" and "start_above". A list "start" is split at the middle between its
 /// lowest and its highest level: levels below it are starts from below, levels above it are starts from
 /// above.
-void read_starts(text::TableReader& reader, Spec& spec) {
+void read_starts(core::TableReader& reader, Spec& spec) {
   auto &below = spec.ascending.values, &above = spec.descending.values;
-  below = reader.maybe_numbers("start_below", any_level);
-  above = reader.maybe_numbers("start_above", any_level);
+  below = reader.maybe_numbers("start_below");
+  above = reader.maybe_numbers("start_above");
   if (!reader.has("start_below") && !reader.has("start_above")) {
-    spec.values = reader.numbers("start", any_level);
+    spec.values = reader.numbers("start");
     if (spec.values.empty()) return;
     const auto [low, high] = std::minmax_element(spec.values.begin(), spec.values.end());
     const double middle = 0.5 * (*low + *high);
@@ -78,7 +78,7 @@ extern const Description adjustment{
     Kind::adjustment,
     "adjustment",
     Choice::listed,
-    [](text::TableReader& reader, Spec& spec) {
+    [](core::TableReader& reader, Spec& spec) {
       read_starts(reader, spec);
       read_list(reader, spec);
     },
@@ -92,7 +92,7 @@ extern const Description adjustment{
       if (spec.repeats < 1)
         problems.push_back({"repeats", phrase("below 1"), phrase("write a whole number of 1 or more")});
     },
-    [](const Spec& spec, const Context& context, const random::Key& key) -> std::unique_ptr<Procedure> {
+    [](const Spec& spec, const Context& context, const core::DrawKey& key) -> std::unique_ptr<Procedure> {
       return std::make_unique<Adjustment>(spec, context, key);
     },
     [](const Spec&, double, double) -> std::optional<double> { return std::nullopt; },

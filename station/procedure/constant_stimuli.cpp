@@ -10,7 +10,7 @@
 
 namespace turnpoint::procedure {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
@@ -44,16 +44,16 @@ std::vector<std::size_t> combination(const Levels& factors, std::size_t repeat) 
 
 }  // namespace
 
-ConstantStimuli::ConstantStimuli(const Spec& spec, const Context& context, const random::Key& key)
+ConstantStimuli::ConstantStimuli(const Spec& spec, const Context& context, const core::DrawKey& key)
     : spec_(spec), context_(context), key_(key) {
-  random::Draws draws({key.seed, random::Stream::level_order, key.block, key.attempt, 0});
+  core::Draws draws({key.seed, core::Stream::level_order, key.block, key.attempt, 0});
   queue_ = items(draws);
   order(queue_, draws);
   for (const auto& item : queue_) ++left_[kind_of(item)];
   total_ = static_cast<int>(queue_.size());
 }
 
-std::vector<ConstantStimuli::Item> ConstantStimuli::items(random::Draws& draws) const {
+std::vector<ConstantStimuli::Item> ConstantStimuli::items(core::Draws& draws) const {
   const auto repeats = static_cast<std::size_t>(spec_.repeats);
   std::vector<Item> all(repeats * spec_.values.size());
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -73,7 +73,7 @@ std::vector<ConstantStimuli::Item> ConstantStimuli::items(random::Draws& draws) 
   return all;
 }
 
-void ConstantStimuli::order(std::vector<Item>& items, random::Draws& draws) const {
+void ConstantStimuli::order(std::vector<Item>& items, core::Draws& draws) const {
   if (spec_.shuffle == Shuffle::none) return;
   const auto n = spec_.shuffle == Shuffle::within_repeat ? spec_.values.size() : items.size();
   for (std::size_t first = 0; first < items.size(); first += n) {
@@ -151,7 +151,7 @@ void ConstantStimuli::record(Answer answer) {
   }
   // Insert the unanswered trial at a random place among the remaining trials, but not as the very next one.
   // If no trials remain, append it.
-  random::Draws draws({key_.seed, random::Stream::level_order, key_.block, key_.attempt, 1 + requeued_++});
+  core::Draws draws({key_.seed, core::Stream::level_order, key_.block, key_.attempt, 1 + requeued_++});
   const auto left = queue_.size() - position_;
   const auto offset = left == 0 ? 0 : 1 + draws.below(left);
   if (left > 0) item.repeat = queue_[position_ + offset - 1].repeat;
@@ -172,11 +172,11 @@ extern const Description constant_stimuli{
     Kind::constant_stimuli,
     "constant-stimuli",
     Choice::listed,
-    [](text::TableReader& reader, Spec& spec) {
-      spec.values = reader.numbers("values", any_level);
+    [](core::TableReader& reader, Spec& spec) {
+      spec.values = reader.numbers("values");
       read_list(reader, spec);
       if (const auto* stop = reader.maybe_table("stop")) {
-        text::TableReader inner(*stop, reader.path("stop"), reader.findings());
+        core::TableReader inner(*stop, reader.path("stop"), reader.findings(), reader.keys("stop"));
         read_right_of_last(inner, spec);
         if (!inner.has("right") && !inner.has("of_last"))
           reader.problem("stop", phrase("\"stop\" does not contain a rule"),
@@ -190,7 +190,7 @@ extern const Description constant_stimuli{
       if (spec.repeats < 1)
         problems.push_back({"repeats", phrase("below 1"), phrase("write a whole number of 1 or more")});
     },
-    [](const Spec& spec, const Context& context, const random::Key& key) -> std::unique_ptr<Procedure> {
+    [](const Spec& spec, const Context& context, const core::DrawKey& key) -> std::unique_ptr<Procedure> {
       return std::make_unique<ConstantStimuli>(spec, context, key);
     },
     [](const Spec&, double, double) -> std::optional<double> { return std::nullopt; },

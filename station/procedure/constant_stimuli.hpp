@@ -14,7 +14,7 @@ namespace turnpoint::procedure {
 /// Stop::of_last).
 class ConstantStimuli : public Procedure {
  public:
-  ConstantStimuli(const Spec& spec, const Context& context, const random::Key& key);
+  ConstantStimuli(const Spec& spec, const Context& context, const core::DrawKey& key);
 
   std::optional<Proposal> next() const override;
   std::vector<Candidate> candidates() const override;
@@ -32,13 +32,13 @@ class ConstantStimuli : public Procedure {
   };
   using Kind = std::pair<std::size_t, std::vector<std::size_t>>;  ///< value and levels of the balanced factors
   static Kind kind_of(const Item& item) { return {item.value, item.balance}; }
-  std::vector<Item> items(random::Draws& draws) const;
+  std::vector<Item> items(core::Draws& draws) const;
   bool in_repeat(std::size_t at) const;
-  void order(std::vector<Item>& items, random::Draws& draws) const;
+  void order(std::vector<Item>& items, core::Draws& draws) const;
 
   Spec spec_;
   Context context_;
-  random::Key key_;
+  core::DrawKey key_;
   std::vector<Item> queue_;
   std::size_t position_ = 0;
   std::map<Kind, int> left_;  ///< how many items of each kind are still to come

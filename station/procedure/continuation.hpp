@@ -17,7 +17,7 @@ struct EarlierTrial {
 /// The trials of the participant's earlier sessions, in order, by the name of the procedure.
 using EarlierTrials = std::map<std::string, std::vector<EarlierTrial>>;
 
-/// Brings a new procedure into the state after these trials. Throws texts::Failure if it would not have
+/// Brings a new procedure into the state after these trials. Throws core::Failure if it would not have
 /// presented the same levels.
 void continue_from(const std::vector<EarlierTrial>& trials, const Spec& spec, Procedure& procedure);
 

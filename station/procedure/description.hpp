@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "station/core/reader.hpp"
 #include "station/procedure/procedure.hpp"
-#include "station/text/reader.hpp"
 
 namespace turnpoint::procedure {
 
@@ -31,10 +31,10 @@ struct Description {
   Choice choice;
   /// Reads the keys of this kind from a [[procedure]] table. The keys name, kind, level and copy have already
   /// been read.
-  void (*read)(text::TableReader& reader, Spec& spec);
+  void (*read)(core::TableReader& reader, Spec& spec);
   /// Appends all problems of a specification to `problems`.
   void (*validate)(const Spec& spec, std::vector<Problem>& problems);
-  std::unique_ptr<Procedure> (*make)(const Spec& spec, const Context& context, const random::Key& key);
+  std::unique_ptr<Procedure> (*make)(const Spec& spec, const Context& context, const core::DrawKey& key);
   /// Returns the proportion of answers of 1 at the level on which the procedure converges. `least` and `most`
   /// are the participant's lowest and highest probability of an answer of 1. Empty if the procedure does not
   /// converge, or if the proportion is unknown.

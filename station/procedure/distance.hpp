@@ -1,6 +1,6 @@
 #pragma once
+#include "station/core/elementary.hpp"
 #include "station/procedure/spec.hpp"
-#include "station/random/elementary.hpp"
 
 namespace turnpoint::procedure {
 
@@ -12,7 +12,7 @@ constexpr double kBeyond = 1e300;
 inline double distance(Scale scale, double level, double threshold) {
   if (scale == Scale::linear) return level - threshold;
   if (level <= 0) return -kBeyond;
-  return threshold <= 0 ? kBeyond : random::log(level / threshold);
+  return threshold <= 0 ? kBeyond : core::log(level / threshold);
 }
 
 }  // namespace turnpoint::procedure

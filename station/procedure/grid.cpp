@@ -3,20 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "station/random/elementary.hpp"
-#include "station/text/number.hpp"
+#include "station/core/elementary.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::procedure {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
-using text::Range;
-using text::TableReader;
+using core::TableReader;
 
-constexpr int most_points = 10001;
-texts::Phrase forms() {
+core::Phrase forms() {
   return phrase("allowed: %1, %2, %3 or %4",
                 {plain("{ from, to, step }"), plain("{ from, to, count }"),
                  plain("{ log_from, log_to, count }"), plain("{ values = [...] }")});
@@ -25,50 +23,49 @@ texts::Phrase forms() {
 // Computes each value as from + i * step, because adding the step again and again would accumulate rounding
 // errors.
 std::vector<double> even_steps(TableReader& reader, double from, double to) {
-  const double step = reader.number("step", {0, 1e6, Range::Ends::open_low});
+  const double step = reader.number("step");
   const double intervals = (to - from) / step;
-  if (!(intervals <= most_points - 1)) {
-    reader.problem("step", phrase("the grid would have %1 points", {plain(text::number(intervals + 1))}),
-                   phrase("at most %1", {plain(most_points)}));
+  if (!(intervals <= most_grid_points - 1)) {
+    reader.problem("step", phrase("the grid would have %1 points", {plain(core::number(intervals + 1))}),
+                   phrase("at most %1", {plain(most_grid_points)}));
     return {from};
   }
   const double whole = std::round(intervals);
   if (std::fabs(intervals - whole) > 1e-6 || whole < 0)
     reader.problem("to",
                    phrase("the steps from %1 by %2 do not end exactly at %3",
-                          {plain(text::number(from)), plain(text::number(step)), plain(text::number(to))}),
-                   phrase("a possible end is %1", {plain(text::number(from + std::max(whole, 0.0) * step))}));
+                          {plain(core::number(from)), plain(core::number(step)), plain(core::number(to))}),
+                   phrase("a possible end is %1", {plain(core::number(from + std::max(whole, 0.0) * step))}));
   std::vector<double> values;
   for (int i = 0; i <= static_cast<int>(whole); ++i) values.push_back(at_step(from, i, step));
   return values;
 }
 
 std::vector<double> linear_axis(TableReader& reader) {
-  const double from = reader.number("from", {-1e6, 1e6}), to = reader.number("to", {-1e6, 1e6});
+  const double from = reader.number("from"), to = reader.number("to");
   if (reader.has("to") && to < from) {
     reader.problem("to", phrase("%1 is less than %2", {plain("\"to\""), plain("\"from\"")}),
-                   phrase("at least %1", {plain(text::number(from))}));
+                   phrase("at least %1", {plain(core::number(from))}));
     return {from};
   }
   if (!reader.has("count")) return even_steps(reader, from, to);
-  const int count = reader.integer("count", 2, most_points);
+  const int count = reader.integer("count");
   std::vector<double> values;
   for (int i = 0; i < count; ++i) values.push_back(from + (to - from) * i / (count - 1));
   return values;
 }
 
 std::vector<double> log_axis(TableReader& reader) {
-  const Range positive{1e-9, 1e9};
-  const double from = reader.number("log_from", positive), to = reader.number("log_to", positive);
-  const int count = reader.integer("count", 2, most_points);
+  const double from = reader.number("log_from"), to = reader.number("log_to");
+  const int count = reader.integer("count");
   if (reader.has("log_to") && to <= from) {
     reader.problem("log_to", phrase("\"log_to\" must be greater than \"log_from\""),
-                   phrase("above %1", {plain(text::number(from))}));
+                   phrase("above %1", {plain(core::number(from))}));
     return {from};
   }
   std::vector<double> values{from};
-  const double first = random::log(from), range = random::log(to) - first;
-  for (int i = 1; i + 1 < count; ++i) values.push_back(random::exp(first + range * i / (count - 1)));
+  const double first = core::log(from), range = core::log(to) - first;
+  for (int i = 1; i + 1 < count; ++i) values.push_back(core::exp(first + range * i / (count - 1)));
   values.push_back(to);
   return values;
 }
@@ -94,17 +91,40 @@ double at_step(double from, std::int64_t steps, double step) {
   return static_cast<double>(std::llround(from * places) + steps * std::llround(step * places)) / places;
 }
 
-Grid read_grid(const text::Value& table, const std::string& name, Axis axis, text::Findings& findings) {
+namespace {
+
+/// The form of a grid that a table has, by the first key of each form; nullptr if it has none.
+const core::Keys* form_of(const core::Key& grid, const core::Value& table) {
+  const core::Keys* found = nullptr;
+  for (const auto& form : grid.forms) {
+    const auto fits =
+        std::ranges::count_if(form.keys->list, [&](const auto& key) { return table.find(key.name); });
+    const bool whole = fits == std::ssize(form.keys->list);
+    if (table.find(form.keys->list.front().name) && (found == nullptr || whole)) found = form.keys.get();
+  }
+  return found;
+}
+
+}  // namespace
+
+Grid read_grid(const core::Value& table, core::TableReader& outer, const std::string& key) {
   Grid grid;
-  if (table.kind != text::Value::Kind::table) {
+  const auto name = outer.path(key);
+  auto& findings = outer.findings();
+  if (table.kind != core::Value::Kind::table) {
     findings.add(table.place, phrase("\"%1\" is %2", {plain(name), describe(table)}), forms());
     return grid;
   }
-  TableReader reader(table, name, findings);
-  if (axis == Axis::parameter && reader.has("tied")) {
-    grid.tied = reader.word("tied", {"lapse"});
+  const auto* form = form_of(outer.declared(key), table);
+  if (form == nullptr) {
+    findings.add(table.place, phrase("\"%1\" does not describe a grid", {plain(name)}), forms());
+    return grid;
+  }
+  TableReader reader(table, name, findings, *form);
+  if (reader.has("tied")) {
+    grid.tied = reader.word("tied");
   } else if (reader.has("values")) {
-    grid.values = reader.numbers("values", {-1e6, 1e6});
+    grid.values = reader.numbers("values");
     for (std::size_t i = 1; i < grid.values.size(); ++i)
       if (grid.values[i] <= grid.values[i - 1]) {
         reader.problem("values", phrase("\"values\" are not in ascending order"),
@@ -113,36 +133,30 @@ Grid read_grid(const text::Value& table, const std::string& name, Axis axis, tex
       }
   } else if (reader.has("log_from")) {
     grid.values = log_axis(reader);
-  } else if (reader.has("from")) {
-    grid.values = linear_axis(reader);
   } else {
-    findings.add(table.place, phrase("\"%1\" does not describe a grid", {plain(name)}), forms());
-    for (const auto* key : {"values", "from", "to", "step", "count", "log_from", "log_to"}) reader.take(key);
+    grid.values = linear_axis(reader);
   }
   reader.finish();
   return grid;
 }
 
-Prior read_prior(const text::Value& table, const std::string& name, text::Findings& findings) {
+Prior read_prior(const core::Value& table, core::TableReader& outer, const std::string& key) {
   Prior prior;
-  if (table.kind != text::Value::Kind::table) {
+  const auto name = outer.path(key);
+  auto& findings = outer.findings();
+  if (table.kind != core::Value::Kind::table) {
     findings.add(
         table.place, phrase("\"%1\" is %2", {plain(name), describe(table)}),
         phrase("write %1 or %2", {plain("{ normal = { mean, sd } }"), plain("{ weights = [...] }")}));
     return prior;
   }
-  TableReader reader(table, name, findings);
+  TableReader reader(table, name, findings, outer.keys(key));
   const auto* normal = reader.maybe_table("normal");
-  prior.weights = reader.maybe_numbers("weights", {0, 1e12});
-  if (reader.has("normal") == reader.has("weights"))
-    findings.add(
-        table.place,
-        normal ? phrase("\"%1\" has two forms", {plain(name)}) : phrase("\"%1\" has no form", {plain(name)}),
-        phrase("write either \"normal\" or \"weights\""));
+  prior.weights = reader.maybe_numbers("weights");
   if (normal) {
-    TableReader inner(*normal, name + ".normal", findings);
-    const double mean = inner.number("mean", {-1e6, 1e6});
-    prior.normal = {mean, inner.number("sd", {0, 1e6, Range::Ends::open_low})};
+    TableReader inner(*normal, name + ".normal", findings, reader.keys("normal"));
+    const double mean = inner.number("mean");
+    prior.normal = {mean, inner.number("sd")};
     inner.finish();
   }
   reader.finish();

@@ -3,18 +3,16 @@
 #include <string>
 #include <vector>
 
+#include "station/core/reader.hpp"
 #include "station/procedure/spec.hpp"
-#include "station/text/reader.hpp"
 
 namespace turnpoint::procedure {
 
-/// The purpose of an axis: levels to present, or values of a parameter. Only a parameter may be tied to
-/// another parameter.
-enum class Axis { stimuli, parameter };
+inline constexpr int most_grid_points = 10001;
 
-/// Reads a grid in one of the forms { from, to, step }, { from, to, count }, { log_from, log_to, count }, {
-/// values } or { tied = "lapse" }, and computes its values, which are the same on every machine.
-Grid read_grid(const text::Value& table, const std::string& name, Axis axis, text::Findings& findings);
+/// Reads a grid in one of the forms that are declared for the key `key` of `outer`, such as { from, to, step
+/// }, and computes its values, which are the same on every machine.
+Grid read_grid(const core::Value& table, core::TableReader& outer, const std::string& key);
 
 /// Returns the smallest power of 10 by which all values become whole numbers, up to 10^9; 0 if none does.
 double decimal_places(const std::vector<double>& values);
@@ -24,6 +22,6 @@ double decimal_places(const std::vector<double>& values);
 double at_step(double from, std::int64_t steps, double step);
 
 /// Reads a prior in one of the forms { normal = { mean, sd } } or { weights = [...] }.
-Prior read_prior(const text::Value& table, const std::string& name, text::Findings& findings);
+Prior read_prior(const core::Value& table, core::TableReader& outer, const std::string& key);
 
 }  // namespace turnpoint::procedure

@@ -5,20 +5,20 @@
 
 namespace turnpoint::procedure {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::Range;
-using text::TableReader;
+using core::Range;
+using core::TableReader;
 
 namespace {
 
 void read_max_run(TableReader& order, Spec& spec) {
   const auto* table = order.take("max_run");
-  if (!table || table->kind != text::Value::Kind::table) {
-    if (const auto limit = order.maybe_integer("max_run", 1, 1000)) spec.max_run[kRightAnswer] = *limit;
+  if (!table || table->kind != core::Value::Kind::table) {
+    if (const auto limit = order.maybe_integer("max_run")) spec.max_run[kRightAnswer] = *limit;
     return;
   }
-  TableReader inner(*table, order.path("max_run"), order.findings());
+  TableReader inner(*table, order.path("max_run"), order.findings(), order.keys("max_run"));
   for (const auto& entry : table->entries)
     if (const auto limit = inner.maybe_integer(entry.key, 1, 1000)) spec.max_run[entry.key] = *limit;
   inner.finish();
@@ -30,8 +30,8 @@ void read_order(TableReader& reader, Spec& spec) {
     if (!reader.has("order")) reader.defaulted("order.shuffle", "\"within-repeat\"");
     return;
   }
-  TableReader inner(*table, reader.path("order"), reader.findings());
-  const auto shuffle = inner.word("shuffle", {"within-repeat", "within-block", "none"}, "within-repeat");
+  TableReader inner(*table, reader.path("order"), reader.findings(), reader.keys("order"));
+  const auto shuffle = inner.word("shuffle");
   spec.shuffle = shuffle == "none"           ? Shuffle::none
                  : shuffle == "within-block" ? Shuffle::within_block
                                              : Shuffle::within_repeat;
@@ -44,7 +44,7 @@ void read_order(TableReader& reader, Spec& spec) {
 void read_runs(TableReader& reader, Spec& spec) {
   const auto* table = reader.maybe_table("order");
   if (!table) return;
-  TableReader inner(*table, reader.path("order"), reader.findings());
+  TableReader inner(*table, reader.path("order"), reader.findings(), reader.keys("order"));
   read_max_run(inner, spec);
   inner.finish();
 }
@@ -54,27 +54,26 @@ void read_tracks(TableReader& reader, Spec& spec) {
 }
 
 void read_scale(TableReader& reader, Spec& spec) {
-  const auto scale = reader.word("scale", {"linear", "log10", "dB"}, "linear");
+  const auto scale = reader.word("scale");
   spec.scale = scale == "log10" ? Scale::log10 : scale == "dB" ? Scale::dB : Scale::linear;
 }
 
 void read_stop(TableReader& reader, Spec& spec) {
-  const auto* table =
-      reader.table("stop", phrase("say when the procedure ends: %1", {plain("{ trials = 40 }")}));
+  const auto* table = reader.table("stop");
   if (!table) return;
-  TableReader inner(*table, reader.path("stop"), reader.findings());
-  spec.stop.trials = inner.maybe_integer("trials", 1, 100000);
-  spec.stop.reversals = inner.maybe_integer("reversals", 1, 10000);
-  spec.stop.min_trials = inner.maybe_integer("min_trials", 1, 100000);
-  spec.stop.threshold_sd = inner.maybe_number("threshold_sd", {0, 1e6, Range::Ends::open_low});
-  spec.stop.entropy_nats = inner.maybe_number("entropy_nats", {-100, 100});
-  spec.stop.max_trials = inner.maybe_integer("max_trials", 1, 100000);
+  TableReader inner(*table, reader.path("stop"), reader.findings(), reader.keys("stop"));
+  spec.stop.trials = inner.maybe_integer("trials");
+  spec.stop.reversals = inner.maybe_integer("reversals");
+  spec.stop.min_trials = inner.maybe_integer("min_trials");
+  spec.stop.threshold_sd = inner.maybe_number("threshold_sd");
+  spec.stop.entropy_nats = inner.maybe_number("entropy_nats");
+  spec.stop.max_trials = inner.maybe_integer("max_trials");
   if (spec.stop.max_trials &&
       *spec.stop.max_trials < std::max(spec.stop.trials.value_or(0), spec.stop.min_trials.value_or(0)))
     inner.problem("max_trials", phrase("\"max_trials\" is smaller than another rule asks for"),
                   phrase("at least %1",
                          {plain(std::max(spec.stop.trials.value_or(0), spec.stop.min_trials.value_or(0)))}));
-  if (spec.start) spec.stop.limit_steps = inner.maybe_integer("limit_steps", 1, 1000);
+  if (spec.start) spec.stop.limit_steps = inner.maybe_integer("limit_steps");
   read_right_of_last(inner, spec);
   const int rules = inner.has("right") + inner.has("trials") + inner.has("reversals") +
                     inner.has("threshold_sd") + inner.has("entropy_nats");
@@ -86,33 +85,28 @@ void read_stop(TableReader& reader, Spec& spec) {
     reader.findings().add(table->place, phrase("\"stop\" contains several stopping rules"),
                           phrase("add %1 (any of them ends the procedure) or %2 (all must be met)",
                                  {plain("rule = \"or\""), plain("rule = \"and\"")}));
-  spec.stop.rule =
-      inner.maybe_word("rule", {"or", "and"}).value_or("or") == "and" ? StopRule::all : StopRule::any;
+  spec.stop.rule = inner.maybe_word("rule").value_or("or") == "and" ? StopRule::all : StopRule::any;
   inner.finish();
 }
 
 void read_right_of_last(TableReader& stop, Spec& spec) {
-  spec.stop.right = stop.maybe_integer("right", 1, 1000);
-  spec.stop.of_last = stop.maybe_integer("of_last", 1, 1000);
-  if (stop.has("right") != stop.has("of_last"))
-    stop.problem(
-        stop.has("right") ? "right" : "of_last", phrase("\"right\" and \"of_last\" belong together"),
-        phrase("%1 ends after 8 right answers among the last 10", {plain("right = 8, of_last = 10")}));
-  else if (spec.stop.right && spec.stop.of_last && *spec.stop.right > *spec.stop.of_last)
+  spec.stop.right = stop.maybe_integer("right");
+  spec.stop.of_last = stop.maybe_integer("of_last");
+  if (spec.stop.right && spec.stop.of_last && *spec.stop.right > *spec.stop.of_last)
     stop.problem("right", phrase("more right answers than answers"), phrase("at most \"of_last\""));
   if (!spec.stop.right || !spec.stop.of_last) spec.stop.right.reset(), spec.stop.of_last.reset();
 }
 
 void read_list(TableReader& reader, Spec& spec) {
-  spec.repeats = reader.integer("repeats", 1, 10000);
+  spec.repeats = reader.integer("repeats");
   spec.balance = reader.maybe_strings("balance");
   read_order(reader, spec);
 }
 
 void read_span(TableReader& reader, Spec& spec) {
-  spec.start = reader.number("start", any_level);
-  spec.min = reader.number("min", any_level);
-  spec.max = reader.number("max", any_level);
+  spec.start = reader.number("start");
+  spec.min = reader.number("min");
+  spec.max = reader.number("max");
 }
 
 void validate_span(const Spec& spec, std::vector<Problem>& problems) {

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <string>
 
+#include "station/core/elementary.hpp"
 #include "station/procedure/description.hpp"
 #include "station/procedure/grid.hpp"
 #include "station/procedure/keys.hpp"
 #include "station/procedure/state_hash.hpp"
-#include "station/random/elementary.hpp"
 
 namespace turnpoint::procedure {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
@@ -26,11 +26,11 @@ double per_e(Scale scale) { return scale == Scale::dB ? 20 / kLogOf10 : 1 / kLog
 
 /// Returns the position of a level on the scale on which the steps are counted.
 double position_of(double level, Scale scale) {
-  return scale == Scale::linear ? level : per_e(scale) * random::log(level);
+  return scale == Scale::linear ? level : per_e(scale) * core::log(level);
 }
 
 double level_at(double position, Scale scale) {
-  return scale == Scale::linear ? position : random::exp(position / per_e(scale));
+  return scale == Scale::linear ? position : core::exp(position / per_e(scale));
 }
 
 double gap(double low, double high, Scale scale) {
@@ -39,8 +39,8 @@ double gap(double low, double high, Scale scale) {
 
 }  // namespace
 
-Limits::Limits(const Spec& spec, const random::Key& key) : spec_(spec) {
-  random::Draws draws({key.seed, random::Stream::level_order, key.block, key.attempt, 0});
+Limits::Limits(const Spec& spec, const core::DrawKey& key) : spec_(spec) {
+  core::Draws draws({key.seed, core::Stream::level_order, key.block, key.attempt, 0});
   const bool up = !spec.ascending.empty(), down = !spec.descending.empty();
   std::vector<Direction> order;
   const bool down_first = !up || (down && draws.below(2) == 1);
@@ -54,7 +54,7 @@ Limits::Limits(const Spec& spec, const random::Key& key) : spec_(spec) {
 
 /// Uses each listed start equally often, in shuffled order. If the number of series is not a multiple of the
 /// number of starts, some starts are used once more; these are drawn at random.
-void Limits::set_starts(Direction direction, const SeriesStarts& starts, random::Draws& draws) {
+void Limits::set_starts(Direction direction, const SeriesStarts& starts, core::Draws& draws) {
   std::vector<double> bag;
   for (auto& series : series_) {
     if (series.direction != direction) continue;
@@ -204,25 +204,23 @@ double series_trials(const Spec& spec) {
 
 namespace {
 
-SeriesStarts read_starts(text::TableReader& reader, const std::string& key) {
+SeriesStarts read_starts(core::TableReader& reader, const std::string& key) {
   const auto* value = reader.take(key);
   if (!value) return {};
   SeriesStarts starts;
-  if (value->kind != text::Value::Kind::table) {
-    starts.values = reader.numbers(key, any_level);
+  if (value->kind != core::Value::Kind::table) {
+    starts.values = reader.numbers(key);
     return starts;
   }
-  text::TableReader inner(*value, reader.path(key), reader.findings());
-  inner.require("uniform",
-                phrase("give the lowest and the highest start: %1", {plain("{ uniform = [2.0, 4.0] }")}));
-  starts.uniform = inner.maybe_interval("uniform", any_level);
+  core::TableReader inner(*value, reader.path(key), reader.findings(), reader.keys(key));
+  inner.require("uniform");
+  starts.uniform = inner.maybe_interval("uniform");
   inner.finish();
   return starts;
 }
 
-void read_limits(text::TableReader& reader, Spec& spec) {
-  spec.tracks =
-      reader.string("tracks", phrase("write the id of the answer that is more frequent at higher levels"));
+void read_limits(core::TableReader& reader, Spec& spec) {
+  spec.tracks = reader.string("tracks");
   read_scale(reader, spec);
   spec.ascending = read_starts(reader, "start_ascending");
   spec.descending = read_starts(reader, "start_descending");
@@ -231,14 +229,12 @@ void read_limits(text::TableReader& reader, Spec& spec) {
                    phrase("%1 says nowhere at which levels series start", {reader.title()}),
                    phrase("give \"start_ascending\", \"start_descending\" or both: a list of levels, or %1",
                           {plain("{ uniform = [low, high] }")}));
-  spec.min = reader.number("min", any_level);
-  spec.max = reader.number("max", any_level);
-  spec.step = {reader.number("step", {0, 1e6, text::Range::Ends::open_low})};
-  spec.series = reader.integer("series", 1, 1000);
-  spec.n_change = reader.integer("n_change", 1, 20, 1);
-  spec.directions = reader.word("directions", {"alternate", "random"}, "alternate") == "random"
-                        ? Directions::random
-                        : Directions::alternate;
+  spec.min = reader.number("min");
+  spec.max = reader.number("max");
+  spec.step = {reader.number("step")};
+  spec.series = reader.integer("series");
+  spec.n_change = reader.integer("n_change");
+  spec.directions = reader.word("directions") == "random" ? Directions::random : Directions::alternate;
 }
 
 void validate_starts(const Spec& spec, std::vector<Problem>& problems) {
@@ -290,7 +286,7 @@ extern const Description limits{
     Choice::series,
     read_limits,
     validate_limits,
-    [](const Spec& spec, const Context&, const random::Key& key) -> std::unique_ptr<Procedure> {
+    [](const Spec& spec, const Context&, const core::DrawKey& key) -> std::unique_ptr<Procedure> {
       return std::make_unique<Limits>(spec, key);
     },
     [](const Spec&, double, double) -> std::optional<double> { return std::nullopt; },

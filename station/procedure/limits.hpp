@@ -21,7 +21,7 @@ namespace turnpoint::procedure {
 /// is the mean of all midpoints if no series is left out; and "threshold ascending - descending".
 class Limits : public Procedure {
  public:
-  Limits(const Spec& spec, const random::Key& key);
+  Limits(const Spec& spec, const core::DrawKey& key);
 
   std::optional<Proposal> next() const override;
   void record(Answer answer) override;
@@ -40,7 +40,7 @@ class Limits : public Procedure {
     /// position of the midpoint on the scale on which steps are counted; empty if there is none
     std::optional<double> midpoint;
   };
-  void set_starts(Direction direction, const SeriesStarts& starts, random::Draws& draws);
+  void set_starts(Direction direction, const SeriesStarts& starts, core::Draws& draws);
   /// Returns the position that is this number of steps away from the start of the current series, on the
   /// scale on which the steps are counted.
   double position_after(int steps) const;

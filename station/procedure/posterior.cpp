@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "station/core/elementary.hpp"
 #include "station/procedure/distance.hpp"
 #include "station/procedure/posterior_sums.hpp"
 #include "station/procedure/psychometric.hpp"
-#include "station/random/elementary.hpp"
 
 namespace turnpoint::procedure {
 
@@ -31,7 +31,7 @@ double likely(double p) { return std::clamp(p, kFloor, 1 - kFloor); }
 /// Returns the binary entropy of a probability in nats; 0 at probabilities 0 and 1.
 double binary_entropy(double p) {
   if (p <= 0 || p >= 1) return 0;
-  return -p * random::log(p) - (1 - p) * random::log(1 - p);
+  return -p * core::log(p) - (1 - p) * core::log(1 - p);
 }
 
 std::vector<double> prior_weights(const Prior& prior, const std::vector<double>& values) {
@@ -40,7 +40,7 @@ std::vector<double> prior_weights(const Prior& prior, const std::vector<double>&
   if (prior.normal)
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double z = (values[i] - prior.normal->first) / prior.normal->second;
-      weights[i] = random::exp(std::max(-0.5 * z * z, -700.0));
+      weights[i] = core::exp(std::max(-0.5 * z * z, -700.0));
     }
   return weights;
 }

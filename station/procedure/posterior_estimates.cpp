@@ -3,9 +3,9 @@
 #include <map>
 #include <utility>
 
+#include "station/core/elementary.hpp"
 #include "station/procedure/distance.hpp"
 #include "station/procedure/posterior.hpp"
-#include "station/random/elementary.hpp"
 
 namespace turnpoint::procedure {
 
@@ -112,7 +112,7 @@ std::vector<ThresholdAt> Posterior::thresholds() const {
 double Posterior::entropy_nats() const {
   double sum = 0;
   for (const double weight : weights_)
-    if (weight > 0) sum -= weight * random::log(weight);
+    if (weight > 0) sum -= weight * core::log(weight);
   return sum;
 }
 

@@ -2,8 +2,8 @@
 
 #include <cstring>
 
-#include "station/random/elementary.hpp"
-#include "station/random/instruction_sets.hpp"
+#include "station/core/elementary.hpp"
+#include "station/core/instruction_sets.hpp"
 
 namespace turnpoint::procedure {
 
@@ -71,8 +71,8 @@ void add_entropies(double* __restrict totals, const double* __restrict ones, con
     one[i] = certain ? 1 : p;  // an entropy of 0
     zero[i] = certain ? 1 : 1 - p;
   }
-  random::logs({one.data(), n * kAbreast}, log_one);
-  random::logs({zero.data(), n * kAbreast}, log_zero);
+  core::logs({one.data(), n * kAbreast}, log_one);
+  core::logs({zero.data(), n * kAbreast}, log_zero);
   Quad total, p, q, log_p, log_q;
   std::memcpy(&total, totals, sizeof total);
   for (std::size_t g = 0; g < n; ++g) {

@@ -7,7 +7,7 @@
 
 namespace turnpoint::procedure {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 // The kinds are listed here explicitly. They could not register themselves: a linker leaves out an object
 // file of a static library if nothing refers to it.
@@ -62,7 +62,7 @@ std::vector<Problem> validate(const Spec& spec) {
   return problems;
 }
 
-std::optional<texts::Phrase> end_in_words(Ended ended, const std::string& procedure, int count) {
+std::optional<core::Phrase> end_in_words(Ended ended, const std::string& procedure, int count) {
   switch (ended) {
     case Ended::limit:
       return phrase("report.ended_limit", {plain(procedure), plain(count)});
@@ -84,15 +84,16 @@ void Procedure::record_setting(double) {
   throw std::logic_error("procedure: only an adjustment can record a setting");
 }
 
-random::Key key_of(std::uint64_t seed, int block, std::size_t place, int attempt) {
-  return {seed, random::Stream::level_order, block * 64 + static_cast<int>(place), attempt, 0};
+core::DrawKey key_of(std::uint64_t seed, int block, std::size_t place, int attempt) {
+  return {seed, core::Stream::level_order, block * 64 + static_cast<int>(place), attempt, 0};
 }
 
-std::unique_ptr<Procedure> make_procedure(const Spec& spec, const Context& context, const random::Key& key) {
+std::unique_ptr<Procedure> make_procedure(const Spec& spec, const Context& context,
+                                          const core::DrawKey& key) {
   if (const auto problems = validate(spec); !problems.empty())
     throw std::invalid_argument("procedure " + spec.name + ": " + problems.front().key + ": " +
-                                texts::say(problems.front().what, "en") + "; " +
-                                texts::say(problems.front().allowed, "en"));
+                                core::say(problems.front().what, "en") + "; " +
+                                core::say(problems.front().allowed, "en"));
   return description(spec.kind).make(spec, context, key);
 }
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "station/core/draws.hpp"
 #include "station/procedure/spec.hpp"
-#include "station/random/draws.hpp"
 
 namespace turnpoint::procedure {
 
@@ -53,7 +53,7 @@ enum class Ended {
 
 /// Says about the procedure with this name how it ended if that was not by its rules; otherwise empty.
 /// `count` is the number of steps or trials.
-std::optional<texts::Phrase> end_in_words(Ended ended, const std::string& procedure, int count);
+std::optional<core::Phrase> end_in_words(Ended ended, const std::string& procedure, int count);
 
 struct Estimate {
   double mode = 0, mean = 0;
@@ -86,7 +86,7 @@ struct Context {
 /// Chooses the next level. Pure: it uses no clock and no file, and the same key and answers give the same
 /// levels. next() returns the same proposal until the next call of record(). A procedure that is a separate
 /// program (procedure/program.hpp) is the exception: it may not be ready yet, and next() may throw
-/// terms::ProgramFailed.
+/// core::ProgramFailed.
 class Procedure {
  public:
   virtual ~Procedure() = default;
@@ -104,7 +104,7 @@ class Procedure {
   /// why next() returns nothing
   virtual Ended ended() const { return next() ? Ended::no : Ended::rule; }
   /// says the same if it was not by its rules; otherwise empty
-  virtual std::optional<texts::Phrase> end() const { return std::nullopt; }
+  virtual std::optional<core::Phrase> end() const { return std::nullopt; }
   /// records the answer to the proposal of next(); must not be called when the procedure is done
   virtual void record(Answer answer) = 0;
   /// Records the setting of an adjustment. Other kinds of procedures throw std::logic_error.
@@ -123,10 +123,10 @@ class Procedure {
 
 /// The key of a procedure in a session. `block` is the number of the block, and `place` is the position of
 /// the procedure in the block's list, so that interleaved procedures draw different numbers.
-random::Key key_of(std::uint64_t seed, int block, std::size_t place, int attempt);
+core::DrawKey key_of(std::uint64_t seed, int block, std::size_t place, int attempt);
 
 /// Makes the procedure. Throws std::invalid_argument with the first problem of validate(). `key` needs seed,
 /// block and attempt; the procedure sets stream and trial itself.
-std::unique_ptr<Procedure> make_procedure(const Spec& spec, const Context& context, const random::Key& key);
+std::unique_ptr<Procedure> make_procedure(const Spec& spec, const Context& context, const core::DrawKey& key);
 
 }  // namespace turnpoint::procedure

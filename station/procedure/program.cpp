@@ -10,7 +10,7 @@
 
 namespace turnpoint::procedure {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
@@ -35,21 +35,21 @@ class StandIn final : public Procedure {
   int trials_, presented_ = 0;
 };
 
-void read_program(text::TableReader& reader, Spec& spec) {
+void read_program(core::TableReader& reader, Spec& spec) {
   read_tracks(reader, spec);
   auto& program = spec.program;
-  program.file = reader.string("program", phrase("name the file of the program, as seen from this file"));
+  program.file = reader.string("program");
   program.place = reader.place("program");
-  program.limit_s = reader.number("limit_s", {0.05, 60, text::Range::Ends::closed, "s"}, 2);
+  program.limit_s = reader.number("limit_s");
   if (const auto* settings = reader.maybe_table("settings")) program.settings = *settings;
-  spec.min = reader.number("min", any_level);
-  spec.max = reader.number("max", any_level);
+  spec.min = reader.number("min");
+  spec.max = reader.number("max");
   read_stop(reader, spec);
 }
 
 /// True if JSON can express the value.
-bool expressible(const text::Value& value) {
-  using Kind = text::Value::Kind;
+bool expressible(const core::Value& value) {
+  using Kind = core::Value::Kind;
   if (value.kind == Kind::number && !std::isfinite(value.number)) return false;
   return value.kind != Kind::date && std::ranges::all_of(value.items, expressible) &&
          std::ranges::all_of(value.entries, [](const auto& entry) { return expressible(entry.value); });
@@ -75,7 +75,7 @@ void validate_program(const Spec& spec, std::vector<Problem>& problems) {
 
 }  // namespace
 
-std::unique_ptr<Procedure> StandIns::procedure(const Spec& spec, const random::Key&) {
+std::unique_ptr<Procedure> StandIns::procedure(const Spec& spec, const core::DrawKey&) {
   return std::make_unique<StandIn>(spec);
 }
 
@@ -85,7 +85,7 @@ extern const Description program{
     Choice::program,
     read_program,
     validate_program,
-    [](const Spec& spec, const Context& context, const random::Key& key) -> std::unique_ptr<Procedure> {
+    [](const Spec& spec, const Context& context, const core::DrawKey& key) -> std::unique_ptr<Procedure> {
       if (context.programs == nullptr)
         throw std::logic_error("procedure " + spec.name + ": nothing was given that starts programs");
       return context.programs->procedure(spec, key);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "station/random/elementary.hpp"
+#include "station/core/elementary.hpp"
 
 namespace turnpoint::procedure {
 
@@ -13,23 +13,23 @@ constexpr double kLn10 = 2.302585092994045684;
 
 /// The exponential function with a limited argument, so that it cannot overflow. Beyond the limit, the
 /// psychometric functions are flat.
-double saturating_exp(double x) { return random::exp(std::min(x, 700.0)); }
+double saturating_exp(double x) { return core::exp(std::min(x, 700.0)); }
 
 /// (x / t)^slope for levels on a logarithmic scale, 10^(slope (x - t) / 20) for levels in dB.
 double strength(Scale scale, double threshold, double slope, double level) {
   if (scale == Scale::linear) return saturating_exp(slope * (level - threshold) * (kLn10 / 20));
   if (level <= 0) return 0;
-  return threshold <= 0 ? saturating_exp(700) : saturating_exp(slope * random::log(level / threshold));
+  return threshold <= 0 ? saturating_exp(700) : saturating_exp(slope * core::log(level / threshold));
 }
 
-double core(Function function, Scale scale, double threshold, double slope, double level) {
+double sigmoid(Function function, Scale scale, double threshold, double slope, double level) {
   const bool logs = scale != Scale::linear;
   if (logs && (level <= 0 || threshold <= 0)) return level <= 0 ? 0 : 1;
-  const double x = logs ? random::log(level / threshold) / kLn10 : level - threshold;
+  const double x = logs ? core::log(level / threshold) / kLn10 : level - threshold;
   switch (function) {
     case Function::weibull: {
       const double exponent = logs ? slope * x * kLn10 : slope * x * (kLn10 / 20);
-      return 1 - random::exp(-saturating_exp(exponent));
+      return 1 - core::exp(-saturating_exp(exponent));
     }
     case Function::normal:
       return normal_cdf(x / slope);
@@ -44,7 +44,7 @@ double core(Function function, Scale scale, double threshold, double slope, doub
 double normal_cdf(double z) {
   const double a = std::fabs(z);
   if (a > 39) return z < 0 ? 0 : 1;
-  const double density = random::exp(-0.5 * a * a) * 0.39894228040143267794;
+  const double density = core::exp(-0.5 * a * a) * 0.39894228040143267794;
   double tail = 0;
   if (a < 4) {
     // With density = phi(a): Phi(a) - 1/2 = density (a + a^3/3 + a^5/15 + ...). All terms are positive, so no
@@ -76,7 +76,7 @@ double threshold_at(Scale scale, double threshold, double gradient, const std::o
   if (scale == Scale::linear)
     at += gradient * from_origin;
   else  // within these limits neither the threshold nor its ratio to a level overflows
-    at *= random::exp(
+    at *= core::exp(
         std::clamp(gradient * from_origin * (scale == Scale::dB ? kLn10 / 20 : kLn10), -600.0, 600.0));
   return floor ? std::max(*floor, at) : at;
 }
@@ -86,7 +86,7 @@ double detection_rate(Scale scale, double threshold, double slope, double criter
 }
 
 double probability(Function function, Scale scale, const Psychometric& p, double level) {
-  const double f = core(function, scale, p.threshold, p.slope, level);
+  const double f = sigmoid(function, scale, p.threshold, p.slope, level);
   return std::clamp(p.guess + (1 - p.guess - p.lapse) * f, 0.0, 1.0);
 }
 

@@ -20,7 +20,7 @@ class QuestPlus : public Procedure {
   int recorded() const override { return recorded_; }
   int expected() const override;
   Ended ended() const override { return ended_; }
-  std::optional<texts::Phrase> end() const override {
+  std::optional<core::Phrase> end() const override {
     return end_in_words(ended(), spec_.name, recorded_ + spent_);
   }
   std::map<std::string, Estimate> estimates() const override;

@@ -5,17 +5,17 @@
 #include <utility>
 #include <vector>
 
+#include "station/core/number.hpp"
 #include "station/procedure/description.hpp"
 #include "station/procedure/grid.hpp"
 #include "station/procedure/keys.hpp"
 #include "station/procedure/psychometric.hpp"
 #include "station/procedure/quest_plus.hpp"
-#include "station/text/number.hpp"
 
 // The descriptions of all procedures with a posterior: their keys, and which specifications are wrong.
 namespace turnpoint::procedure {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
@@ -28,73 +28,67 @@ bool needs_grid(const Spec& spec, const std::string& parameter) {
   return parameter != "floor";
 }
 
-void read_axes(text::TableReader& reader, Spec& spec) {
+void read_axes(core::TableReader& reader, Spec& spec) {
   std::string needed;  // besides the lapse rate, which is the last parameter
   for (const auto& parameter : kParameters)
     if (needs_grid(spec, parameter.name) && std::string(parameter.name) != "lapse")
       needed += (needed.empty() ? "grid." : ", grid.") + std::string(parameter.name);
-  if (const auto* grid = reader.table("grid", phrase("give %1 and grid.lapse", {plain(needed)}))) {
-    text::TableReader inner(*grid, reader.path("grid"), reader.findings());
+  if (const auto* grid = reader.table("grid")) {
+    core::TableReader inner(*grid, reader.path("grid"), reader.findings(), reader.keys("grid"));
     for (const auto& [key, axis, prior] : kParameters) {
-      const auto* value =
-          needs_grid(spec, key)
-              ? inner.require(key, phrase("write a grid: %1 or %2",
-                                          {plain("{ from, to, step }"), plain("{ values = [...] }")}))
-              : inner.take(key);
-      if (value) spec.*axis = read_grid(*value, inner.path(key), Axis::parameter, reader.findings());
+      const auto* value = needs_grid(spec, key) ? inner.require(key) : inner.take(key);
+      if (value) spec.*axis = read_grid(*value, inner, key);
     }
     inner.finish();
   }
   if (const auto* table = reader.maybe_table("prior")) {
-    text::TableReader inner(*table, reader.path("prior"), reader.findings());
+    core::TableReader inner(*table, reader.path("prior"), reader.findings(), reader.keys("prior"));
     for (const auto& [key, axis, prior] : kParameters)
-      if (const auto* value = inner.take(key))
-        spec.*prior = read_prior(*value, inner.path(key), reader.findings());
+      if (const auto* value = inner.take(key)) spec.*prior = read_prior(*value, inner, key);
     inner.finish();
   }
 }
 
-void read_second(text::TableReader& reader, Spec& spec) {
+void read_second(core::TableReader& reader, Spec& spec) {
   const auto* table = reader.maybe_table("second");
   if (!table) return;
-  text::TableReader inner(*table, reader.path("second"), reader.findings());
+  core::TableReader inner(*table, reader.path("second"), reader.findings(), reader.keys("second"));
   auto& second = spec.second.emplace();
-  second.level = inner.string("level", phrase("write the name of a factor"));
+  second.level = inner.string("level");
   if (const auto* stimuli = inner.require(
           "stimuli", phrase("give the values from which to choose: %1", {plain("{ from, to, step }")})))
-    second.stimuli = read_grid(*stimuli, inner.path("stimuli"), Axis::stimuli, reader.findings());
-  second.origin = inner.number("origin", any_level, 0);
+    second.stimuli = read_grid(*stimuli, inner, "stimuli");
+  second.origin = inner.number("origin");
   inner.finish();
 }
 
 /// Reads the keys of every procedure with a posterior.
-void read_grids(text::TableReader& reader, Spec& spec) {
+void read_grids(core::TableReader& reader, Spec& spec) {
   read_tracks(reader, spec);
   read_scale(reader, spec);
-  const auto function = reader.word("function", {"weibull", "normal", "logistic", "signal-detection"});
+  const auto function = reader.word("function");
   spec.signal_detection = function == "signal-detection";
-  spec.function = function == "normal"     ? terms::Function::normal
-                  : function == "logistic" ? terms::Function::logistic
-                                           : terms::Function::weibull;
+  spec.function = function == "normal"     ? core::Function::normal
+                  : function == "logistic" ? core::Function::logistic
+                                           : core::Function::weibull;
   if (const auto* stimuli = reader.require(
           "stimuli", phrase("give the levels from which to choose: %1", {plain("{ from, to, step }")})))
-    spec.stimuli = read_grid(*stimuli, reader.path("stimuli"), Axis::stimuli, reader.findings());
+    spec.stimuli = read_grid(*stimuli, reader, "stimuli");
   read_axes(reader, spec);
   read_stop(reader, spec);
 }
 
-void read_posterior(text::TableReader& reader, Spec& spec) {
+void read_posterior(core::TableReader& reader, Spec& spec) {
   read_second(reader, spec);
   read_grids(reader, spec);
-  std::vector<std::string> parameters;
-  for (const auto& parameter : kParameters) parameters.emplace_back(parameter.name);
+  const auto& parameters = reader.words("nuisance");
   spec.nuisance = reader.maybe_strings("nuisance");
   for (const auto& name : spec.nuisance)
     if (std::find(parameters.begin(), parameters.end(), name) == parameters.end())
       reader.problem("nuisance",
                      phrase("\"%1\" is not a parameter of the psychometric function", {plain(name)}),
-                     phrase("allowed: %1", {text::quoted_list(parameters)}));
-  reader.word("select", {"min-expected-entropy"}, "min-expected-entropy");
+                     phrase("allowed: %1", {core::quoted_list(parameters)}));
+  reader.word("select");
 }
 
 void validate_rate(const char* key, const Grid& grid, std::vector<Problem>& problems) {
@@ -130,20 +124,20 @@ void validate_size(const Spec& spec, std::vector<Problem>& problems) {
     problems.push_back({"grid.threshold",
                         phrase("%1 stimuli and %2 points of the grid make %3 combinations, too many to "
                                "choose a level in time (up to %4 MB)",
-                               {plain(text::number(stimuli)), plain(text::number(parameters)),
-                                plain(text::number(stimuli * parameters, 3)),
-                                plain(text::number(stimuli * parameters * bytes_each / 1e6, 3))}),
+                               {plain(core::number(stimuli)), plain(core::number(parameters)),
+                                plain(core::number(stimuli * parameters, 3)),
+                                plain(core::number(stimuli * parameters * bytes_each / 1e6, 3))}),
                         phrase("allow at most 50 million combinations (up to 400 MB)")});
   else if (stimuli * places > most_distances)
     problems.push_back({"grid.threshold",
                         spec.second
                             ? phrase("%1 stimuli and %2 thresholds, gradients and floors make %3 pairs, too "
                                      "many for the memory",
-                                     {plain(text::number(stimuli)), plain(text::number(places)),
-                                      plain(text::number(stimuli * places, 3))})
+                                     {plain(core::number(stimuli)), plain(core::number(places)),
+                                      plain(core::number(stimuli * places, 3))})
                             : phrase("%1 stimuli and %2 thresholds make %3 pairs, too many for the memory",
-                                     {plain(text::number(stimuli)), plain(text::number(places)),
-                                      plain(text::number(stimuli * places, 3))}),
+                                     {plain(core::number(stimuli)), plain(core::number(places)),
+                                      plain(core::number(stimuli * places, 3))}),
                         phrase("allow at most 5 million pairs")});
 }
 
@@ -234,7 +228,7 @@ void validate_at_threshold(const Spec& spec, std::vector<Problem>& problems) {
                         phrase("leave it out, or write %1", {plain("kind = \"zest\"")})});
 }
 
-std::unique_ptr<Procedure> make_quest_plus(const Spec& spec, const Context&, const random::Key&) {
+std::unique_ptr<Procedure> make_quest_plus(const Spec& spec, const Context&, const core::DrawKey&) {
   return std::make_unique<QuestPlus>(spec);
 }
 

@@ -4,7 +4,7 @@
 
 namespace turnpoint::procedure {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 std::pair<double, double> SeriesStarts::ends() const {
   if (uniform) return *uniform;

@@ -8,9 +8,9 @@
 #include <variant>
 #include <vector>
 
-#include "station/terms/psychometric.hpp"
-#include "station/text/toml.hpp"
-#include "station/texts/texts.hpp"
+#include "station/core/psychometric.hpp"
+#include "station/core/texts.hpp"
+#include "station/core/toml.hpp"
 
 namespace turnpoint::procedure {
 
@@ -28,7 +28,7 @@ enum class Kind {
   limits,
   program
 };
-using terms::Function;
+using core::Function;
 enum class Scale { linear, log10, dB };
 enum class Shuffle { within_repeat, within_block, none };
 enum class StopRule {
@@ -90,12 +90,12 @@ struct SeriesStarts {
   std::pair<double, double> ends() const;
 };
 
-/// A separate program that chooses the levels (station/programs).
+/// A separate program that chooses the levels (station/session).
 struct Program {
   std::string file;           ///< as written in the protocol: absolute, or as seen from the protocol's folder
-  text::Place place;          ///< of the key "program"
+  core::Place place;          ///< of the key "program"
   double limit_s = 2;         ///< longest time from a question to the program to its reply
-  text::Value settings = {};  ///< a table that the program gets as it is
+  core::Value settings = {};  ///< a table that the program gets as it is
 };
 
 /// The content of a [[procedure]] table, including the keys that it copies from another procedure. Members
@@ -204,7 +204,7 @@ double series_trials(const Spec& spec);
 /// One problem of a specification: the key, what is wrong, and what is allowed.
 struct Problem {
   std::string key;
-  texts::Phrase what, allowed;
+  core::Phrase what, allowed;
 };
 
 /// Returns all problems of a specification; empty if a procedure can run with it.

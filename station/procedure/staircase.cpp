@@ -12,7 +12,7 @@
 
 namespace turnpoint::procedure {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
@@ -88,11 +88,10 @@ std::map<std::string, Estimate> Staircase::estimates() const {
 
 namespace {
 
-void read_steps(text::TableReader& reader, Spec& spec) {
-  const text::Range step{0, 1e6, text::Range::Ends::open_low};
-  spec.step = reader.maybe_numbers("step", step);
-  spec.step_down = reader.maybe_numbers("step_down", step);
-  spec.step_up = reader.maybe_numbers("step_up", step);
+void read_steps(core::TableReader& reader, Spec& spec) {
+  spec.step = reader.maybe_numbers("step");
+  spec.step_down = reader.maybe_numbers("step_down");
+  if (spec.kind == Kind::up_down) spec.step_up = reader.maybe_numbers("step_up");
   if (reader.has("step") == reader.has("step_down"))
     reader.findings().add(reader.has("step") ? reader.place("step_down") : reader.place("step_up"),
                           reader.has("step")
@@ -101,23 +100,18 @@ void read_steps(text::TableReader& reader, Spec& spec) {
                           phrase("give either \"step\" (for both directions) or \"step_down\""));
 }
 
-void read_staircase(text::TableReader& reader, Spec& spec) {
+void read_staircase(core::TableReader& reader, Spec& spec) {
   read_tracks(reader, spec);
   read_scale(reader, spec);
   read_span(reader, spec);
   read_steps(reader, spec);
-  spec.discard_reversals = reader.integer("discard_reversals", 0, 1000, 0);
+  spec.discard_reversals = reader.integer("discard_reversals");
   if (spec.kind == Kind::up_down) {
-    spec.n_down = reader.integer("n_down", 1, 20);
-    spec.n_up = reader.integer("n_up", 1, 20, 1);
-    spec.initial_down = reader.maybe_integer("initial_down", 1, 20);
+    spec.n_down = reader.integer("n_down");
+    spec.n_up = reader.integer("n_up");
+    spec.initial_down = reader.maybe_integer("initial_down");
   } else {
-    spec.target = reader.number("target", {0, 1, text::Range::Ends::open});
-    if (reader.has("step_up"))
-      reader.problem(
-          "step_up",
-          phrase("\"%1\" is not allowed together with \"%2\"", {plain("step_up"), plain("target")}),
-          phrase("leave it out: the step up follows from the target and the step down"));
+    spec.target = reader.number("target");
   }
   read_stop(reader, spec);
 }
@@ -145,7 +139,7 @@ void validate_staircase(const Spec& spec, std::vector<Problem>& problems) {
          phrase("it must be at least two less than the number of reversals at which the staircase stops")});
 }
 
-std::unique_ptr<Procedure> make_staircase(const Spec& spec, const Context&, const random::Key&) {
+std::unique_ptr<Procedure> make_staircase(const Spec& spec, const Context&, const core::DrawKey&) {
   return std::make_unique<Staircase>(spec);
 }
 

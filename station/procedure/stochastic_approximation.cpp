@@ -6,7 +6,7 @@
 
 namespace turnpoint::procedure {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
@@ -54,12 +54,12 @@ extern const Description accelerated_stochastic_approximation{
     Kind::accelerated_stochastic_approximation,
     "accelerated-stochastic-approximation",
     Choice::track,
-    [](text::TableReader& reader, Spec& spec) {
+    [](core::TableReader& reader, Spec& spec) {
       read_tracks(reader, spec);
       read_scale(reader, spec);
       read_span(reader, spec);
-      spec.step = {reader.number("step", {0, 1e6, text::Range::Ends::open_low})};
-      spec.target = reader.number("target", {0, 1, text::Range::Ends::open});
+      spec.step = {reader.number("step")};
+      spec.target = reader.number("target");
       read_stop(reader, spec);
     },
     [](const Spec& spec, std::vector<Problem>& problems) {
@@ -72,7 +72,7 @@ extern const Description accelerated_stochastic_approximation{
       if (!spec.stop.trials && !spec.stop.reversals && !spec.stop.right)
         problems.push_back({"stop", phrase("no rule ends the procedure"), phrase("add trials or reversals")});
     },
-    [](const Spec& spec, const Context&, const random::Key&) -> std::unique_ptr<Procedure> {
+    [](const Spec& spec, const Context&, const core::DrawKey&) -> std::unique_ptr<Procedure> {
       return std::make_unique<StochasticApproximation>(spec);
     },
     [](const Spec& spec, double, double) { return spec.target; },

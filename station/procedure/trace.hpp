@@ -20,9 +20,9 @@ struct Trace {
   std::vector<double> reversals;
 };
 
-/// Runs a procedure on answers of 1 (right, or the tracked answer) and 0. Throws terms::UsageError for any
+/// Runs a procedure on answers of 1 (right, or the tracked answer) and 0. Throws core::UsageError for any
 /// other character, or for answers after the procedure has stopped.
 Trace trace(const Spec& spec, const Context& context, const std::string& answers,
-            const random::Key& key = {});
+            const core::DrawKey& key = {});
 
 }  // namespace turnpoint::procedure

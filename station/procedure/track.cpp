@@ -5,9 +5,9 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "station/core/elementary.hpp"
 #include "station/procedure/grid.hpp"
 #include "station/procedure/state_hash.hpp"
-#include "station/random/elementary.hpp"
 
 namespace turnpoint::procedure {
 
@@ -26,7 +26,7 @@ constexpr double kFarthest = 1e15;
 double per_step(Scale scale) { return scale == Scale::dB ? kLogOfTen / 20 : kLogOfTen; }
 
 double factor(double exponent) {
-  return random::exp(std::clamp(exponent, -kLargestExponent, kLargestExponent));
+  return core::exp(std::clamp(exponent, -kLargestExponent, kLargestExponent));
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ Ladder::Ladder(const Spec& spec, const std::vector<double>& steps)
   for (const double step : steps) common_ = std::gcd(common_, std::llround(step * per_one_));
   common_ = std::max<std::int64_t>(common_, 1);
   const auto commons_to = [&](double limit) {
-    const double way = linear ? limit - start_ : random::log(limit / start_) / per_step(scale_);
+    const double way = linear ? limit - start_ : core::log(limit / start_) / per_step(scale_);
     const double farthest = kFarthest / static_cast<double>(common_);
     return std::clamp(way * per_one_ / static_cast<double>(common_), -farthest, farthest);
   };
@@ -159,13 +159,13 @@ void Track::move(double amount) {
   count_stopped(level_ != before);
 }
 
-std::optional<texts::Phrase> Track::end() const {
+std::optional<core::Phrase> Track::end() const {
   const auto how = ended();
   return end_in_words(how, spec_.name, how == Ended::limit ? stopped_ : recorded_ + spent_);
 }
 
 std::string Track::with_end(std::string basis) const {
-  if (const auto how = end()) basis += "; ended early: " + texts::say(*how, "en");
+  if (const auto how = end()) basis += "; ended early: " + core::say(*how, "en");
   return basis;
 }
 

@@ -52,7 +52,7 @@ class Track : public Procedure {
   int recorded() const override { return recorded_; }
   int expected() const override;
   Ended ended() const override;
-  std::optional<texts::Phrase> end() const override;
+  std::optional<core::Phrase> end() const override;
   std::vector<double> reversals() const override { return reversals_; }
   std::uint64_t state_hash() const override;
 

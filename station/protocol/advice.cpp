@@ -1,19 +1,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "station/core/number.hpp"
 #include "station/protocol/advice_list.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/protocol/survey.hpp"
 #include "station/protocol/visits.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
-using text::number;
+using core::number;
 
 // Published just noticeable differences of friction range from a Weber fraction of 0.11 (Gueorguiev et al.
 // 2017) to 0.2 (Fehlberg et al. 2022). The advice assumes that everybody feels more than 0.2.
@@ -151,7 +151,7 @@ void advise_on_levels(AdviceList& advice) {
   check_unused(advice);
 }
 
-std::vector<text::Problem> advice(const Protocol& protocol) {
+std::vector<core::Problem> advice(const Protocol& protocol) {
   AdviceList advice(protocol);
   for (const auto& spec : protocol.procedures)
     for (const auto& fault : procedure::advise(spec))

@@ -13,13 +13,13 @@ namespace turnpoint::protocol {
 struct AdviceList {
   explicit AdviceList(const Protocol& of) : protocol(of), places(of.source, of.path) {}
 
-  void add(const std::string& key, const texts::Phrase& what, const texts::Phrase& allowed = {}) {
+  void add(const std::string& key, const core::Phrase& what, const core::Phrase& allowed = {}) {
     found.push_back({places.of(key), what, allowed});
   }
 
   const Protocol& protocol;
   const KeyPlaces places;
-  std::vector<text::Problem> found;
+  std::vector<core::Problem> found;
 };
 
 /// The fastest responses to touch take about 0.15 s, so nobody can reliably meet a deadline shorter than

@@ -2,19 +2,19 @@
 #include <cmath>
 #include <map>
 
+#include "station/core/number.hpp"
 #include "station/protocol/advice_list.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
+using core::number;
 using procedure::Spec;
-using text::number;
 
 /// For each answer, the number of cases in which it is right (`times`); the number of cases in which some
 /// answer is right (`scored`); and the number of all cases (`all`).
@@ -170,7 +170,7 @@ void check_pass(AdviceList& advice, const std::variant<Block, Sequence>& part) {
 }
 
 // Suggests the ends of the factor's range, which are its easiest levels, for catch trials.
-texts::Phrase easy_on_both_sides(const Protocol& protocol, const std::string& name) {
+core::Phrase easy_on_both_sides(const Protocol& protocol, const std::string& name) {
   const auto* factor = find_factor(protocol.factors, name);
   if (!factor || !factor->range) return phrase("include easy levels for each answer");
   return phrase("include easy levels for each answer, such as %1 = [%2, %3]",

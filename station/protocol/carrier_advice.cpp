@@ -5,22 +5,22 @@
 #include <map>
 #include <string>
 
+#include "station/core/limits.hpp"
+#include "station/core/number.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/scene/force_carrier.hpp"
-#include "station/terms/limits.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
+using core::number;
 using scene::ToneProduct;
-using text::number;
 
 /// Says how far one tone must be moved so that the filter of the force stops the product.
-texts::Phrase remedy(const ToneProduct& product, double carrier_Hz, int rate_Hz) {
+core::Phrase remedy(const ToneProduct& product, double carrier_Hz, int rate_Hz) {
   const double shift_Hz = std::ceil((scene::force_stop_Hz - product.distance_Hz) / std::abs(product.first));
   const auto distance_at = [&](double first_Hz) {
     const double sum_Hz = product.first * first_Hz + product.second * product.second_Hz;
@@ -46,11 +46,11 @@ struct Worst {
 
 }  // namespace
 
-std::vector<text::Problem> carrier_warnings(const Protocol& protocol, const rig::Rig& rig,
+std::vector<core::Problem> carrier_warnings(const Protocol& protocol, const rig::Rig& rig,
                                             const std::vector<Sight>& sights) {
   if (!rig.capture || rig.capture->bridges.empty()) return {};
   const bool calibrated = rig.capture->forces && rig.capture->forces->carrier_Hz > 0;
-  const double carrier_Hz = calibrated ? rig.capture->forces->carrier_Hz : terms::kForceCarrier_Hz;
+  const double carrier_Hz = calibrated ? rig.capture->forces->carrier_Hz : core::kForceCarrier_Hz;
   const int rate_Hz = rig.output.rate_Hz;
   std::map<std::string, Worst> worst;
   for (const auto& sight : sights) {
@@ -62,7 +62,7 @@ std::vector<text::Problem> carrier_warnings(const Protocol& protocol, const rig:
     if (of_scene.cases++ == 0 || product->distance_Hz < of_scene.product.distance_Hz)
       of_scene.sight = &sight, of_scene.product = *product;
   }
-  std::vector<text::Problem> warnings;
+  std::vector<core::Problem> warnings;
   for (const auto& [name, found] : worst) {
     const auto& sight = *found.sight;
     warnings.push_back(

@@ -1,10 +1,10 @@
 #pragma once
 #include <vector>
 
+#include "station/core/problem.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/protocol/survey.hpp"
 #include "station/rig/rig.hpp"
-#include "station/text/problem.hpp"
 
 namespace turnpoint::protocol {
 
@@ -13,7 +13,7 @@ namespace turnpoint::protocol {
 /// an oscillation of the force that follows the drive level. One warning per scene, about the product nearest
 /// to the carrier. Empty for rigs without force cells, and for cells with a converter of their own, which
 /// have no carrier.
-std::vector<text::Problem> carrier_warnings(const Protocol& protocol, const rig::Rig& rig,
+std::vector<core::Problem> carrier_warnings(const Protocol& protocol, const rig::Rig& rig,
                                             const std::vector<Sight>& sights);
 
 }  // namespace turnpoint::protocol

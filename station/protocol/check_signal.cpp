@@ -1,25 +1,25 @@
 #include <optional>
 #include <set>
 
+#include "station/core/limits.hpp"
+#include "station/core/number.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
-#include "station/terms/limits.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
 using By = ResponseSignal::By;
-using text::number;
+using core::number;
 
 /// True if the time of a signal within the stimulus is known before the stimulus begins. Otherwise reports
 /// why it is not.
-bool time_is_known(const Protocol& protocol, const texts::Phrase& what, text::Findings& findings) {
+bool time_is_known(const Protocol& protocol, const core::Phrase& what, core::Findings& findings) {
   const auto& signal = *protocol.timing.signal;
   if (!explored(protocol.task)) {
     findings.add(signal.by_place,
@@ -81,7 +81,7 @@ void check_buzz(const Reading& reading) {
         phrase("a buzz that is timed from \"go_cue\" could meet the change to the second scene"),
         phrase("%1, or an interval of one scene", {plain("response_zero = \"change\"")}));
   const double first_s = bounds(signal.after_s, protocol.factors).first;
-  const double changed_s = 1e-3 * task.transition_ms.value_or(0) + terms::kBetweenChanges_s;
+  const double changed_s = 1e-3 * task.transition_ms.value_or(0) + core::kBetweenChanges_s;
   if (first_s < changed_s)
     reading.findings.add(reading.places.of("timing.response_signal.after_s"),
                          phrase("the buzz can begin %1 s after the change begins, which takes %2 ms",
@@ -115,22 +115,22 @@ void check_flash(const Reading& reading) {
   const auto place = reading.places.of("timing.response_signal.after_s");
   const auto& factors = reading.protocol.factors;
   const double first_s = bounds(after_s, factors).first;
-  if (first_s < terms::kSignalLate_s - 1e-9)
+  if (first_s < core::kSignalLate_s - 1e-9)
     reading.findings.add(
         place,
         phrase("the flash can be due %1 s after \"%2\", but a screen may need three frames to show it",
                {plain(number(first_s)), plain(name(reading.protocol.timing.response_zero))}),
-        phrase("at least %1 s, or %2", {plain(number(terms::kSignalLate_s)), plain("by = \"tone\"")}));
+        phrase("at least %1 s, or %2", {plain(number(core::kSignalLate_s)), plain("by = \"tone\"")}));
   std::optional<double> before_s;
   for (const double lag_s : lags_of(after_s, factors)) {
     const double apart_s = lag_s - before_s.value_or(-1);
-    if (apart_s > 1e-9 && apart_s < terms::kFrame_s - 1e-9)
+    if (apart_s > 1e-9 && apart_s < core::kFrame_s - 1e-9)
       return reading.findings.add(place,
                                   phrase("the lags %1 and %2 s differ by less than a frame of the screen, so "
                                          "a flash cannot present both",
                                          {plain(number(*before_s)), plain(number(lag_s))}),
                                   phrase("lags that differ by at least %1 s, or %2",
-                                         {plain(number(terms::kFrame_s, 3)), plain("by = \"tone\"")}));
+                                         {plain(number(core::kFrame_s, 3)), plain("by = \"tone\"")}));
     before_s = lag_s;
   }
 }
@@ -148,7 +148,7 @@ void check_signal(const Reading& reading) {
   if (!time_is_known(protocol, tone ? phrase("a tone") : phrase("a buzz"), reading.findings)) return;
   if (!tone) check_buzz(reading);
   const auto end = stimulus_end(protocol);
-  const double length_s = tone ? terms::kSignal_s : signal->length_s + terms::kBuzzRamp_s;
+  const double length_s = tone ? core::kSignal_s : signal->length_s + core::kBuzzRamp_s;
   const double latest_s = bounds(signal->after_s, protocol.factors).second + length_s;
   if (end && latest_s > end->earliest_s)
     reading.findings.add(

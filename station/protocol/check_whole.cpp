@@ -1,21 +1,21 @@
 #include <algorithm>
 #include <set>
 
+#include "station/core/number.hpp"
 #include "station/procedure/description.hpp"
 #include "station/protocol/advice_list.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/protocol/sources.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
-using text::Findings;
+using core::Findings;
 
 // Reports each source of trials in which this factor has no value. If no source sets the factor at all, it is
 // reported only once, at its declaration.
@@ -48,9 +48,9 @@ void check_answers(const std::vector<Source>& sources, const Reading& reading) {
       return reading.findings.add(
           last->second.left.place,
           answers.size() > 2
-              ? phrase("at %1 = %2 two answers are right", {plain(source.level), plain(text::number(level))})
+              ? phrase("at %1 = %2 two answers are right", {plain(source.level), plain(core::number(level))})
               : phrase("at %1 = %2 both answers are right",
-                       {plain(source.level), plain(text::number(level))}),
+                       {plain(source.level), plain(core::number(level))}),
           phrase("write comparisons that cannot both be true"));
     }
   }
@@ -81,7 +81,7 @@ void check_present(const std::vector<Source>& sources, const Reading& reading) {
 
 // Without correct answers, a procedure cannot follow right answers, and practice cannot be passed. Reports
 // such procedures and blocks.
-void check_scored(text::TableReader& file, const Reading& reading) {
+void check_scored(core::TableReader& file, const Reading& reading) {
   const auto& protocol = reading.protocol;
   const auto& task = protocol.task;
   const auto* table = file.take("task");
@@ -118,7 +118,7 @@ void check_limits(const Reading& reading) {
   const auto& task = protocol.task;
   for (const auto& spec : protocol.procedures) {
     if (spec.kind != procedure::Kind::limits) continue;
-    const auto report = [&](const char* key, const texts::Phrase& what, const texts::Phrase& allowed) {
+    const auto report = [&](const char* key, const core::Phrase& what, const core::Phrase& allowed) {
       reading.findings.add(reading.places.of(key_of(spec, key)),
                            phrase("procedure \"%1\": %2", {plain(spec.name), what}), allowed);
     };
@@ -211,9 +211,9 @@ std::optional<std::string> block_without_deadline(const Protocol& protocol) {
   return std::nullopt;
 }
 
-void check_timing(text::TableReader& file, const Reading& reading) {
+void check_timing(core::TableReader& file, const Reading& reading) {
   const auto* table = file.take("timing");
-  if (!table || table->kind != text::Value::Kind::table) return;
+  if (!table || table->kind != core::Value::Kind::table) return;
   const auto& protocol = reading.protocol;
   const auto& timing = protocol.timing;
   const auto place = [&](const char* key) {
@@ -252,7 +252,7 @@ void check_timing(text::TableReader& file, const Reading& reading) {
     if (anticipation_s >= deadline_s)
       findings.add(deadline_s < shortest_deadline_s ? reading.places.of(key) : place("anticipation_s"),
                    phrase("\"anticipation_s\" must be shorter than the deadline of %1 s",
-                          {plain(text::number(deadline_s))}));
+                          {plain(core::number(deadline_s))}));
   };
   if (timing.deadline_s) check_anticipation("timing.deadline_s", *timing.deadline_s);
   for (const auto& [name, instruction] : protocol.instructions)
@@ -268,7 +268,7 @@ void check_timing(text::TableReader& file, const Reading& reading) {
 
 }  // namespace
 
-void check_whole(text::TableReader& file, Reading& reading) {
+void check_whole(core::TableReader& file, Reading& reading) {
   check_timing(file, reading);
   check_signal(reading);
   check_scored(file, reading);

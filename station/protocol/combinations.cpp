@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "station/core/number.hpp"
 #include "station/protocol/expression.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
@@ -139,7 +139,7 @@ std::vector<Combination> thinned(const Scene& scene, const std::vector<Combinati
   return chosen;
 }
 
-texts::Phrase in_case(const Combination& combination, texts::Phrase what) {
+core::Phrase in_case(const Combination& combination, core::Phrase what) {
   const auto scene = plain(combination.scene), block = plain(combination.block);
   if (combination.factors.empty())
     return phrase("scene \"%1\" in block \"%2\": %3", {scene, block, std::move(what)});
@@ -147,7 +147,7 @@ texts::Phrase in_case(const Combination& combination, texts::Phrase what) {
                 {scene, block, plain(format(combination.factors)), std::move(what)});
 }
 
-texts::Phrase counted(texts::Phrase first, int cases) {
+core::Phrase counted(core::Phrase first, int cases) {
   if (cases < 2) return first;
   return phrase("%1 (and in %2 more cases)", {std::move(first), plain(cases - 1)});
 }
@@ -157,7 +157,7 @@ std::string format(const Factors& factors) {
   for (const auto& [name, value] : factors) {
     const auto* number = std::get_if<double>(&value);
     all += (all.empty() ? "" : ", ") + name + " = " +
-           (number ? text::number(*number) : std::get<std::string>(value));
+           (number ? core::number(*number) : std::get<std::string>(value));
   }
   return all;
 }

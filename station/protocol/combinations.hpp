@@ -35,9 +35,9 @@ std::vector<Combination> thinned(const Scene& scene, const std::vector<Combinati
 std::string format(const Factors& factors);
 
 /// Says in which scene, in which block and at which factors something is the case.
-texts::Phrase in_case(const Combination& combination, texts::Phrase what);
+core::Phrase in_case(const Combination& combination, core::Phrase what);
 /// Adds in how many other cases the same is true. `cases` counts the first case, too.
-texts::Phrase counted(texts::Phrase first, int cases);
+core::Phrase counted(core::Phrase first, int cases);
 
 /// The numeric and text factors on which a scene depends.
 std::set<std::string> factors_of(const Scene& scene);

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "station/core/number.hpp"
 #include "station/protocol/sources.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
@@ -43,7 +43,7 @@ FactorWords words_of(const std::string& factor) {
 std::string level_in_words(const std::string& factor, const protocol::FactorValue& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
   const auto words = words_of(factor);
-  return words.name + " " + text::number(std::get<double>(value)) +
+  return words.name + " " + core::number(std::get<double>(value)) +
          (words.unit.empty() ? "" : " " + words.unit);
 }
 

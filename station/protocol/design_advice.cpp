@@ -5,20 +5,20 @@
 #include <map>
 #include <set>
 
+#include "station/core/number.hpp"
 #include "station/protocol/advice_list.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
+using core::number;
+using core::Problem;
 using procedure::Kind;
-using text::number;
-using text::Problem;
 
 /// A displacement below this is far too small to be felt.
 constexpr double least_displacement_um = 0.001;
@@ -63,7 +63,7 @@ void check_words(AdviceList& advice) {
   const auto& anchors = task.value ? task.value->anchors : task.anchors;
   for (std::size_t i = 0; i < anchors.size(); ++i)
     points.push_back(
-        {"task.rating.labels." + number_of(i) + ".text", text::number(anchors[i].at), &anchors[i].text});
+        {"task.rating.labels." + number_of(i) + ".text", core::number(anchors[i].at), &anchors[i].text});
   for (const auto& language : advice.protocol.languages) {
     for (const auto* labels : {&choices, &degrees, &points}) check_labels(advice, language, *labels);
     const auto question = task.question.find(language);
@@ -279,7 +279,7 @@ constexpr std::size_t most_cells = 1'000'000'000'000;
 /// Reports a procedure whose `repeats` cannot be spread evenly over `cells` combinations of factors; `what`
 /// describes these combinations.
 void note_uneven(AdviceList& notes, const procedure::Spec& spec, std::size_t cells,
-                 const texts::Phrase& cell_names) {
+                 const core::Phrase& cell_names) {
   const auto repeats = static_cast<std::size_t>(spec.repeats), least = repeats / cells;
   if (repeats % cells == 0) return;
   const auto even = (least + 1) * cells;

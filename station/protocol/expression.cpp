@@ -6,17 +6,17 @@
 #include <iterator>
 #include <map>
 
-#include "station/text/number.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
 struct SyntaxError {
   std::size_t at;
-  texts::Phrase what, allowed;
+  core::Phrase what, allowed;
 };
 
 // A recursive-descent parser for an expression, or for one side of a comparison. Every result is linear in
@@ -45,7 +45,7 @@ class Parser {
   }
 
  private:
-  static texts::Phrase form() {
+  static core::Phrase form() {
     return phrase(
         "allowed: sums and products of factors, such as %1 or %2, or abs(...) around the whole expression",
         {plain("\"150 - 0.5 * spread_mm\""), plain("\"ref * (1 + weber)\"")});
@@ -144,7 +144,7 @@ class Parser {
     const auto* factor = find_factor(factors_, word);
     if (!factor)
       throw SyntaxError{begin, phrase("unknown factor \"%1\"", {plain(word)}),
-                        text::suggestion(word, names(factors_))};
+                        core::suggestion(word, names(factors_))};
     if (!span(*factor) && !is_broken(*factor))
       throw SyntaxError{begin, phrase("the factor \"%1\" has names as values, not numbers", {plain(word)}),
                         form()};
@@ -228,7 +228,7 @@ class Parser {
 
 // Returns the place in the file of one character of an expression's text. The text starts one column after
 // its opening quote. Columns count characters, not bytes.
-text::Place inside(const text::Place& place, const std::string& source, std::size_t at) {
+core::Place inside(const core::Place& place, const std::string& source, std::size_t at) {
   const auto end = source.begin() + static_cast<std::ptrdiff_t>(std::min(at, source.size()));
   const auto characters = std::count_if(
       source.begin(), end, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
@@ -236,8 +236,8 @@ text::Place inside(const text::Place& place, const std::string& source, std::siz
 }
 
 std::optional<Linear> side(const std::string& source, std::size_t begin, std::size_t end,
-                           const text::Place& place, const std::vector<Factor>& factors,
-                           text::Findings& findings) {
+                           const core::Place& place, const std::vector<Factor>& factors,
+                           core::Findings& findings) {
   try {
     auto result = Parser(source, begin, end, factors).whole();
     result.source = source.substr(begin, end - begin);
@@ -252,13 +252,13 @@ std::optional<Linear> side(const std::string& source, std::size_t begin, std::si
 
 }  // namespace
 
-std::optional<Linear> parse_linear(const std::string& source, const text::Place& place,
-                                   const std::vector<Factor>& factors, text::Findings& findings) {
+std::optional<Linear> parse_linear(const std::string& source, const core::Place& place,
+                                   const std::vector<Factor>& factors, core::Findings& findings) {
   return side(source, 0, source.size(), place, factors, findings);
 }
 
-std::optional<Comparison> parse_comparison(const std::string& source, const text::Place& place,
-                                           const std::vector<Factor>& factors, text::Findings& findings) {
+std::optional<Comparison> parse_comparison(const std::string& source, const core::Place& place,
+                                           const std::vector<Factor>& factors, core::Findings& findings) {
   const auto at = source.find_first_of("<>=");
   const std::string two = at == std::string::npos ? "" : source.substr(at, 2);
   Comparison comparison;
@@ -285,16 +285,16 @@ std::optional<Comparison> parse_comparison(const std::string& source, const text
   return comparison;
 }
 
-std::optional<Linear> linear_from(const text::Value& value, const std::string& key, const text::Range& range,
-                                  const std::vector<Factor>& factors, text::Findings& findings) {
+std::optional<Linear> linear_from(const core::Value& value, const std::string& key, const core::Range& range,
+                                  const std::vector<Factor>& factors, core::Findings& findings) {
   std::optional<Linear> result;
-  if (value.kind == text::Value::Kind::string) {
+  if (value.kind == core::Value::Kind::string) {
     result = parse_linear(value.string, value.place, factors, findings);
     if (!result) return std::nullopt;
-  } else if (value.kind == text::Value::Kind::number || value.kind == text::Value::Kind::integer) {
+  } else if (value.kind == core::Value::Kind::number || value.kind == core::Value::Kind::integer) {
     result.emplace();
     result->constant = value.number;
-    result->source = text::exact(value.number);
+    result->source = core::exact(value.number);
     result->place = value.place;
   } else {
     findings.add(value.place, phrase("\"%1\" is %2", {plain(key), describe(value)}),
@@ -306,14 +306,14 @@ std::optional<Linear> linear_from(const text::Value& value, const std::string& k
   const auto used = factors_in(*result);
   if (std::any_of(used.begin(), used.end(), broken)) return result;
   const auto [low, high] = bounds(*result, factors);
-  if (text::inside_range(low, range) && inside_range(high, range)) return result;
+  if (core::inside_range(low, range) && inside_range(high, range)) return result;
   if (result->is_constant())
-    findings.add(value.place, phrase("\"%1\" is %2", {plain(key), plain(text::number(low))}),
+    findings.add(value.place, phrase("\"%1\" is %2", {plain(key), plain(core::number(low))}),
                  phrase("allowed: %1", {describe(range)}));
   else
     findings.add(value.place,
                  phrase("\"%1\" runs from %2 to %3 depending on the values of its factors",
-                        {plain(key), plain(text::number(low)), plain(text::number(high))}),
+                        {plain(key), plain(core::number(low)), plain(core::number(high))}),
                  phrase("allowed: %1", {describe(range)}));
   return std::nullopt;
 }

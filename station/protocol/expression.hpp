@@ -4,25 +4,25 @@
 #include <utility>
 #include <vector>
 
+#include "station/core/reader.hpp"
 #include "station/protocol/protocol.hpp"
-#include "station/text/reader.hpp"
 
 namespace turnpoint::protocol {
 
 /// Parses arithmetic on numeric factors: numbers, factor names, + - * / and parentheses, and abs() around the
 /// whole expression. A divisor must be a constant, and no factor may be multiplied by itself. Problems give
 /// the column inside the text and suggest the nearest factor name.
-std::optional<Linear> parse_linear(const std::string& source, const text::Place& place,
-                                   const std::vector<Factor>& factors, text::Findings& findings);
+std::optional<Linear> parse_linear(const std::string& source, const core::Place& place,
+                                   const std::vector<Factor>& factors, core::Findings& findings);
 
 /// Parses a comparison: two linear expressions with one of < <= == >= > between them.
-std::optional<Comparison> parse_comparison(const std::string& source, const text::Place& place,
-                                           const std::vector<Factor>& factors, text::Findings& findings);
+std::optional<Comparison> parse_comparison(const std::string& source, const core::Place& place,
+                                           const std::vector<Factor>& factors, core::Findings& findings);
 
 /// Reads a number or a text with linear arithmetic. For all values of its factors the result must be within
 /// `range`.
-std::optional<Linear> linear_from(const text::Value& value, const std::string& key, const text::Range& range,
-                                  const std::vector<Factor>& factors, text::Findings& findings);
+std::optional<Linear> linear_from(const core::Value& value, const std::string& key, const core::Range& range,
+                                  const std::vector<Factor>& factors, core::Findings& findings);
 
 /// Returns the smallest and largest value of the expression if each factor varies over its range or levels
 /// independently of the others.

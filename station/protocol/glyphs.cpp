@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "station/text/toml.hpp"
+#include "station/core/toml.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
@@ -46,7 +46,7 @@ class Search {
  public:
   explicit Search(const std::function<bool(char32_t)>& drawable) : drawable_(drawable) {}
 
-  void look(const std::string& key, const text::Place& place, const text::Value& value) {
+  void look(const std::string& key, const core::Place& place, const core::Value& value) {
     std::string missing;
     collect(value, missing);
     if (!missing.empty())
@@ -60,17 +60,17 @@ class Search {
       for (const auto& entry : item.entries) look(key + "." + entry.key, entry.place, entry.value);
   }
 
-  std::vector<text::Problem> found;
+  std::vector<core::Problem> found;
 
  private:
-  void collect(const text::Value& value, std::string& missing) {
+  void collect(const core::Value& value, std::string& missing) {
     for (const auto& [code, bytes] : characters(value.string))
       if (!in_every_font(code) && !has_no_shape(code) && missing.find(bytes) == std::string::npos &&
           !drawable_(code))
         missing +=
             (missing.empty() ? "" : ", ") + fmt::format("{} (U+{:04X})", bytes, static_cast<unsigned>(code));
     for (const auto& item : value.items)
-      if (item.kind == text::Value::Kind::string) collect(item, missing);
+      if (item.kind == core::Value::Kind::string) collect(item, missing);
   }
 
   const std::function<bool(char32_t)>& drawable_;
@@ -78,10 +78,10 @@ class Search {
 
 }  // namespace
 
-std::vector<text::Problem> undrawable(const Protocol& protocol,
+std::vector<core::Problem> undrawable(const Protocol& protocol,
                                       const std::function<bool(char32_t)>& drawable) {
   Search search(drawable);
-  for (const auto& entry : text::parse_toml(protocol.source, protocol.path).entries)
+  for (const auto& entry : core::parse_toml(protocol.source, protocol.path).entries)
     search.look(entry.key, entry.place, entry.value);
   return search.found;
 }

@@ -10,7 +10,7 @@ namespace turnpoint::protocol {
 /// with all such characters. `drawable` says whether a character (a Unicode code point) can be drawn on this
 /// machine. It is not asked for Latin letters, which every font of the station has, nor for characters that
 /// are never drawn, such as marks of the direction of writing.
-std::vector<text::Problem> undrawable(const Protocol& protocol,
+std::vector<core::Problem> undrawable(const Protocol& protocol,
                                       const std::function<bool(char32_t)>& drawable);
 
 }  // namespace turnpoint::protocol

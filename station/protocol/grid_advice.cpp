@@ -1,18 +1,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "station/core/number.hpp"
 #include "station/protocol/advice_list.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
+using core::number;
 using procedure::Kind;
 using procedure::Spec;
-using text::number;
 
 bool depends_on(const Protocol& protocol, const std::string& level) {
   for (const auto& name : scenes_used(protocol))

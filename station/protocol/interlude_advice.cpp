@@ -4,11 +4,11 @@
 
 #include "station/protocol/advice_list.hpp"
 
-#include "station/terms/letters.hpp"
+#include "station/core/letters.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
@@ -56,7 +56,7 @@ const std::vector<std::string>& identifying_ids() {
   return ids;
 }
 
-using terms::lower;
+using core::lower;
 
 bool has_word(const std::string& text, const std::string& word, bool alone) {
   const auto letter = [&](std::size_t at) {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "station/core/number.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/protocol/visits.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
@@ -63,7 +63,7 @@ std::vector<const Interlude*> interludes_before(const Protocol& protocol, const 
 
 FactorValue answer_value(const Item& item, const std::string& answer) {
   if (!item.value && !item.rating) return answer;
-  const auto number = text::read_number(answer);
+  const auto number = core::read_number(answer);
   return number ? FactorValue(*number) : FactorValue(answer);
 }
 

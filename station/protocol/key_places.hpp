@@ -2,8 +2,8 @@
 #include <map>
 #include <string>
 
-#include "station/text/problem.hpp"
-#include "station/text/toml.hpp"
+#include "station/core/problem.hpp"
+#include "station/core/toml.hpp"
 
 namespace turnpoint::protocol {
 
@@ -13,17 +13,17 @@ namespace turnpoint::protocol {
 class KeyPlaces {
  public:
   KeyPlaces(const std::string& source, const std::string& path);
-  KeyPlaces(const text::Value& document, const std::string& path);
+  KeyPlaces(const core::Value& document, const std::string& path);
 
   /// Returns the place of the key. If the file does not contain the key, returns the place of the table to
   /// which it belongs.
-  text::Place of(std::string key) const;
+  core::Place of(std::string key) const;
   bool has(const std::string& key) const { return places_.count(key) > 0; }
 
  private:
-  void add(const std::string& key, const text::Place& place, const text::Value& value);
+  void add(const std::string& key, const core::Place& place, const core::Value& value);
 
-  std::map<std::string, text::Place> places_;
+  std::map<std::string, core::Place> places_;
 };
 
 }  // namespace turnpoint::protocol

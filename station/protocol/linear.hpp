@@ -5,11 +5,11 @@
 #include <variant>
 #include <vector>
 
-#include "station/text/problem.hpp"
+#include "station/core/problem.hpp"
 
 namespace turnpoint::protocol {
 
-using text::Place;
+using core::Place;
 
 /// Values of the factors in one trial: a number for a numeric factor, a name for a text factor.
 using FactorValue = std::variant<double, std::string>;

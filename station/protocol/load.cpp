@@ -1,14 +1,14 @@
 #include <fstream>
 
+#include "station/core/number.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/interludes.hpp"
 #include "station/protocol/reading.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
@@ -23,13 +23,13 @@ bool is_picture(const std::string& path) {
 }  // namespace
 
 Protocol parse(const std::string& source, const std::string& path) {
-  const auto document = text::parse_toml(source, path);
-  text::Findings findings;
+  const auto document = core::parse_toml(source, path);
+  core::Findings findings;
   Protocol protocol;
-  protocol.path = path, protocol.source = source, protocol.sha256 = text::sha256(source);
+  protocol.path = path, protocol.source = source, protocol.sha256 = core::sha256(source);
   const KeyPlaces places(document, path);
   Reading reading{protocol, findings, places, {}};
-  text::TableReader file(document, "", findings);
+  core::TableReader file(document, "", findings, protocol_keys());
   read_header(file, reading);
   read_factors(file, reading);
   read_scenes(file, reading);
@@ -55,8 +55,8 @@ Protocol parse(const std::string& source, const std::string& path) {
 }
 
 Protocol load(const std::string& path) {
-  auto protocol = parse(text::read_text_file(path), path);
-  text::Findings findings;
+  auto protocol = parse(core::read_text_file(path), path);
+  core::Findings findings;
   for (const auto& picture : pictures(protocol))
     if (!is_picture(picture.path))
       findings.add(picture.place,

@@ -6,12 +6,12 @@
 #include <map>
 #include <set>
 
+#include "station/core/number.hpp"
 #include "station/procedure/description.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/sources.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
@@ -79,14 +79,14 @@ void choose_function(const Protocol& protocol, Meaning& meaning) {
   const bool rises = meaning.design == Design::forced_choice || has_noise(meaning.design);
   const bool positive = meaning.levels.first >= 0 && meaning.levels.second > 0;
   const bool weibull = rises && (decibel(meaning) || positive);
-  meaning.function = weibull ? terms::Function::weibull : terms::Function::normal;
+  meaning.function = weibull ? core::Function::weibull : core::Function::normal;
   meaning.log_axis = rises && positive && !decibel(meaning);
   for (const auto& name : meaning.procedures) {
     const auto* spec = find_procedure(protocol, name);
     if (procedure::description(spec->kind).choice != procedure::Choice::posterior) continue;
     if (spec->signal_detection) continue;  // the fit has no criterion, but a rate of false alarms
     // A Weibull function needs levels above 0, or levels in dB. Its 63 % point is not a PSE.
-    if (spec->function != terms::Function::weibull || weibull) meaning.function = spec->function;
+    if (spec->function != core::Function::weibull || weibull) meaning.function = spec->function;
     return;
   }
 }
@@ -135,9 +135,9 @@ void name_all(std::vector<Meaning>& all, const std::vector<std::map<std::string,
 std::string code(const std::string& name) { return "`" + name + "`"; }
 
 std::string function_in_words(const Meaning& meaning) {
-  std::string words = meaning.function == terms::Function::weibull  ? "Weibull"
-                      : meaning.function == terms::Function::normal ? "cumulative normal"
-                                                                    : "logistic";
+  std::string words = meaning.function == core::Function::weibull  ? "Weibull"
+                      : meaning.function == core::Function::normal ? "cumulative normal"
+                                                                   : "logistic";
   if (meaning.log_axis) words += " on a log scale";
   return words;
 }
@@ -222,7 +222,7 @@ std::optional<std::string> common_level(const Protocol& protocol) {
 
 std::optional<double> threshold_proportion(const Meaning& meaning) {
   if (meaning.design != Design::forced_choice || !meaning.scored) return std::nullopt;
-  const double core = meaning.function == terms::Function::weibull ? 1 - std::exp(-1.0) : 0.5;
+  const double core = meaning.function == core::Function::weibull ? 1 - std::exp(-1.0) : 0.5;
   const double guess = 1.0 / meaning.alternatives;
   return guess + (1 - guess) * core;
 }
@@ -248,7 +248,7 @@ std::string in_words(const Meaning& meaning, const Protocol& protocol) {
     case Design::two_sided:
       words = "PSE and spread of " + level;
       if (meaning.scored)
-        words += " around " + text::number(meaning.rule.cut, 6) +
+        words += " around " + core::number(meaning.rule.cut, 6) +
                  (protocol.task.kind == TaskKind::two_interval
                       ? " by the interval with `" + choice_of(protocol, meaning.rule.positive) + "`"
                       : "");
@@ -263,8 +263,8 @@ std::string in_words(const Meaning& meaning, const Protocol& protocol) {
       break;
     case Design::forced_choice:
       words = "threshold of " + level + " at " +
-              text::number(100 * threshold_proportion(meaning).value_or(0.5), 3) + " % correct, guess rate " +
-              text::number(1.0 / meaning.alternatives, 3);
+              core::number(100 * threshold_proportion(meaning).value_or(0.5), 3) + " % correct, guess rate " +
+              core::number(1.0 / meaning.alternatives, 3);
       break;
   }
   if (!meaning.along.empty())

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "station/core/psychometric.hpp"
 #include "station/procedure/spec.hpp"
-#include "station/terms/psychometric.hpp"
 
 namespace turnpoint::protocol {
 
@@ -65,7 +65,7 @@ struct Meaning {
   /// true if the sign of the level is left out: the analysis is over the size of the level
   bool size = false;
   int alternatives = 2;
-  terms::Function function = terms::Function::weibull;
+  core::Function function = core::Function::weibull;
   bool log_axis = false;  ///< true if the function is fitted to the logarithm of the level
   /// the lowest and the highest level that the trials can present, after `size`
   std::pair<double, double> levels{0, 0};

@@ -2,22 +2,22 @@
 
 #include <algorithm>
 
+#include "station/core/number.hpp"
+#include "station/core/usage_error.hpp"
 #include "station/protocol/resolve.hpp"
 #include "station/protocol/triggers.hpp"
 #include "station/scene/measures.hpp"
 #include "station/scene/planner.hpp"
 #include "station/scene/scaled.hpp"
-#include "station/terms/usage_error.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
 void check_devices(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
-  const auto add = [&](const Place& place, const texts::Phrase& what, const texts::Phrase& allowed) {
+  const auto add = [&](const Place& place, const core::Phrase& what, const core::Phrase& allowed) {
     survey.problems.push_back({place, what, allowed});
   };
   const auto& task = protocol.task;
@@ -84,7 +84,7 @@ void check_triggers(const Protocol& protocol, const rig::Rig& rig, Survey& surve
     survey.problems.push_back(
         {place,
          phrase("a trigger code lasts %1 ms, longer than the shortest time between two events",
-                {plain(text::number(1e3 * code_s, 3))}),
+                {plain(core::number(1e3 * code_s, 3))}),
          phrase("shorten \"duration_ms\" in [marker] of the rig")});
 }
 
@@ -122,7 +122,7 @@ void check_friction_tables(const Protocol& protocol, const rig::Rig& rig, Survey
       survey.problems.push_back(
           {block.place,
            phrase("friction table \"%1\" at %2 um: %3",
-                  {plain(block.name), plain(text::number(strokes.levels_um.back())), error.why()}),
+                  {plain(block.name), plain(core::number(strokes.levels_um.back())), error.why()}),
            phrase("use smaller displacements, or another scene")});
     }
   }

@@ -7,12 +7,12 @@
 #include <variant>
 #include <vector>
 
+#include "station/core/problem.hpp"
+#include "station/core/trial.hpp"
 #include "station/procedure/spec.hpp"
 #include "station/protocol/meaning.hpp"
 #include "station/protocol/scene.hpp"
 #include "station/protocol/session_plan.hpp"
-#include "station/terms/trial.hpp"
-#include "station/text/problem.hpp"
 
 namespace turnpoint::protocol {
 
@@ -100,7 +100,7 @@ struct Task {
   std::optional<double> step;
 };
 
-using terms::ResponseZero;
+using core::ResponseZero;
 
 /// A signal to answer at once, for measuring how accuracy grows with the time for which people may think. An
 /// answer counts from the signal to the end of the window; earlier and later ones make the trial void, and it
@@ -381,7 +381,7 @@ struct Protocol {
 };
 
 /// Reads and checks a protocol file (format "friction-protocol/1"): syntax, keys, types, ranges, references.
-/// Throws text::BadInput with all problems at once, or std::system_error if the file cannot be read.
+/// Throws core::BadInput with all problems at once, or std::system_error if the file cannot be read.
 Protocol load(const std::string& path);
 
 /// Like load(), for text that is already in memory (a resumed session). `path` is only used in messages.

@@ -7,21 +7,18 @@
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::Range;
-using text::TableReader;
+using core::Range;
+using core::TableReader;
 
 namespace {
-
-const std::vector<std::string> kShown{"psychometric",    "ez",   "bis", "lisas", "ies", "caf", "dprime",
-                                      "response-signal", "trace"};
 
 void read_by(TableReader& reader, Reading& reading) {
   auto& by = reading.protocol.analysis.by;
   const auto* value = reader.take("by");
   if (!value) return;
-  if (value->kind == text::Value::Kind::string)
+  if (value->kind == core::Value::Kind::string)
     by = {reader.maybe_string("by").value_or("")};
   else
     by = reader.maybe_strings("by");
@@ -31,7 +28,7 @@ void read_by(TableReader& reader, Reading& reading) {
     const auto* factor = find_factor(factors, name);
     if (!factor)
       reader.problem("by", phrase("unknown factor \"%1\"", {plain(name)}),
-                     text::suggestion(name, names(factors)));
+                     core::suggestion(name, names(factors)));
     else if (factor->levels.empty())
       reader.problem("by", phrase("the factor \"%1\" has a range, not levels", {plain(name)}),
                      phrase("use factors with \"levels\", because one curve is fitted for each level"));
@@ -47,7 +44,7 @@ void read_by(TableReader& reader, Reading& reading) {
 }
 
 /// Why a value of `show` would add nothing to the report of this protocol; empty if it would add something.
-texts::Phrase without_effect(const std::string& word, const Protocol& protocol) {
+core::Phrase without_effect(const std::string& word, const Protocol& protocol) {
   const auto& task = protocol.task;
   // do not add a second message: the reader of [task] has reported a task without choices
   if (word == "trace" || task.choices.empty()) return {};
@@ -84,24 +81,22 @@ texts::Phrase without_effect(const std::string& word, const Protocol& protocol) 
 
 void read_show(TableReader& reader, Reading& reading) {
   auto& analysis = reading.protocol.analysis;
-  if (!reader.has("show")) {
-    reader.take("show");
-    return;
-  }
+  if (!reader.has("show")) return;
+  const auto& shown = reader.words("show");
   analysis.show = reader.maybe_strings("show");
   std::vector<std::string> useful;
-  for (const auto& word : kShown)
+  for (const auto& word : shown)
     if (without_effect(word, reading.protocol).empty()) useful.push_back(word);
   for (const auto& word : *analysis.show) {
-    if (std::find(kShown.begin(), kShown.end(), word) == kShown.end()) {
+    if (std::find(shown.begin(), shown.end(), word) == shown.end()) {
       reader.problem("show", phrase("\"%1\" has \"%2\"", {plain("show"), plain(word)}),
-                     text::suggestion(word, kShown));
+                     core::suggestion(word, shown));
       continue;
     }
     const auto reason = without_effect(word, reading.protocol);
     if (!reason.empty())
       reader.problem("show", phrase("\"%1\" would show nothing: %2", {plain(word), reason}),
-                     phrase("allowed here: %1", {text::quoted_list(useful)}));
+                     phrase("allowed here: %1", {core::quoted_list(useful)}));
   }
 }
 
@@ -112,15 +107,16 @@ void read_analysis(TableReader& file, Reading& reading) {
     reading.protocol.analysis.count_incomplete = sessions->incomplete == Unfinished::count;
   const auto* table = file.maybe_table("analysis");
   if (!table) return;
-  TableReader reader(*table, "analysis", reading.findings);
+  TableReader reader(*table, "analysis", reading.findings, file.keys("analysis"));
   auto& analysis = reading.protocol.analysis;
   const auto& factors = reading.protocol.factors;
   read_by(reader, reading);
   if (const auto* difficulty = reader.take("difficulty"))
-    analysis.difficulty = linear_from(*difficulty, "difficulty", {-1e9, 1e9}, factors, reading.findings);
+    analysis.difficulty =
+        linear_from(*difficulty, "difficulty", reader.range("difficulty"), factors, reading.findings);
   read_show(reader, reading);
   const auto& sessions = reading.protocol.sessions;
-  const auto incomplete = reader.maybe_word("incomplete_sessions", {"leave_out", "count"});
+  const auto incomplete = reader.maybe_word("incomplete_sessions");
   if (incomplete) analysis.count_incomplete = *incomplete == "count";
   if (incomplete == "leave_out" && sessions && sessions->incomplete == Unfinished::count)
     reader.problem(
@@ -128,10 +124,10 @@ void read_analysis(TableReader& file, Reading& reading) {
         phrase("the protocol counts unfinished sessions already ([sessions] incomplete = \"count\")"),
         plain("incomplete_sessions = \"count\""));
   if (const auto* exclude = reader.maybe_table("response_time_exclude")) {
-    TableReader inner(*exclude, "analysis.response_time_exclude", reading.findings);
-    analysis.exclude_below_s = inner.number("below_s", {0, 10, Range::Ends::closed, "s"}, 0);
-    analysis.exclude_mad =
-        inner.maybe_number("mad", {0, 100, Range::Ends::open_low, "median absolute deviations"});
+    TableReader inner(*exclude, reader.path("response_time_exclude"), reading.findings,
+                      reader.keys("response_time_exclude"));
+    analysis.exclude_below_s = inner.number("below_s");
+    analysis.exclude_mad = inner.maybe_number("mad");
     inner.finish();
   }
   reader.finish();

@@ -1,18 +1,17 @@
 #include <algorithm>
-#include <cctype>
 
+#include "station/core/number.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::TableReader;
-using text::Value;
+using core::TableReader;
+using core::Value;
 
-Localised localised_from(const text::Value& value, const std::string& key, const Reading& reading) {
+Localised localised_from(const core::Value& value, const std::string& key, const Reading& reading) {
   Localised texts;
   const auto& languages = reading.protocol.languages;
   auto& findings = reading.findings;
@@ -27,7 +26,7 @@ Localised localised_from(const text::Value& value, const std::string& key, const
       findings.add(entry.place,
                    phrase("\"%1\" has a text in \"%2\", which is not a declared language",
                           {plain(key), plain(entry.key)}),
-                   phrase("the languages declared in [protocol] are %1", {text::quoted_list(languages)}));
+                   phrase("the languages declared in [protocol] are %1", {core::quoted_list(languages)}));
     else if (entry.value.kind != Value::Kind::string || entry.value.string.empty())
       findings.add(entry.value.place, phrase("\"%1\" is %2", {plain(key), describe(entry.value)}),
                    phrase("write a text in quotes"));
@@ -42,51 +41,37 @@ Localised localised_from(const text::Value& value, const std::string& key, const
 }
 
 Localised read_localised(TableReader& reader, const std::string& key, const Reading& reading) {
-  const auto* value =
-      reader.require(key, phrase("write a text in each language: %1", {plain("{ en = \"...\" }")}));
+  const auto* value = reader.require(key);
   return value ? localised_from(*value, key, reading) : Localised{};
 }
 
 std::optional<Distribution> read_distribution(TableReader& reader, const std::string& key) {
   const auto* value = reader.take(key);
   if (!value) return std::nullopt;
-  const text::Range seconds{0, 3600, text::Range::Ends::closed, "s"};
   if (value->kind == Value::Kind::table) {
-    TableReader inner(*value, reader.path(key), reader.findings());
-    inner.require("uniform", phrase("give the shortest and longest time in seconds: %1",
-                                    {plain("{ uniform = [0.8, 1.2] }")}));
-    const auto interval = inner.maybe_interval("uniform", seconds);
+    TableReader inner(*value, reader.path(key), reader.findings(), reader.keys(key));
+    inner.require("uniform");
+    const auto interval = inner.maybe_interval("uniform");
     inner.finish();
     return interval ? std::optional(Distribution{interval->first, interval->second}) : std::nullopt;
   }
-  const auto fixed = reader.maybe_number(key, seconds);
+  const auto fixed = reader.maybe_number(key);
   return fixed ? std::optional(Distribution{*fixed, *fixed}) : std::nullopt;
 }
 
-std::string read_name(TableReader& reader, const std::string& key, const texts::Phrase& what) {
-  const auto name = reader.string(key, what);
-  const auto good = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
-  };
-  if (!std::all_of(name.begin(), name.end(), good) || name.size() > 64)
-    reader.problem(key, phrase("\"%1\" is \"%2\"", {plain(key), plain(name)}),
-                   phrase("allowed: at most 64 letters, digits, _ and -"));
-  return name;
-}
-
-using text::Value;
+using core::Value;
 
 namespace {
 
 std::string shown(const FactorValue& value) {
   const auto* number = std::get_if<double>(&value);
-  return number ? text::number(*number) : "\"" + std::get<std::string>(value) + "\"";
+  return number ? core::number(*number) : "\"" + std::get<std::string>(value) + "\"";
 }
 
 }  // namespace
 
-std::optional<FactorValue> read_factor_value(const text::Value& value, const Factor& factor,
-                                             text::Findings& findings) {
+std::optional<FactorValue> read_factor_value(const core::Value& value, const Factor& factor,
+                                             core::Findings& findings) {
   if (is_broken(factor)) return std::nullopt;
   const bool numeric = span(factor).has_value();
   const bool is_number = value.kind == Value::Kind::number || value.kind == Value::Kind::integer;
@@ -98,9 +83,9 @@ std::optional<FactorValue> read_factor_value(const text::Value& value, const Fac
   }
   const FactorValue result = numeric ? FactorValue(value.number) : FactorValue(value.string);
   if (factor.range) {
-    const text::Range range{factor.range->first, factor.range->second};
-    if (text::inside_range(value.number, range)) return result;
-    findings.add(value.place, phrase("\"%1\" is %2", {plain(factor.name), plain(text::number(value.number))}),
+    const core::Range range{factor.range->first, factor.range->second};
+    if (core::inside_range(value.number, range)) return result;
+    findings.add(value.place, phrase("\"%1\" is %2", {plain(factor.name), plain(core::number(value.number))}),
                  phrase("the factor's range is %1", {describe(range)}));
     return std::nullopt;
   }
@@ -114,25 +99,24 @@ std::optional<FactorValue> read_factor_value(const text::Value& value, const Fac
 
 const Factor* read_numeric_factor(TableReader& reader, const std::string& key, const Reading& reading) {
   const auto& factors = reading.protocol.factors;
-  const auto name = reader.string(key, phrase("write the name of a factor"));
+  const auto name = reader.string(key);
   if (name.empty()) return nullptr;
   const auto* factor = find_factor(factors, name);
   if (!factor)
     reader.problem(key, phrase("unknown factor \"%1\"", {plain(name)}),
-                   text::suggestion(name, names(factors)));
+                   core::suggestion(name, names(factors)));
   else if (!span(*factor) && !is_broken(*factor))
     reader.problem(key, phrase("the factor \"%1\" has names as values, not numbers", {plain(name)}),
                    phrase("use a factor with a range or numeric levels"));
   return factor && (span(*factor) || is_broken(*factor)) ? factor : nullptr;
 }
 
-std::string read_scene_name(TableReader& reader, const std::string& key, const texts::Phrase& what,
-                            const Reading& reading) {
-  auto name = reader.string(key, what);
+std::string read_scene_name(TableReader& reader, const std::string& key, const Reading& reading) {
+  auto name = reader.string(key);
   const auto& known = reading.declared_scenes;
   if (reader.has(key) && std::find(known.begin(), known.end(), name) == known.end())
     reading.findings.add(reader.place(key), phrase("unknown scene \"%1\"", {plain(name)}),
-                         text::suggestion(name, known));
+                         core::suggestion(name, known));
   return name;
 }
 

@@ -3,10 +3,9 @@
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::Range;
-using text::TableReader;
+using core::TableReader;
 
 namespace {
 
@@ -37,19 +36,16 @@ void check_rules(TableReader& reader, const Reading& reading) {
 void read_exclusion(TableReader& file, Reading& reading) {
   const auto* table = file.maybe_table("exclusion");
   if (!table) return;
-  TableReader reader(*table, "exclusion", reading.findings);
+  TableReader reader(*table, "exclusion", reading.findings, file.keys("exclusion"));
   auto& rules = reading.protocol.exclusion.emplace();
-  const Range share{0, 1, Range::Ends::open};
-  rules.fewer_trials_than = reader.maybe_integer("fewer_trials_than", 1, 100000);
-  rules.accuracy_below = reader.maybe_number("accuracy_below", share);
-  rules.catch_accuracy_below = reader.maybe_number("catch_accuracy_below", {0, 1, Range::Ends::open_low});
-  rules.timeouts_above = reader.maybe_number("timeouts_above", {0, 1, Range::Ends::open_high});
-  rules.anticipations_above = reader.maybe_number("anticipations_above", {0, 1, Range::Ends::open_high});
-  rules.median_time_below_s =
-      reader.maybe_number("median_time_below_s", {0, 600, Range::Ends::open_low, "s"});
-  rules.median_time_above_s =
-      reader.maybe_number("median_time_above_s", {0, 600, Range::Ends::open_low, "s"});
-  rules.incomplete = reader.boolean("incomplete", "false");
+  rules.fewer_trials_than = reader.maybe_integer("fewer_trials_than");
+  rules.accuracy_below = reader.maybe_number("accuracy_below");
+  rules.catch_accuracy_below = reader.maybe_number("catch_accuracy_below");
+  rules.timeouts_above = reader.maybe_number("timeouts_above");
+  rules.anticipations_above = reader.maybe_number("anticipations_above");
+  rules.median_time_below_s = reader.maybe_number("median_time_below_s");
+  rules.median_time_above_s = reader.maybe_number("median_time_above_s");
+  rules.incomplete = reader.boolean("incomplete");
   if (rules.median_time_below_s && rules.median_time_above_s &&
       *rules.median_time_below_s >= *rules.median_time_above_s)
     reader.problem("median_time_below_s", phrase("every median time would be excluded"),

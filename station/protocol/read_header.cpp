@@ -2,17 +2,17 @@
 #include <cctype>
 #include <set>
 
+#include "station/core/number.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::Range;
-using text::TableReader;
-using text::Value;
+using core::Range;
+using core::TableReader;
+using core::Value;
 
 namespace {
 
@@ -28,8 +28,8 @@ void read_seed(TableReader& file, Reading& reading) {
     if (!file.has("random")) reading.findings.defaults_used.push_back("random.seed = \"per-session\"");
     return;
   }
-  TableReader reader(*table, "random", reading.findings);
-  const auto* seed = reader.require("seed", phrase("write \"per-session\" or a whole number from 0 to 2^53"));
+  TableReader reader(*table, "random", reading.findings, file.keys("random"));
+  const auto* seed = reader.require("seed");
   if (seed && seed->kind == Value::Kind::integer && seed->integer >= 0 &&
       seed->integer <= (std::int64_t{1} << 53))
     reading.protocol.seed = static_cast<std::uint64_t>(seed->integer);
@@ -43,18 +43,14 @@ void read_seed(TableReader& file, Reading& reading) {
 }
 
 void check_factor_name(TableReader& reader, const std::string& name) {
-  const auto good = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
-  if (name.empty()) return;
-  if (!std::all_of(name.begin(), name.end(), good) || std::isdigit(static_cast<unsigned char>(name[0])) ||
-      name == "abs")
+  if (name == "abs")
     reader.problem("name", phrase("\"%1\" is not a valid name for a factor", {plain(name)}),
-                   phrase("use letters, digits and _, and do not begin with a digit; end the name with the "
-                          "unit: \"offset_mm\""));
+                   phrase("\"abs\" is a function; choose another name"));
 }
 
-void read_level(const text::Value& item, Factor& factor, text::Findings& findings) {
+void read_level(const core::Value& item, Factor& factor, core::Findings& findings) {
   const bool number = item.kind == Value::Kind::number || item.kind == Value::Kind::integer;
-  const bool fits = number ? text::inside_range(item.number, {-1e6, 1e6})
+  const bool fits = number ? core::inside_range(item.number, {-1e6, 1e6})
                            : item.kind == Value::Kind::string && !item.string.empty() && !factor.range;
   const FactorValue value = number ? FactorValue(item.number) : FactorValue(item.string);
   const auto& levels = factor.levels;
@@ -64,7 +60,7 @@ void read_level(const text::Value& item, Factor& factor, text::Findings& finding
   else if (std::find(levels.begin(), levels.end(), value) != levels.end())
     findings.add(item.place, phrase("a level of \"%1\" appears twice", {plain(factor.name)}),
                  phrase("each level must be different"));
-  else if (factor.range && !text::inside_range(item.number, {factor.range->first, factor.range->second}))
+  else if (factor.range && !core::inside_range(item.number, {factor.range->first, factor.range->second}))
     findings.add(item.place, phrase("a level of \"%1\" is outside its range", {plain(factor.name)}),
                  describe(Range{factor.range->first, factor.range->second}));
   else
@@ -82,7 +78,8 @@ void read_draw(TableReader& reader, Factor& factor, bool has_levels, Reading& re
   } else if (is("uniform") && factor.range && !has_levels) {
     factor.draw = FactorDraw::uniform;
   } else if (normal && normal->value.kind == Value::Kind::table && factor.range && !has_levels) {
-    TableReader inner(normal->value, "factor." + factor.name + ".draw.normal", reading.findings);
+    TableReader inner(normal->value, "factor." + factor.name + ".draw.normal", reading.findings,
+                      keys_of("factor.draw.normal"));
     const auto [low, high] = *factor.range;
     factor.draw = FactorDraw::normal;
     factor.mean = inner.number("mean", {low, high});
@@ -96,17 +93,14 @@ void read_draw(TableReader& reader, Factor& factor, bool has_levels, Reading& re
   }
 }
 
-Factor read_factor(const text::Value& table, Reading& reading) {
-  TableReader reader(table, titled("factor", table), reading.findings);
+Factor read_factor(const core::Value& table, Reading& reading) {
+  TableReader reader(table, titled("factor", table), reading.findings, keys_of("factor"));
   Factor factor;
   factor.place = reader.place("name");
-  factor.name = reader.string("name", phrase("give the factor a name, such as \"offset_mm\""));
+  factor.name = reader.string("name");
   check_factor_name(reader, factor.name);
-  factor.range = reader.maybe_interval("range", {-1e6, 1e6});
+  factor.range = reader.maybe_interval("range");
   const auto* levels = reader.take("levels");
-  if (!reader.has("range") && !levels)
-    reading.findings.add(factor.place, phrase("the factor \"%1\" has no values", {plain(factor.name)}),
-                         phrase("write %1 or %2", {plain("range = [low, high]"), plain("levels = [...]")}));
   if (levels && (levels->kind != Value::Kind::array || levels->items.empty()))
     reader.problem("levels",
                    levels->kind == Value::Kind::array
@@ -123,16 +117,13 @@ Factor read_factor(const text::Value& table, Reading& reading) {
 }  // namespace
 
 void read_header(TableReader& file, Reading& reading) {
-  file.word("format", {"friction-protocol/1"});
+  file.word("format");
   auto& protocol = reading.protocol;
-  if (const auto* table =
-          file.table("protocol", phrase("add a table [protocol] with id, version, title and languages"))) {
-    TableReader reader(*table, "protocol", reading.findings);
-    protocol.id = read_name(
-        reader, "id", phrase("choose a short name; exported data are written to a folder with this name"));
-    protocol.version =
-        reader.string("version", phrase("write a text such as \"1.0.0\" and increase it with each change"));
-    protocol.title = reader.string("title", phrase("write a title for the researcher"));
+  if (const auto* table = file.table("protocol")) {
+    TableReader reader(*table, "protocol", reading.findings, file.keys("protocol"));
+    protocol.id = reader.string("id");
+    protocol.version = reader.string("version");
+    protocol.title = reader.string("title");
     protocol.languages = reader.strings(
         "languages", phrase("write a list of language codes: %1", {plain("[\"en\", \"ja\"]")}));
     std::set<std::string> seen;
@@ -168,16 +159,16 @@ void read_factors(TableReader& file, Reading& reading) {
 }
 
 void read_resume(TableReader& file, Reading& reading) {
-  static const text::Value empty;
+  static const core::Value empty;
   const auto* table = file.maybe_table("resume");
-  TableReader reader(table ? *table : empty, "resume", reading.findings);
+  TableReader reader(table ? *table : empty, "resume", reading.findings, file.keys("resume"));
   auto& resume = reading.protocol.resume;
-  const std::vector<std::string> words{"ask", "resume", "restart", "block"};
-  const auto word = reader.word("incomplete", words, "ask");
+  const auto& words = reader.words("incomplete");
+  const auto word = reader.word("incomplete");
   resume.incomplete = static_cast<ResumePolicy>(std::find(words.begin(), words.end(), word) - words.begin());
-  resume.max_age_h = reader.number("max_age_h", {0, 8760, Range::Ends::open_low, "h"}, 24);
-  resume.warmup = reader.integer("warmup", 0, 100, 0);
-  resume.restart_unit = reader.maybe_word("restart_unit", {"block"}).value_or("");
+  resume.max_age_h = reader.number("max_age_h");
+  resume.warmup = reader.integer("warmup");
+  resume.restart_unit = reader.maybe_word("restart_unit").value_or("");
   reader.finish();
 }
 

@@ -3,19 +3,19 @@
 #include <set>
 #include <tuple>
 
+#include "station/core/number.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/interludes.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/protocol/sources.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::Range;
-using text::TableReader;
-using text::Value;
+using core::Range;
+using core::TableReader;
+using core::Value;
 
 namespace {
 
@@ -64,7 +64,7 @@ std::string without_spaces(const std::string& text) {
 
 /// Checks that the rule compares an answer with a value that the answer can have.
 void check_value(const AnswerCondition& rule, const Item* item, const std::string& right,
-                 text::Findings& findings) {
+                 core::Findings& findings) {
   const auto* number = std::get_if<double>(&rule.value);
   if (!item || item->value || item->rating) {
     const double low = item && item->value ? item->value->low : item ? 1 : 0;
@@ -74,7 +74,7 @@ void check_value(const AnswerCondition& rule, const Item* item, const std::strin
     if (!number || *number < low || *number > high)
       findings.add(rule.place,
                    phrase("\"%1\" compares a number with \"%2\"", {plain(rule.source), plain(right)}),
-                   phrase("a number from %1 to %2", {plain(text::number(low)), plain(text::number(high))}));
+                   phrase("a number from %1 to %2", {plain(core::number(low)), plain(core::number(high))}));
     return;
   }
   std::vector<std::string> ids;
@@ -84,7 +84,7 @@ void check_value(const AnswerCondition& rule, const Item* item, const std::strin
                  phrase("use %1", {plain("== or !=")}));
   else if (std::find(ids.begin(), ids.end(), right) == ids.end())
     findings.add(rule.place, phrase("\"%1\": there is no choice \"%2\"", {plain(rule.source), plain(right)}),
-                 text::suggestion(right, ids));
+                 core::suggestion(right, ids));
 }
 
 void add_rule(const Value& value, const Interlude& here, const Reading& reading,
@@ -108,8 +108,8 @@ void add_rule(const Value& value, const Interlude& here, const Reading& reading,
     const auto* item = find_item(rule.about, here, reading.protocol);
     if (!item && !is_score(rule.about, here, reading.protocol))
       return reading.findings.add(value.place, phrase("nothing above is called \"%1\"", {plain(rule.about)}),
-                                  text::suggestion(rule.about, known_names(here, reading.protocol)));
-    const auto number = text::read_number(right);
+                                  core::suggestion(rule.about, known_names(here, reading.protocol)));
+    const auto number = core::read_number(right);
     const bool numeric = !item || item->value || item->rating;
     rule.value = numeric && number ? FactorValue(*number) : FactorValue(right);
     check_value(rule, item, right, reading.findings);
@@ -151,17 +151,11 @@ void read_simulated(TableReader& reader, Item& item, const Reading& reading) {
 }
 
 Item read_item(const Value& table, const Interlude& here, const std::string& path, const Reading& reading) {
-  TableReader reader(table, path, reading.findings);
+  TableReader reader(table, path, reading.findings, keys_of("questionnaire.item"));
   Item item;
   item.place = reader.place("id");
-  item.id = read_name(reader, "id", phrase("choose a short name, which is stored with the answer"));
+  item.id = reader.string("id");
   item.question = read_localised(reader, "question", reading);
-  const int kinds = reader.has("choices") + reader.has("rating") + reader.has("number");
-  if (kinds != 1)
-    reader.problem("id",
-                   kinds == 0 ? phrase("the item \"%1\" has no answers", {plain(item.id)})
-                              : phrase("the item \"%1\" has two kinds of answers", {plain(item.id)}),
-                   phrase("write \"choices\", a \"rating\" or a \"number\""));
   item.choices = read_choice_list(reader, path + ".choices", reading);
   if (reader.has("choices") && (item.choices.size() < 2 || item.choices.size() > most_choices))
     reader.problem("choices", phrase("\"%1\" has %2", {plain("choices"), plain(item.choices.size())}),
@@ -174,7 +168,7 @@ Item read_item(const Value& table, const Interlude& here, const std::string& pat
     item.value = std::move(scale.value);
   }
   if (const auto* number = reader.maybe_table("number")) {
-    TableReader inner(*number, reader.path("number"), reading.findings);
+    TableReader inner(*number, reader.path("number"), reading.findings, reader.keys("number"));
     item.value = read_typed(inner);
     inner.finish();
   }
@@ -185,7 +179,7 @@ Item read_item(const Value& table, const Interlude& here, const std::string& pat
 }
 
 void read_items(TableReader& reader, Interlude& interlude, const Reading& reading) {
-  reader.require("item", phrase("add at least one [[questionnaire.item]] below it"));
+  reader.require("item");
   const auto tables = reader.tables("item");
   if (tables.size() > most_items)
     return reader.problem("item",
@@ -215,18 +209,18 @@ void read_consent(TableReader& reader, Interlude& interlude, const Reading& read
 }
 
 Example read_example(const Value& table, const std::string& path, const Reading& reading) {
-  TableReader reader(table, path, reading.findings);
+  TableReader reader(table, path, reading.findings, keys_of("explanation.page.examples"));
   Example example;
   example.label = read_localised(reader, "label", reading);
-  example.scene = read_scene_name(reader, "scene", phrase("name the scene to present"), reading);
-  example.duration_s = reader.number("duration_s", {0.2, 10, Range::Ends::closed, "s"}, 2);
+  example.scene = read_scene_name(reader, "scene", reading);
+  example.duration_s = reader.number("duration_s");
   const auto& factors = reading.protocol.factors;
   if (const auto* with = reader.maybe_table("with"))
     for (const auto& entry : with->entries) {
       const auto* factor = find_factor(factors, entry.key);
       if (!factor)
         reading.findings.add(entry.place, phrase("unknown factor \"%1\"", {plain(entry.key)}),
-                             text::suggestion(entry.key, names(factors)));
+                             core::suggestion(entry.key, names(factors)));
       else if (const auto value = read_factor_value(entry.value, *factor, reading.findings))
         example.with[entry.key] = *value;
     }
@@ -245,9 +239,9 @@ Example read_example(const Value& table, const std::string& path, const Reading&
 
 void read_pages(TableReader& reader, Interlude& interlude, const Reading& reading) {
   constexpr std::size_t most_examples = 4;
-  reader.require("page", phrase("add at least one [[explanation.page]] below it"));
+  reader.require("page");
   for (const auto* table : reader.tables("page")) {
-    TableReader inner(*table, reader.path("page"), reading.findings);
+    TableReader inner(*table, reader.path("page"), reading.findings, reader.keys("page"));
     ExplanationPage page;
     page.place = inner.place();
     page.text = read_localised(inner, "text", reading);
@@ -265,8 +259,7 @@ void read_pages(TableReader& reader, Interlude& interlude, const Reading& readin
 }
 
 void read_screening(TableReader& reader, Interlude& interlude, const Reading& reading) {
-  reader.require("pass", phrase("write who passes: %1",
-                                {plain("[\"about-you.age >= 18\", \"practice.accuracy >= 0.8\"]")}));
+  reader.require("pass");
   interlude.pass = read_rules(reader, "pass", interlude, reading);
   interlude.farewell = read_localised(reader, "farewell", reading);
   if (reader.has("pass") && interlude.pass.empty() && reading.findings.problems.empty())
@@ -280,19 +273,19 @@ std::size_t parts_above(const Protocol& protocol, const Place& place) {
 }
 
 void read_interlude(const Value& table, InterludeKind kind, const char* list, Reading& reading) {
-  TableReader reader(table, titled(list, table), reading.findings);
+  TableReader reader(table, titled(list, table), reading.findings, keys_of(list));
   Interlude interlude;
   interlude.kind = kind;
   interlude.place = reader.place();
   interlude.above = parts_above(reading.protocol, table.place);
-  interlude.name = read_name(reader, "name", phrase("choose a name, which is stored with the data"));
+  interlude.name = reader.string("name");
   std::vector<std::string> parts;
   for (const auto& part : reading.protocol.plan) parts.push_back(plan_name(part));
   const bool repeats = kind == InterludeKind::questionnaire || kind == InterludeKind::explanation;
   if (const auto after = repeats ? reader.maybe_string("after_each") : std::nullopt) {
     if (std::find(parts.begin(), parts.end(), *after) == parts.end())
       reader.problem("after_each", phrase("there is no block or sequence \"%1\"", {plain(*after)}),
-                     text::suggestion(*after, parts));
+                     core::suggestion(*after, parts));
     interlude.after_each = *after;
   }
   read_audience(reader, interlude.audience, reading);

@@ -8,17 +8,16 @@
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::Range;
-using text::TableReader;
-using text::Value;
+using core::Range;
+using core::TableReader;
+using core::Value;
 
 namespace {
 
 void read_what(TableReader& reader, Block& block, const Reading& reading) {
-  if (reader.has("procedures"))
-    block.procedures = reader.strings("procedures", phrase("name at least one procedure"));
+  if (reader.has("procedures")) block.procedures = reader.strings("procedures");
   std::vector<std::string> known, whole;
   for (const auto& spec : reading.protocol.procedures) known.push_back(spec.name);
   for (const auto& name : block.procedures) {
@@ -34,13 +33,12 @@ void read_what(TableReader& reader, Block& block, const Reading& reading) {
     // `known` is empty if no procedure could be read. Do not report every name in the list as unknown then.
     if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end())
       reader.problem("procedures", phrase("unknown procedure \"%1\"", {plain(name)}),
-                     text::suggestion(name, known));
+                     core::suggestion(name, known));
     if (!seen.insert(name).second)
       reader.problem("procedures", phrase("\"%1\" appears twice", {plain(name)}),
                      phrase("list each procedure only once"));
   }
   const bool levels = reader.has("level") || reader.has("levels");
-  reader.take("level"), reader.take("levels");
   if (reader.has("procedures") == levels)
     return reading.findings.add(reader.place(),
                                 levels ? phrase("%1 has both procedures and fixed levels", {reader.title()})
@@ -48,8 +46,8 @@ void read_what(TableReader& reader, Block& block, const Reading& reading) {
                                 phrase("write either \"procedures\" or both \"level\" and \"levels\""));
   if (!levels) return;
   const auto* factor = read_numeric_factor(reader, "level", reading);
-  const auto* list = reader.require("levels", phrase("list the levels to present"));
-  reader.numbers("levels", {-1e6, 1e6});
+  const auto* list = reader.require("levels");
+  reader.numbers("levels");
   if (!factor || !list || list->kind != Value::Kind::array) return;
   block.level = factor->name;
   for (const auto& item : list->items)
@@ -60,9 +58,9 @@ void read_what(TableReader& reader, Block& block, const Reading& reading) {
 void read_catch(TableReader& reader, Block& block, const Reading& reading) {
   const auto* table = reader.maybe_table("catch");
   if (!table) return;
-  TableReader inner(*table, reader.path("catch"), reading.findings);
+  TableReader inner(*table, reader.path("catch"), reading.findings, reader.keys("catch"));
   Catch trials;
-  trials.rate = inner.number("rate", {0, 0.5, Range::Ends::open_low});
+  trials.rate = inner.number("rate");
   for (const auto& factor : reading.protocol.factors) {
     const auto* value = inner.take(factor.name);
     if (!value) continue;
@@ -95,35 +93,31 @@ void read_catch(TableReader& reader, Block& block, const Reading& reading) {
 }
 
 void read_practice(TableReader& reader, Block& block, const Reading& reading) {
-  block.practice = reader.boolean("practice", "false");
+  block.practice = reader.boolean("practice");
   const auto* table = reader.maybe_table("pass");
   if (!table) return;
-  if (!block.practice)
-    reader.problem("pass", phrase("\"pass\" is only allowed in a practice block"),
-                   phrase("set %1", {plain("practice = true")}));
-  TableReader inner(*table, reader.path("pass"), reading.findings);
-  block.pass = Pass{inner.number("accuracy", {0, 1, Range::Ends::open_low}), inner.integer("retries", 0, 20)};
+  if (!block.practice) return;
+  TableReader inner(*table, reader.path("pass"), reading.findings, reader.keys("pass"));
+  block.pass = Pass{inner.number("accuracy"), inner.integer("retries")};
   inner.finish();
 }
 
 void read_block_keys(TableReader& reader, Block& block, const Reading& reading) {
   block.place = reader.place();
   read_what(reader, block, reading);
-  block.trials = reader.maybe_integer("trials", 1, 100000);
+  block.trials = reader.maybe_integer("trials");
   if (!block.levels.empty() && !block.trials) block.trials = static_cast<int>(block.levels.size());
-  const auto feedback = reader.word("feedback", {"none", "trial", "block"}, "none");
+  const auto feedback = reader.word("feedback");
   block.feedback = feedback == "trial"   ? Feedback::trial
                    : feedback == "block" ? Feedback::block
                                          : Feedback::none;
   read_practice(reader, block, reading);
-  const auto order = reader.maybe_word("interleave", {"none", "random", "alternate", "passes"});
+  const auto order = reader.maybe_word("interleave");
   block.interleave = order == "random"      ? Interleave::random
                      : order == "alternate" ? Interleave::alternate
                      : order == "passes"    ? Interleave::passes
                                             : Interleave::none;
-  if (std::set(block.procedures.begin(), block.procedures.end()).size() > 1)
-    reader.require("interleave",
-                   phrase("allowed: \"none\" (one after the other), \"random\" or \"alternate\""));
+  if (std::set(block.procedures.begin(), block.procedures.end()).size() > 1) reader.require("interleave");
   read_catch(reader, block, reading);
   read_break(reader, block, reading);
   if (const auto name = reader.maybe_string("instruction")) {
@@ -131,17 +125,17 @@ void read_block_keys(TableReader& reader, Block& block, const Reading& reading) 
     for (const auto& [key, instruction] : reading.protocol.instructions) known.push_back(key);
     if (std::find(known.begin(), known.end(), *name) == known.end())
       reader.problem("instruction", phrase("there is no [instructions.%1]", {plain(*name)}),
-                     text::suggestion(*name, known));
+                     core::suggestion(*name, known));
     block.fixed["instruction"] = *name;
   }
 }
 
 Block read_block(const Value& table, const Reading& reading) {
-  TableReader reader(table, titled("block", table), reading.findings);
+  TableReader reader(table, titled("block", table), reading.findings, keys_of("block"));
   Block block;
-  block.name = read_name(reader, "name", phrase("choose a name, which is stored with the data"));
+  block.name = reader.string("name");
   read_audience(reader, block.audience, reading);
-  const auto kind = reader.word("kind", {"trials", "training", "friction-table"}, "trials");
+  const auto kind = reader.word("kind");
   if (kind == "trials")
     read_block_keys(reader, block, reading);
   else
@@ -161,28 +155,27 @@ void check_instruction_levels(const Factor& factor, TableReader& reader, const R
 }
 
 Sequence read_sequence(const Value& table, const Reading& reading) {
-  TableReader reader(table, titled("sequence", table), reading.findings);
+  TableReader reader(table, titled("sequence", table), reading.findings, keys_of("sequence"));
   Sequence sequence;
-  sequence.name = read_name(reader, "name", phrase("choose a name, which is stored with the data"));
-  reader.word("design", {"latin-square"});
-  sequence.over = reader.string("over", phrase("name the factor that differs between the blocks"));
+  sequence.name = reader.string("name");
+  reader.word("design");
+  sequence.over = reader.string("over");
   const auto& factors = reading.protocol.factors;
   const auto* factor = find_factor(factors, sequence.over);
   if (!sequence.over.empty() && !factor)
     reader.problem("over", phrase("unknown factor \"%1\"", {plain(sequence.over)}),
-                   text::suggestion(sequence.over, names(factors)));
+                   core::suggestion(sequence.over, names(factors)));
   if (factor && factor->levels.size() < 2)
     reader.problem(
         "over",
         phrase("the factor \"%1\" does not have several levels to put in order", {plain(sequence.over)}),
         phrase("use a factor with two or more \"levels\""));
   if (factor) check_instruction_levels(*factor, reader, reading);
-  sequence.cycles = reader.integer("cycles", 1, 100, 1);
-  sequence.mirror = reader.boolean("mirror", "false");
-  sequence.one_per_session = reader.word("each_session", {"all", "one"}, "all") == "one";
-  if (const auto* block = reader.table("block", phrase("describe what each block presents: %1",
-                                                       {plain("{ procedures = [\"levels\"] }")}))) {
-    TableReader inner(*block, reader.path("block"), reading.findings);
+  sequence.cycles = reader.integer("cycles");
+  sequence.mirror = reader.boolean("mirror");
+  sequence.one_per_session = reader.word("each_session") == "one";
+  if (const auto* block = reader.table("block")) {
+    TableReader inner(*block, reader.path("block"), reading.findings, reader.keys("block"));
     read_block_keys(inner, sequence.block, reading);
     inner.finish();
   }
@@ -197,9 +190,8 @@ Sequence read_sequence(const Value& table, const Reading& reading) {
 void read_break(TableReader& reader, Block& block, const Reading& reading) {
   const auto* table = reader.maybe_table("break_after");
   if (!table) return;
-  TableReader inner(*table, reader.path("break_after"), reading.findings);
-  block.break_after = Break{inner.integer("trials", 1, 100000),
-                            inner.number("min_s", {0, 3600, Range::Ends::closed, "s"}, 0)};
+  TableReader inner(*table, reader.path("break_after"), reading.findings, reader.keys("break_after"));
+  block.break_after = Break{inner.integer("trials"), inner.number("min_s")};
   inner.finish();
 }
 

@@ -3,21 +3,21 @@
 #include <map>
 #include <set>
 
+#include "station/core/number.hpp"
 #include "station/procedure/description.hpp"
 #include "station/procedure/keys.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
+using core::Range;
+using core::TableReader;
+using core::Value;
 using procedure::Kind;
 using procedure::Spec;
-using text::Range;
-using text::TableReader;
-using text::Value;
 
 namespace {
 
@@ -48,7 +48,7 @@ void check_balance(TableReader& reader, const Spec& spec, const Reading& reading
     const auto* factor = find_factor(factors, name);
     if (!factor)
       reader.problem("balance", phrase("unknown factor \"%1\"", {plain(name)}),
-                     text::suggestion(name, names(factors)));
+                     core::suggestion(name, names(factors)));
     else if (factor->levels.empty())
       reader.problem("balance", phrase("the factor \"%1\" has a range, not levels", {plain(name)}),
                      phrase("use a factor with \"levels\""));
@@ -63,7 +63,7 @@ void check_max_run(TableReader& reader, const Spec& spec, const Reading& reading
   for (const auto& [name, limit] : spec.max_run)
     if (name != procedure::kRightAnswer && !find_factor(factors, name))
       reader.problem("order", phrase("unknown factor \"%1\" in \"max_run\"", {plain(name)}),
-                     text::suggestion(name, names(factors)));
+                     core::suggestion(name, names(factors)));
 }
 
 void check_tracks(TableReader& reader, const Spec& spec, const Reading& reading) {
@@ -71,7 +71,7 @@ void check_tracks(TableReader& reader, const Spec& spec, const Reading& reading)
   for (const auto& choice : reading.protocol.task.choices) ids.push_back(choice.id);
   if (!spec.tracks.empty() && !ids.empty() && std::find(ids.begin(), ids.end(), spec.tracks) == ids.end())
     reader.problem("tracks", phrase("\"%1\" is not a choice of the task", {plain(spec.tracks)}),
-                   text::suggestion(spec.tracks, ids));
+                   core::suggestion(spec.tracks, ids));
 }
 
 // Checks that every level that the procedure can present is a value of its factor.
@@ -82,7 +82,7 @@ void check_levels(TableReader& reader, const Spec& spec, const Factor& factor) {
                             ? level >= factor.range->first && level <= factor.range->second
                             : std::find(levels.begin(), levels.end(), FactorValue(level)) != levels.end();
     if (inside || !reader.has(key)) return true;
-    reader.problem(key, phrase("\"%1\" has %2", {plain(std::string(key)), plain(text::number(level))}),
+    reader.problem(key, phrase("\"%1\" has %2", {plain(std::string(key)), plain(core::number(level))}),
                    factor.range ? phrase("the range of \"%1\" is %2",
                                          {plain(factor.name),
                                           describe(Range{factor.range->first, factor.range->second})})
@@ -110,7 +110,7 @@ void check_levels(TableReader& reader, const Spec& spec, const Factor& factor) {
 
 // Checks the procedure with procedure::validate(). Each problem names its key; in the path of a key, dots
 // separate the names of inner tables.
-void check_spec(const Value& table, const Spec& spec, text::Findings& findings) {
+void check_spec(const Value& table, const Spec& spec, core::Findings& findings) {
   for (const auto& fault : procedure::validate(spec)) {
     const Value* at = &table;
     std::string rest = fault.key;
@@ -128,10 +128,10 @@ void check_spec(const Value& table, const Spec& spec, text::Findings& findings) 
 }
 
 /// Checks the factor of the second dimension and its values.
-void check_second(const Value& table, const Spec& spec, const Reading& reading, text::Findings& findings) {
+void check_second(const Value& table, const Spec& spec, const Reading& reading, core::Findings& findings) {
   const auto* second = table.find("second");
   if (!spec.second || spec.second->level.empty() || !second) return;
-  TableReader reader(second->value, "second", findings);
+  TableReader reader(second->value, "second", findings, keys_of("procedure.second"));
   const auto* factor = read_numeric_factor(reader, "level", reading);
   if (!factor || is_broken(*factor)) return;
   for (const double value : spec.second->stimuli.values) {
@@ -141,7 +141,7 @@ void check_second(const Value& table, const Spec& spec, const Reading& reading, 
                             : std::find(levels.begin(), levels.end(), FactorValue(value)) != levels.end();
     if (inside) continue;
     return reader.problem(
-        "stimuli", phrase("\"%1\" has %2", {plain("stimuli"), plain(text::number(value))}),
+        "stimuli", phrase("\"%1\" has %2", {plain("stimuli"), plain(core::number(value))}),
         factor->range
             ? phrase("the range of \"%1\" is %2",
                      {plain(factor->name), describe(Range{factor->range->first, factor->range->second})})
@@ -155,10 +155,10 @@ bool chooses(const Spec& spec, const std::string& factor) {
 }
 
 /// Reads the values that factors have in all trials of the procedure.
-void read_with(TableReader& reader, Spec& spec, const Reading& reading, text::Findings& findings) {
+void read_with(TableReader& reader, Spec& spec, const Reading& reading, core::Findings& findings) {
   const auto& factors = reading.protocol.factors;
   const auto* with = reader.maybe_table("with");
-  for (const auto& entry : with ? with->entries : std::vector<text::Entry>{}) {
+  for (const auto& entry : with ? with->entries : std::vector<core::Entry>{}) {
     const auto* factor = find_factor(factors, entry.key);
     const bool twice = chooses(spec, entry.key) ||
                        std::find(spec.balance.begin(), spec.balance.end(), entry.key) != spec.balance.end();
@@ -167,7 +167,7 @@ void read_with(TableReader& reader, Spec& spec, const Reading& reading, text::Fi
                    twice ? phrase("\"%1\" is set twice", {plain(entry.key)})
                          : phrase("unknown factor \"%1\"", {plain(entry.key)}),
                    twice ? phrase("set factors that the procedure does not set otherwise")
-                         : text::suggestion(entry.key, names(factors)));
+                         : core::suggestion(entry.key, names(factors)));
     else if (const auto value = read_factor_value(entry.value, *factor, findings))
       spec.with[entry.key] = *value;
   }
@@ -175,7 +175,7 @@ void read_with(TableReader& reader, Spec& spec, const Reading& reading, text::Fi
 
 /// Makes one procedure for each level of the factor that `for_each` names.
 std::vector<Spec> family_of(const Value& table, const Spec& spec, const Reading& reading,
-                            text::Findings& findings) {
+                            core::Findings& findings) {
   const auto* key = table.find("for_each");
   if (!key) return {spec};
   const auto* factor = key->value.kind == Value::Kind::string
@@ -194,7 +194,7 @@ std::vector<Spec> family_of(const Value& table, const Spec& spec, const Reading&
   for (const auto& level : factor->levels) {
     auto one = spec;
     const auto* number = std::get_if<double>(&level);
-    auto name = number ? text::exact(*number) : std::get<std::string>(level);
+    auto name = number ? core::exact(*number) : std::get<std::string>(level);
     for (auto& c : name)
       if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_') c = '_';
     one.name = spec.name + "-" + name;
@@ -226,13 +226,12 @@ void add_family(const Value& table, const std::string& name, std::vector<Spec> f
   }
 }
 
-Spec read_procedure(const Value& table, const Reading& reading, text::Findings& findings) {
-  TableReader reader(table, titled("procedure", table), findings);
+Spec read_procedure(const Value& table, const Reading& reading, core::Findings& findings) {
+  TableReader reader(table, titled("procedure", table), findings, keys_of("procedure"));
   Spec spec;
-  spec.name = read_name(reader, "name", phrase("choose a name, which is stored with the data"));
+  spec.name = reader.string("name");
   reader.take("copy");
-  spec.kind =
-      procedure::parse_kind(reader.word("kind", procedure::kind_names())).value_or(Kind::constant_stimuli);
+  spec.kind = procedure::parse_kind(reader.word("kind")).value_or(Kind::constant_stimuli);
   const auto* factor = read_numeric_factor(reader, "level", reading);
   if (factor) spec.level = factor->name;
   procedure::description(spec.kind).read(reader, spec);
@@ -242,7 +241,7 @@ Spec read_procedure(const Value& table, const Reading& reading, text::Findings& 
   check_tracks(reader, spec, reading);
   check_balance(reader, spec, reading);
   read_with(reader, spec, reading, findings);
-  if (reader.take("continues")) spec.continues = reader.boolean("continues", "false");
+  if (reader.take("continues")) spec.continues = reader.boolean("continues");
   reader.take("for_each");
   if (factor && !is_broken(*factor)) check_levels(reader, spec, *factor);
   if (findings.problems.empty()) check_spec(table, spec, findings);
@@ -256,7 +255,7 @@ std::string name_of(const Value& table) {
 }
 
 // Merges the table with the procedures that it copies. The copied procedures must be above it in the file.
-Value with_copies(const Value& table, const std::map<std::string, Value>& above, text::Findings& findings) {
+Value with_copies(const Value& table, const std::map<std::string, Value>& above, core::Findings& findings) {
   const auto* copy = table.find("copy");
   if (!copy) return table;
   std::vector<std::string> known;
@@ -265,7 +264,7 @@ Value with_copies(const Value& table, const std::map<std::string, Value>& above,
   if (found != above.end()) return overlay(found->second, table);
   findings.add(copy->value.place,
                phrase("\"copy\" is %1, which is not a procedure above this one", {describe(copy->value)}),
-               text::suggestion(copy->value.string, known));
+               core::suggestion(copy->value.string, known));
   return table;
 }
 
@@ -276,7 +275,7 @@ void read_procedures(TableReader& file, Reading& reading) {
   std::set<std::pair<int, int>> places;
   for (const auto* table : file.tables("procedure")) {
     const auto name = name_of(*table);
-    text::Findings found;
+    core::Findings found;
     const auto whole = with_copies(*table, above, found);
     const bool broken_copy = !found.problems.empty();
     Spec spec;

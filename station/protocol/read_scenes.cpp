@@ -3,92 +3,74 @@
 #include <map>
 #include <set>
 
+#include "station/core/number.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::Findings;
-using text::Range;
-using text::TableReader;
-using text::Value;
+using core::Findings;
+using core::Range;
+using core::TableReader;
+using core::Value;
 using Ends = Range::Ends;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-// A position below one millimetre was probably written in metres, so it is refused.
-const Range position_mm{1, 1e5, Ends::closed, "mm"};
-const Range displacement_um{0, 1000, Ends::open_low, "um"};
-const Range relative_friction{0, 1, Ends::open};
-const std::vector<std::string> edge_names{"turning", "peak", "p70", "p50", "p25", "p10"};
-
-std::optional<Linear> read_linear(TableReader& reader, const std::string& key, const Range& range,
-                                  const Reading& reading) {
+std::optional<Linear> read_linear(TableReader& reader, const std::string& key, const Reading& reading) {
   const auto* value = reader.take(key);
-  return value ? linear_from(*value, key, range, reading.protocol.factors, reader.findings()) : std::nullopt;
+  return value ? linear_from(*value, key, reader.range(key), reading.protocol.factors, reader.findings())
+               : std::nullopt;
 }
 
 Edge read_edge(TableReader& reader) {
   Edge edge;
-  const auto* value =
-      reader.require("edge", phrase("say which edge \"boundary_mm\" means: %1, or %2",
-                                    {text::quoted_list(edge_names), plain("{ friction = 0.7 }")}));
+  const auto* value = reader.require("edge");
   if (!value) return edge;
   if (value->kind != Value::Kind::table) {
-    edge.name = reader.maybe_word("edge", edge_names).value_or("");
+    edge.name = reader.maybe_word("edge").value_or("");
     return edge;
   }
-  TableReader inner(*value, reader.path("edge"), reader.findings());
+  TableReader inner(*value, reader.path("edge"), reader.findings(), reader.keys("edge"));
   edge.name = "friction";
-  edge.friction = inner.number("friction", relative_friction);
+  edge.friction = inner.number("friction");
   inner.finish();
   return edge;
 }
 
 SceneTone read_tone(const Value& table, const std::string& name, Findings& findings, const Reading& reading) {
-  TableReader reader(table, name, findings);
+  TableReader reader(table, name, findings, keys_of("scene.NAME.tones"));
   SceneTone tone;
-  tone.boundary_mm = read_linear(reader, "boundary_mm", position_mm, reading);
-  tone.frequency_Hz = read_linear(reader, "frequency_Hz", {0, 1e6, Ends::open_low, "Hz"}, reading);
-  if (reader.has("boundary_mm") == reader.has("frequency_Hz"))
-    findings.add(table.place,
-                 reader.has("boundary_mm") ? phrase("a tone of %1 has two places", {plain(name)})
-                                           : phrase("a tone of %1 has no place", {plain(name)}),
-                 phrase("give either \"boundary_mm\" or \"frequency_Hz\""));
-  if (reader.has("boundary_mm"))
-    tone.edge = read_edge(reader);
-  else if (reader.take("edge"))
-    reader.problem("edge", phrase("\"edge\" needs \"boundary_mm\""),
-                   phrase("a tone placed by its frequency has no edge"));
-  reader.require("displacement_um", phrase("give the peak displacement at the tone's last maximum, in um"));
-  if (const auto displacement = read_linear(reader, "displacement_um", displacement_um, reading))
+  tone.boundary_mm = read_linear(reader, "boundary_mm", reading);
+  tone.frequency_Hz = read_linear(reader, "frequency_Hz", reading);
+  if (reader.has("boundary_mm")) tone.edge = read_edge(reader);
+  reader.require("displacement_um");
+  if (const auto displacement = read_linear(reader, "displacement_um", reading))
     tone.displacement_um = *displacement;
-  tone.phase_deg = reader.maybe_number("phase_deg", {-360, 360, Ends::closed, "degrees"}).value_or(0);
+  tone.phase_deg = reader.maybe_number("phase_deg").value_or(0);
   reader.finish();
   return tone;
 }
 
 Zone read_zone(const Value& table, const std::string& name, Findings& findings, const Reading& reading) {
-  TableReader reader(table, name, findings);
+  TableReader reader(table, name, findings, keys_of("scene.NAME.zone"));
   Zone zone;
-  zone.from_mm = reader.number("from_mm", {0, 1e5, Ends::closed, "mm"});
-  reader.require("friction", phrase("give the mean relative friction inside the zone, above 0 and below 1"));
-  zone.friction = read_linear(reader, "friction", relative_friction, reading);
-  zone.tones = reader.integer("tones", 1, 16);
+  zone.from_mm = reader.number("from_mm");
+  reader.require("friction");
+  zone.friction = read_linear(reader, "friction", reading);
+  zone.tones = reader.integer("tones");
   reader.finish();
   return zone;
 }
 
 Tolerance read_tolerance(const Value& table, const std::string& name, Findings& findings) {
-  TableReader reader(table, name, findings);
+  TableReader reader(table, name, findings, keys_of("scene.NAME.tolerance"));
   Tolerance tolerance;
-  tolerance.boundary_mm = reader.maybe_number("boundary_mm", {0, 1000, Ends::open_low, "mm"});
-  tolerance.level_dB = reader.maybe_number("level_dB", {0, 60, Ends::open_low, "dB"});
-  tolerance.friction = reader.maybe_number("friction", {0, 1, Ends::open});
+  tolerance.boundary_mm = reader.maybe_number("boundary_mm");
+  tolerance.level_dB = reader.maybe_number("level_dB");
+  tolerance.friction = reader.maybe_number("friction");
   reader.finish();
   return tolerance;
 }
@@ -154,7 +136,7 @@ void check_form(TableReader& reader, const Scene& scene, Findings& findings) {
     if (scene.boundary_mm->is_constant() && *scene.zone->from_mm >= least)
       reader.problem("zone",
                      phrase("the zone begins at %1 mm, beyond its boundary",
-                            {plain(text::number(*scene.zone->from_mm))}),
+                            {plain(core::number(*scene.zone->from_mm))}),
                      phrase("\"from_mm\" must be less than \"boundary_mm\""));
   }
 }
@@ -162,22 +144,17 @@ void check_form(TableReader& reader, const Scene& scene, Findings& findings) {
 Scene read_scene(const Value& table, const std::string& name, const Value& own, Findings& findings,
                  const Reading& reading) {
   const std::string path = "scene." + name;
-  TableReader reader(table, path, findings);
+  TableReader reader(table, path, findings, keys_of("scene.NAME"));
   Scene scene;
   scene.name = name;
   scene.place = table.place;
   scene.base = reader.maybe_string("base").value_or("");
-  scene.boundary_mm = read_linear(reader, "boundary_mm", position_mm, reading);
-  if (reader.has("boundary_mm"))
-    scene.edge = read_edge(reader);
-  else if (reader.take("edge"))
-    reader.problem("edge", phrase("\"edge\" needs \"boundary_mm\""),
-                   phrase("give the boundary to which the edge belongs"));
-  scene.displacement_um = read_linear(reader, "displacement_um", displacement_um, reading);
-  scene.friction = read_linear(reader, "friction", relative_friction, reading);
-  scene.displacement_under_finger_um =
-      read_linear(reader, "displacement_under_finger_um", displacement_um, reading);
-  scene.finger_mm = read_linear(reader, "finger_mm", position_mm, reading);
+  scene.boundary_mm = read_linear(reader, "boundary_mm", reading);
+  if (reader.has("boundary_mm")) scene.edge = read_edge(reader);
+  scene.displacement_um = read_linear(reader, "displacement_um", reading);
+  scene.friction = read_linear(reader, "friction", reading);
+  scene.displacement_under_finger_um = read_linear(reader, "displacement_under_finger_um", reading);
+  scene.finger_mm = read_linear(reader, "finger_mm", reading);
   for (const auto* tone : reader.tables("tones"))
     scene.tones.push_back(read_tone(*tone, path + ".tones", findings, reading));
   if (reader.has("tones") && scene.tones.empty())
@@ -185,13 +162,12 @@ Scene read_scene(const Value& table, const std::string& name, const Value& own, 
                    phrase("add at least one tone: %1", {plain("{ ... }")}));
   if (const auto* zone = reader.maybe_table("zone"))
     scene.zone = read_zone(*zone, path + ".zone", findings, reading);
-  scene.friction_contrast_dB =
-      read_linear(reader, "friction_contrast_dB", {-infinity, 0, Ends::open_high, "dB"}, reading);
+  scene.friction_contrast_dB = read_linear(reader, "friction_contrast_dB", reading);
   if (own.find("friction_contrast_dB") && scene.base.empty())
     reader.problem("friction_contrast_dB", phrase("\"friction_contrast_dB\" needs a \"base\""),
                    phrase("name the scene whose friction is to be lowered"));
-  scene.rove_dB = reader.number("rove_dB", {0, 40, Ends::closed, "dB"}, 0);
-  scene.ramp_ms = reader.number("ramp_ms", {1, 2000, Ends::closed, "ms"}, 50);
+  scene.rove_dB = reader.number("rove_dB");
+  scene.ramp_ms = reader.number("ramp_ms");
   if (const auto* tolerance = reader.maybe_table("tolerance"))
     scene.tolerance = read_tolerance(*tolerance, path + ".tolerance", findings);
   check_form(reader, scene, findings);
@@ -274,7 +250,7 @@ class Resolver {
     const auto* found = scenes_.find(base.string);
     if (found && found->value.kind == Value::Kind::table) return resolve(base.string);
     reading_.findings.add(base.place, phrase("unknown scene \"%1\"", {plain(base.string)}),
-                          text::suggestion(base.string, others));
+                          core::suggestion(base.string, others));
     return nullptr;
   }
 
@@ -306,7 +282,7 @@ class Resolver {
 }  // namespace
 
 void read_scenes(TableReader& file, Reading& reading) {
-  const auto* scenes = file.table("scene", phrase("add at least one table [scene.NAME]"));
+  const auto* scenes = file.table("scene");
   if (!scenes) return;
   for (const auto& entry : scenes->entries) reading.declared_scenes.push_back(entry.key);
   Resolver resolver(*scenes, reading);

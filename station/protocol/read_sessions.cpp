@@ -10,14 +10,14 @@
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::TableReader;
-using text::Value;
+using core::TableReader;
+using core::Value;
 
 namespace {
 
-constexpr int most_sessions = 100, most_days = 366, most_groups = 100;
+constexpr int most_groups = 100;
 
 std::vector<std::string> levels_of_groups(const Protocol& protocol) {
   std::vector<std::string> names;
@@ -45,12 +45,12 @@ void read_session_numbers(TableReader& reader, Audience& audience, const Reading
 }
 
 /// Returns the session and the group of a visit in words, for messages.
-texts::Phrase visit_words(const Protocol& protocol, const Visit& visit) {
+core::Phrase visit_words(const Protocol& protocol, const Visit& visit) {
   const auto session = phrase("check.session", {plain(visit.session)});
   const auto name = group_name(protocol, visit);
   if (name.empty()) return protocol.sessions ? session : phrase("the session");
   const auto group = phrase("check.group", {plain(name)});
-  return protocol.sessions ? texts::Phrase{"", "", {session, plain(", "), group}} : group;
+  return protocol.sessions ? core::Phrase{"", "", {session, plain(", "), group}} : group;
 }
 
 /// Reports a planned session in which a group has no block.
@@ -171,7 +171,7 @@ void check_continuing(const Reading& reading) {
     }
   for (const auto& spec : protocol.procedures) {
     if (!spec.continues) continue;
-    const auto report = [&](const texts::Phrase& what, const texts::Phrase& allowed) {
+    const auto report = [&](const core::Phrase& what, const core::Phrase& allowed) {
       reading.findings.add(
           reading.places.of(key_of(spec, "continues")),
           phrase("procedure \"%1\" continues on another day, but %2", {plain(spec.name), what}), allowed);
@@ -196,13 +196,12 @@ void read_sessions(TableReader& file, Reading& reading) {
                          phrase("at most %1", {plain("100")}));
   const auto* table = file.maybe_table("sessions");
   if (!table) return;
-  TableReader reader(*table, "sessions", reading.findings);
+  TableReader reader(*table, "sessions", reading.findings, file.keys("sessions"));
   SessionPlan plan;
   plan.place = reader.place();
-  plan.count = reader.integer("count", 2, most_sessions);
-  plan.min_days = reader.integer("min_days", 0, most_days, 0);
-  plan.incomplete = reader.word("incomplete", {"repeat", "count"}, "repeat") == "count" ? Unfinished::count
-                                                                                        : Unfinished::repeat;
+  plan.count = reader.integer("count");
+  plan.min_days = reader.integer("min_days");
+  plan.incomplete = reader.word("incomplete") == "count" ? Unfinished::count : Unfinished::repeat;
   reader.finish();
   reading.protocol.sessions = plan;
 }
@@ -218,7 +217,7 @@ void read_audience(TableReader& reader, Audience& audience, const Reading& readi
       reader.problem("groups", phrase("there is no group \"%1\"", {plain(name)}),
                      known.empty()
                          ? phrase("name levels of a factor with %1", {plain("draw = \"per-participant\"")})
-                         : text::suggestion(name, known));
+                         : core::suggestion(name, known));
     else if (count > 1)
       reader.problem("groups", phrase("two factors have the level \"%1\"", {plain(name)}),
                      phrase("give the groups different names"));

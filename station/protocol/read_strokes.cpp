@@ -6,23 +6,20 @@
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::Range;
-using text::TableReader;
+using core::TableReader;
 
 namespace {
 
-constexpr int fewest_levels = 3, fewest_repeats = 3;
-
 void read_training(TableReader& reader, Block& block, const Reading& reading) {
   block.kind = BlockKind::training;
-  block.trials = reader.integer("strokes", 1, 200, 10);
+  block.trials = reader.integer("strokes");
   const auto* table = reader.maybe_table("pass");
   if (!table) return;
-  TableReader inner(*table, reader.path("pass"), reading.findings);
+  TableReader inner(*table, reader.path("pass"), reading.findings, reader.keys("pass"));
   const int strokes = inner.integer("strokes", 1, *block.trials);
-  block.pass = Pass{static_cast<double>(strokes) / *block.trials, inner.integer("retries", 0, 20)};
+  block.pass = Pass{static_cast<double>(strokes) / *block.trials, inner.integer("retries")};
   inner.finish();
 }
 
@@ -38,7 +35,7 @@ void check_scene(TableReader& reader, const Block& block, const Reading& reading
     if (!block.strokes.scene.empty() &&
         std::find(declared.begin(), declared.end(), block.strokes.scene) == declared.end())
       reader.problem("scene", phrase("there is no [scene.%1]", {plain(block.strokes.scene)}),
-                     text::suggestion(block.strokes.scene, known));
+                     core::suggestion(block.strokes.scene, known));
     return;
   }
   const auto expressions = expressions_of(found->second);
@@ -51,21 +48,20 @@ void check_scene(TableReader& reader, const Block& block, const Reading& reading
 void read_friction_table(TableReader& reader, Block& block, const Reading& reading) {
   block.kind = BlockKind::friction_table;
   auto& strokes = block.strokes;
-  strokes.scene = reader.string("scene", phrase("name the scene whose strength is changed"));
+  strokes.scene = reader.string("scene");
   check_scene(reader, block, reading);
-  const Range place{0, 10000, Range::Ends::closed, "mm"};
-  strokes.from_mm = reader.number("from_mm", place);
-  strokes.to_mm = reader.number("to_mm", place);
+  strokes.from_mm = reader.number("from_mm");
+  strokes.to_mm = reader.number("to_mm");
   if (strokes.to_mm < strokes.from_mm + 20)
     reader.problem("to_mm", phrase("the part of the surface is shorter than 20 mm"),
                    plain("to_mm >= from_mm + 20"));
-  strokes.levels_um = reader.numbers("displacement_um", {0, 100, Range::Ends::open_low, "um"}, fewest_levels);
+  strokes.levels_um = reader.numbers("displacement_um");
   if (std::adjacent_find(strokes.levels_um.begin(), strokes.levels_um.end(), std::greater_equal<>()) !=
       strokes.levels_um.end())
     reader.problem("displacement_um", phrase("the displacements are not in ascending order"),
                    phrase("list each displacement once, the smallest first"));
-  strokes.repeats = reader.integer("repeats", fewest_repeats, 50, 6);
-  strokes.used = reader.boolean("use", "false");
+  strokes.repeats = reader.integer("repeats");
+  strokes.used = reader.boolean("use");
   block.trials = 2 * static_cast<int>(strokes.levels_um.size()) * strokes.repeats + 1;
 }
 
@@ -74,7 +70,7 @@ void read_friction_table(TableReader& reader, Block& block, const Reading& readi
 void read_strokes(TableReader& reader, const std::string& kind, Block& block, const Reading& reading) {
   block.place = reader.place();
   block.practice = true;
-  block.strokes.duration_s = reader.number("duration_s", {0.5, 20, Range::Ends::closed, "s"});
+  block.strokes.duration_s = reader.number("duration_s");
   if (kind == "training")
     read_training(reader, block, reading);
   else

@@ -2,18 +2,18 @@
 #include <cmath>
 #include <set>
 
+#include "station/core/number.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::Range;
-using text::TableReader;
-using text::Value;
+using core::Range;
+using core::TableReader;
+using core::Value;
 
 namespace {
 
@@ -38,10 +38,10 @@ bool compares(TaskKind kind) {
   return kind != TaskKind::single_interval && kind != TaskKind::two_interval && kind != TaskKind::adjustment;
 }
 
-void check_scene(const std::string& name, const text::Place& place, const Reading& reading) {
+void check_scene(const std::string& name, const core::Place& place, const Reading& reading) {
   const auto& known = reading.declared_scenes;
   if (std::find(known.begin(), known.end(), name) == known.end())
-    reading.findings.add(place, phrase("unknown scene \"%1\"", {plain(name)}), text::suggestion(name, known));
+    reading.findings.add(place, phrase("unknown scene \"%1\"", {plain(name)}), core::suggestion(name, known));
 }
 
 std::vector<std::string> read_interval(const Value& item, const Reading& reading) {
@@ -66,8 +66,8 @@ std::vector<std::string> read_interval(const Value& item, const Reading& reading
 
 void read_intervals(TableReader& reader, Task& task, const Reading& reading) {
   if (compares(task.kind)) {
-    task.standard = reader.string("standard", phrase("name the scene that most intervals present"));
-    task.target = reader.string("target", phrase("name the scene that differs"));
+    task.standard = reader.string("standard");
+    task.target = reader.string("target");
     for (const auto* key : {"standard", "target"})
       if (reader.has(key))
         check_scene(key == std::string("standard") ? task.standard : task.target, reader.place(key), reading);
@@ -76,8 +76,7 @@ void read_intervals(TableReader& reader, Task& task, const Reading& reading) {
                      phrase("name two different scenes"));
     return;
   }
-  const auto* list =
-      reader.require("intervals", phrase("write a list of scene names: %1", {plain("[\"edge\"]")}));
+  const auto* list = reader.require("intervals");
   if (!list) return;
   if (list->kind != Value::Kind::array)
     return reader.problem("intervals", phrase("\"%1\" is %2", {plain("intervals"), describe(*list)}),
@@ -90,20 +89,18 @@ void read_intervals(TableReader& reader, Task& task, const Reading& reading) {
 }
 
 void read_times(TableReader& reader, Task& task) {
-  const Range seconds{0, 600, Range::Ends::open_low, "s"};
   if (!explored(task)) {
-    task.duration_s = reader.number("duration_s", seconds);
-    task.gap_s = reader.number("gap_s", {0, 60, Range::Ends::closed, "s"});
+    task.duration_s = reader.number("duration_s");
+    task.gap_s = reader.number("gap_s");
   } else {
-    task.duration_s = reader.maybe_number("duration_s", seconds);
+    task.duration_s = reader.maybe_number("duration_s");
   }
   const auto sequence = [](const auto& interval) { return interval.size() > 1; };
   const bool change = std::any_of(task.intervals.begin(), task.intervals.end(), sequence);
   if (change) {
-    reader.require("foreperiod_s", phrase("give the time before the second scene, in seconds: %1",
-                                          {plain("{ uniform = [1.0, 2.5] }")}));
+    reader.require("foreperiod_s");
     task.foreperiod_s = read_distribution(reader, "foreperiod_s");
-    task.transition_ms = reader.number("transition_ms", {1, 5000, Range::Ends::closed, "ms"});
+    task.transition_ms = reader.number("transition_ms");
   } else {
     for (const auto* key : {"foreperiod_s", "transition_ms"})
       if (reader.take(key))
@@ -115,10 +112,9 @@ void read_times(TableReader& reader, Task& task) {
 /// Reads the labels at values of a scale. Both ends of the scale must have a label.
 std::vector<Anchor> read_anchors(TableReader& reader, double low, double high, const Reading& reading) {
   std::vector<Anchor> anchors;
-  reader.require("labels", phrase("write what the ends mean: %1",
-                                  {plain("[ { at = 1, text = { en = \"not at all\" } }, ... ]")}));
+  reader.require("labels");
   for (const auto* table : reader.tables("labels")) {
-    TableReader inner(*table, reader.path("labels"), reading.findings);
+    TableReader inner(*table, reader.path("labels"), reading.findings, reader.keys("labels"));
     Anchor anchor;
     anchor.at = inner.number("at", {low, high});
     anchor.text = read_localised(inner, "text", reading);
@@ -131,37 +127,28 @@ std::vector<Anchor> read_anchors(TableReader& reader, double low, double high, c
   if (reader.has("labels") && (anchors.size() < 2 || anchors.front().at > low || anchors.back().at < high))
     reader.problem(
         "labels", phrase("an end of the scale has no label"),
-        phrase("write labels at %1 and at %2", {plain(text::number(low)), plain(text::number(high))}));
+        phrase("write labels at %1 and at %2", {plain(core::number(low)), plain(core::number(high))}));
   return anchors;
 }
 
 }  // namespace
 
 Scale read_scale(const Value& table, const std::string& path, const Reading& reading) {
-  TableReader reader(table, path, reading.findings);
+  TableReader reader(table, path, reading.findings, keys_of("task.rating"));
   Scale scale;
-  if (reader.has("points") == reader.has("line"))
-    reader.problem("points", phrase("a rating needs either \"points\" or a \"line\""),
-                   phrase("%1 for seven buttons, or %2 for a line without points",
-                          {plain("points = 7"), plain("line = [0, 100]")}));
-  if (const auto points = reader.maybe_integer("points", 2, most_choices)) {
+  if (const auto points = reader.maybe_integer("points")) {
     for (int i = 1; i <= *points; ++i) scale.choices.push_back({std::to_string(i), {}});
     scale.anchors = read_anchors(reader, 1, *points, reading);
   }
-  if (const auto line = reader.maybe_interval("line", {-1e6, 1e6})) {
-    ValueAnswer value{false, line->first, line->second, reader.integer("decimals", 0, 3, 0), {}};
+  if (const auto line = reader.maybe_interval("line")) {
+    ValueAnswer value{false, line->first, line->second, reader.integer("decimals"), {}};
     const double steps = (value.high - value.low) * std::pow(10.0, value.decimals);
     if (steps < 10 || steps > 1000)
       reader.problem(reader.has("decimals") ? "decimals" : "line",
-                     phrase("the line has %1 steps of its smallest decimal", {plain(text::number(steps))}),
+                     phrase("the line has %1 steps of its smallest decimal", {plain(core::number(steps))}),
                      phrase("use 10 to 1000, because a finger cannot choose between more places"));
     value.anchors = read_anchors(reader, value.low, value.high, reading);
     scale.value = std::move(value);
-  }
-  for (const auto* key : {"labels", "decimals"}) {
-    if (!scale.choices.empty() && key == std::string("decimals") && reader.has(key))
-      reader.problem(key, phrase("points have no decimals"), phrase("remove \"decimals\""));
-    reader.take(key);
   }
   reader.finish();
   return scale;
@@ -170,11 +157,11 @@ Scale read_scale(const Value& table, const std::string& path, const Reading& rea
 ValueAnswer read_typed(TableReader& reader) {
   ValueAnswer value;
   value.typed = true;
-  value.decimals = reader.integer("decimals", 0, 3, 0);
+  value.decimals = reader.integer("decimals");
   const double least = std::pow(10.0, -value.decimals);
-  value.low = reader.number("low", {0, 1e6}, least);
-  value.high = reader.number("high", {least, 1e6}, 1000);
-  if (value.high <= value.low)
+  value.low = reader.number_or("low", least);
+  value.high = reader.number("high");
+  if (value.high <= value.low || value.high < least)
     reader.problem("high", phrase("\"high\" is not above \"low\""),
                    phrase("give the largest number that may be typed"));
   return value;
@@ -184,9 +171,9 @@ std::vector<Choice> read_choice_list(TableReader& reader, const std::string& pat
   std::vector<Choice> choices;
   std::set<std::string> seen;
   for (const auto* table : reader.tables("choices")) {
-    TableReader inner(*table, path, reading.findings);
+    TableReader inner(*table, path, reading.findings, reader.keys("choices"));
     Choice choice;
-    choice.id = read_name(inner, "id", phrase("choose a short name, which is stored with the data"));
+    choice.id = inner.string("id");
     choice.label = read_localised(inner, "label", reading);
     if (!choice.id.empty() && !seen.insert(choice.id).second)
       inner.problem("id", phrase("there is already a choice with the id \"%1\"", {plain(choice.id)}),
@@ -208,16 +195,13 @@ void read_rating(const Value& table, Task& task, const Reading& reading) {
 }
 
 void read_number(const Value& table, Task& task, const Reading& reading) {
-  TableReader reader(table, "task.number", reading.findings);
+  TableReader reader(table, "task.number", reading.findings, keys_of("task.number"));
   auto value = read_typed(reader);
   if (reader.has("standard")) {
-    task.standard = reader.string("standard", phrase("name the scene that begins each trial"));
+    task.standard = reader.string("standard");
     check_scene(task.standard, reader.place("standard"), reading);
-    reader.require("modulus", phrase("give the number that stands for the standard, such as 10"));
+    reader.require("modulus");
     task.modulus = reader.maybe_number("modulus", {value.low, value.high});
-  } else if (reader.take("modulus")) {
-    reader.problem("modulus", phrase("\"modulus\" needs a \"standard\""),
-                   phrase("name the scene that has this number, or leave the modulus free"));
   }
   reader.finish();
   task.value = std::move(value);
@@ -266,11 +250,10 @@ void read_judgement(TableReader& reader, Task& task, const Reading& reading) {
 void read_confidence(TableReader& reader, Task& task, const Reading& reading) {
   const auto* table = reader.maybe_table("confidence");
   if (!table) return;
-  TableReader inner(*table, "task.confidence", reading.findings);
+  TableReader inner(*table, "task.confidence", reading.findings, reader.keys("confidence"));
   Confidence confidence;
   confidence.question = read_localised(inner, "question", reading);
-  inner.require("labels", phrase("list what the participant can say, from the least sure: %1",
-                                 {plain("[ { en = \"guessed\" }, ... ]")}));
+  inner.require("labels");
   for (const auto* label : inner.tables("labels"))
     confidence.labels.push_back(localised_from(*label, "labels", reading));
   if (inner.has("labels") && (confidence.labels.size() < 2 || confidence.labels.size() > most_choices))
@@ -288,8 +271,6 @@ void read_confidence(TableReader& reader, Task& task, const Reading& reading) {
 }
 
 void read_choices(TableReader& reader, Task& task, const TaskForm& kind, const Reading& reading) {
-  reader.require("choices", phrase("list the answers: %1",
-                                   {plain("[ { id = \"left\", label = { en = \"Left\" } }, ... ]")}));
   task.choices = read_choice_list(reader, "task.choices", reading);
   std::set<std::string> seen;
   for (const auto& choice : task.choices) seen.insert(choice.id);
@@ -318,7 +299,7 @@ void read_correct_scenes(TableReader& reader, Task& task, const Reading& reading
   for (const auto& entry : table->entries) {
     if (std::find(scenes.begin(), scenes.end(), entry.key) == scenes.end()) {
       reading.findings.add(entry.place, phrase("unknown scene \"%1\"", {plain(entry.key)}),
-                           text::suggestion(entry.key, scenes));
+                           core::suggestion(entry.key, scenes));
       continue;
     }
     if (entry.value.kind != Value::Kind::string) {
@@ -341,7 +322,7 @@ void read_correct_scenes(TableReader& reader, Task& task, const Reading& reading
 void read_correct_scene(TableReader& reader, Task& task, const Reading& reading) {
   if (const auto* value = reader.take("correct"); value && value->kind == Value::Kind::table)
     return read_correct_scenes(reader, task, reading);
-  task.correct_scene = reader.string("correct", phrase("name the scene whose interval is the right answer"));
+  task.correct_scene = reader.string("correct");
   if (task.correct_scene.empty()) return;
   check_scene(task.correct_scene, reader.place("correct"), reading);
   const auto in = [&](const auto& interval) {
@@ -364,7 +345,7 @@ void read_correct_answers(TableReader& reader, Task& task, const Reading& readin
     if (std::find(ids.begin(), ids.end(), entry.key) == ids.end())
       reading.findings.add(
           entry.place, phrase("\"correct\" has \"%1\", which is not the id of a choice", {plain(entry.key)}),
-          text::suggestion(entry.key, ids));
+          core::suggestion(entry.key, ids));
     if (entry.value.kind != Value::Kind::string) {
       reading.findings.add(entry.value.place,
                            phrase("\"%1\" has %2", {plain("correct"), describe(entry.value)}),
@@ -388,7 +369,7 @@ void read_correct(TableReader& reader, Task& task, const Reading& reading) {
     case TaskKind::two_interval:
       return read_correct_scene(reader, task, reading);
     case TaskKind::oddity: {
-      const auto odd = reader.word("odd", {"either", "target", "standard"}, "either");
+      const auto odd = reader.word("odd");
       task.odd = odd == "target" ? Odd::target : odd == "standard" ? Odd::standard : Odd::either;
       return;
     }
@@ -399,7 +380,7 @@ void read_correct(TableReader& reader, Task& task, const Reading& reading) {
           reader.problem("adjusts", phrase("the factor \"%1\" has no range", {plain(factor->name)}),
                          phrase("give this factor a \"range\", over which the slider moves"));
       }
-      task.step = reader.number("step", {0, 1e6, Range::Ends::open_low});
+      task.step = reader.number("step");
       return;
     case TaskKind::several_intervals:
     case TaskKind::same_different:
@@ -412,26 +393,23 @@ void read_correct(TableReader& reader, Task& task, const Reading& reading) {
 }  // namespace
 
 void read_task(TableReader& file, Reading& reading) {
-  const auto* table = file.table("task", phrase("a table %1", {plain("[task]")}));
+  const auto* table = file.table("task");
   if (!table) return;
-  TableReader reader(*table, "task", reading.findings);
+  TableReader reader(*table, "task", reading.findings, file.keys("task"));
   auto& task = reading.protocol.task;
-  std::vector<std::string> words;
-  for (const auto& known : task_forms) words.emplace_back(known.name);
-  const auto word = reader.word("kind", words);
+  const auto word = reader.word("kind");
   // An unknown kind has been reported. The code below then reads the keys of the first kind.
   const auto* kind = std::find_if(std::begin(task_forms), std::end(task_forms),
                                   [&word](const TaskForm& known) { return known.name == word; });
   if (kind == std::end(task_forms)) kind = std::begin(task_forms);
   task.kind = kind->kind;
   read_intervals(reader, task, reading);
-  const auto device = reader.word("device", {"touch", "buttons", "either"});
+  const auto device = reader.word("device");
   task.device_place = reader.place("device");
   task.device = device == "touch" ? Device::touch : device == "buttons" ? Device::buttons : Device::either;
   if (task.kind == TaskKind::adjustment && task.device == Device::buttons)
     reader.problem("device", phrase("a slider cannot be moved with buttons"), plain("\"touch\""));
-  if (reader.maybe_word("sound", {"none", "masking_noise"}) == "masking_noise")
-    task.sound = Sound::masking_noise;
+  if (reader.maybe_word("sound") == "masking_noise") task.sound = Sound::masking_noise;
   task.sound_place = reader.place("sound");
   task.question = read_localised(reader, "question", reading);
   read_judgement(reader, task, reading);

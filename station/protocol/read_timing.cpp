@@ -5,56 +5,39 @@
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::Range;
-using text::TableReader;
-using text::Value;
+using core::TableReader;
+using core::Value;
 
 namespace {
 
-std::optional<Linear> read_time(TableReader& reader, const std::string& key, const Range& range,
-                                const Reading& reading) {
+std::optional<Linear> read_time(TableReader& reader, const std::string& key, const Reading& reading) {
   const auto* value = reader.take(key);
-  return value ? linear_from(*value, key, range, reading.protocol.factors, reading.findings) : std::nullopt;
+  return value ? linear_from(*value, key, reader.range(key), reading.protocol.factors, reading.findings)
+               : std::nullopt;
 }
 
-const Range deadline_range{0, 3600, Range::Ends::open_low, "s"};
-
 void read_buzz(TableReader& reader, ResponseSignal& signal, const Reading& reading) {
-  if (signal.by == ResponseSignal::By::buzz) {
-    signal.scene = read_scene_name(reader, "scene",
-                                   phrase("name the scene that the surface presents as the signal"), reading);
-    signal.length_s = 1e-3 * reader.number("length_ms", {20, 500, Range::Ends::closed, "ms"});
-    return;
-  }
-  for (const char* key : {"scene", "length_ms"})
-    if (reader.take(key))
-      reader.problem(key, phrase("\"%1\" applies only to a buzz of the surface", {plain(std::string(key))}),
-                     plain("by = \"buzz\""));
+  if (signal.by != ResponseSignal::By::buzz) return;
+  signal.scene = read_scene_name(reader, "scene", reading);
+  signal.length_s = 1e-3 * reader.number("length_ms");
 }
 
 void read_signal(TableReader& timing, Reading& reading) {
   const auto* table = timing.maybe_table("response_signal");
   if (!table) return;
-  for (const char* key : {"deadline_s", "anticipation_s"})
-    if (timing.has(key))
-      timing.problem(key,
-                     phrase("\"%1\" does not apply if there is a response signal", {plain(std::string(key))}),
-                     phrase("answers count from the signal to the end of its \"window_s\""));
-  TableReader reader(*table, "timing.response_signal", reading.findings);
+  TableReader reader(*table, "timing.response_signal", reading.findings, timing.keys("response_signal"));
   ResponseSignal signal;
   reader.require(
       "after_s",
       phrase("say when the signal comes, in seconds after response_zero: a number, or a factor in quotes"));
-  if (const auto after = read_time(reader, "after_s", {0.02, 60, Range::Ends::closed, "s"}, reading))
-    signal.after_s = *after;
-  signal.window_s = reader.number("window_s", {0.05, 10, Range::Ends::closed, "s"});
+  if (const auto after = read_time(reader, "after_s", reading)) signal.after_s = *after;
+  signal.window_s = reader.number("window_s");
   using By = ResponseSignal::By;
   static const std::map<std::string, By> kinds{
       {"screen", By::screen}, {"flash", By::flash}, {"tone", By::tone}, {"buzz", By::buzz}};
-  if (const auto by = reader.maybe_word("by", {"screen", "flash", "tone", "buzz"}); by && kinds.count(*by))
-    signal.by = kinds.at(*by);
+  if (const auto by = reader.maybe_word("by"); by && kinds.count(*by)) signal.by = kinds.at(*by);
   signal.by_place = reader.place("by");
   read_buzz(reader, signal, reading);
   reader.finish();
@@ -64,25 +47,21 @@ void read_signal(TableReader& timing, Reading& reading) {
 }  // namespace
 
 void read_timing(TableReader& file, Reading& reading) {
-  const auto* table = file.table("timing", phrase("a table %1", {plain("[timing]")}));
+  const auto* table = file.table("timing");
   if (!table) return;
-  TableReader reader(*table, "timing", reading.findings);
+  TableReader reader(*table, "timing", reading.findings, file.keys("timing"));
   auto& timing = reading.protocol.timing;
-  std::vector<std::string> zeros;
-  for (const auto zero : terms::response_zeros) zeros.emplace_back(name(zero));
-  const auto zero = reader.word("response_zero", zeros);
+  const auto zero = reader.word("response_zero");
   timing.response_zero_place = reader.place("response_zero");
-  for (const auto known : terms::response_zeros)
+  for (const auto known : core::response_zeros)
     if (zero == name(known)) timing.response_zero = known;
-  timing.explore_s = reader.maybe_number("explore_s", {0, 600, Range::Ends::open_low, "s"});
+  timing.explore_s = reader.maybe_number("explore_s");
   read_signal(reader, reading);
-  timing.deadline_s = read_time(reader, "deadline_s", deadline_range, reading);
-  reader.require("iti_s", phrase("give the pause between trials in seconds: a number or %1",
-                                 {plain("{ uniform = [0.8, 1.2] }")}));
+  timing.deadline_s = read_time(reader, "deadline_s", reading);
+  reader.require("iti_s");
   timing.iti_s = read_distribution(reader, "iti_s").value_or(Distribution{1, 1});
   if (!timing.signal && !reader.has("anticipation_s")) reader.defaulted("anticipation_s", "0");
-  timing.anticipation_s =
-      read_time(reader, "anticipation_s", {0, 10, Range::Ends::closed, "s"}, reading).value_or(Linear{});
+  timing.anticipation_s = read_time(reader, "anticipation_s", reading).value_or(Linear{});
   reader.finish();
 }
 
@@ -96,13 +75,14 @@ void read_instructions(TableReader& file, Reading& reading) {
                            phrase("write a table %1", {plain("[instructions.NAME]")}));
       continue;
     }
-    TableReader reader(entry.value, "instructions." + entry.key, reading.findings);
+    TableReader reader(entry.value, "instructions." + entry.key, reading.findings,
+                       keys_of("instructions.NAME"));
     Instruction instruction;
     instruction.text = read_localised(reader, "text", reading);
     if (const auto* late = reader.take("late_message"))
       instruction.late_message = localised_from(*late, "late_message", reading);
-    instruction.deadline_s = read_time(reader, "deadline_s", deadline_range, reading);
-    instruction.target_accuracy = reader.maybe_interval("target_accuracy", {0, 1});
+    instruction.deadline_s = read_time(reader, "deadline_s", reading);
+    instruction.target_accuracy = reader.maybe_interval("target_accuracy");
     reader.finish();
     reading.protocol.instructions.emplace(entry.key, std::move(instruction));
   }

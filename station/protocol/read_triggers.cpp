@@ -1,37 +1,36 @@
 #include <algorithm>
 #include <map>
 
+#include "station/core/number.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/protocol/triggers.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::TableReader;
+using core::TableReader;
 
 namespace {
 
-const std::vector<std::string> kEvents{"trial", "onset", "change", "response"};
-
 TriggerEvent event_of(const std::string& word) {
-  const auto found = std::find(kEvents.begin(), kEvents.end(), word);
-  return static_cast<TriggerEvent>(found == kEvents.end() ? 0 : found - kEvents.begin());
+  const auto words = trigger_event_names();
+  const auto found = std::find(words.begin(), words.end(), word);
+  return static_cast<TriggerEvent>(found == words.end() ? 0 : found - words.begin());
 }
 
 void read_send(TableReader& reader, Triggers& triggers) {
   if (!reader.has("send")) {
-    reader.take("send");
-    return reader.defaulted("send", "[\"trial\", \"onset\", \"change\", \"response\"]");
+    return reader.defaulted("send", reader.declared("send").fallback);
   }
   triggers.send.clear();
+  const auto& events = reader.words("send");
   for (const auto& word : reader.maybe_strings("send")) {
-    if (std::find(kEvents.begin(), kEvents.end(), word) == kEvents.end())
+    if (std::find(events.begin(), events.end(), word) == events.end())
       reader.problem("send", phrase("\"%1\" has \"%2\"", {plain("send"), plain(word)}),
-                     phrase("allowed: %1", {text::quoted_list(kEvents)}));
+                     phrase("allowed: %1", {core::quoted_list(events)}));
     else if (std::find(triggers.send.begin(), triggers.send.end(), event_of(word)) != triggers.send.end())
       reader.problem("send", phrase("\"%1\" appears twice in \"%2\"", {plain(word), plain("send")}),
                      phrase("list each event only once"));
@@ -40,10 +39,10 @@ void read_send(TableReader& reader, Triggers& triggers) {
   }
 }
 
-void read_code(const text::Value& table, Reading& reading) {
-  TableReader reader(table, "triggers.code", reading.findings);
+void read_code(const core::Value& table, Reading& reading) {
+  TableReader reader(table, "triggers.code", reading.findings, keys_of("triggers.code"));
   TriggerCode code;
-  code.event = event_of(reader.word("event", kEvents));
+  code.event = event_of(reader.word("event"));
   const auto known = conditions(reading.protocol);
   code.condition = reader.maybe_string("condition").value_or("");
   if (!code.condition.empty() && std::find(known.begin(), known.end(), code.condition) == known.end())
@@ -53,8 +52,8 @@ void read_code(const text::Value& table, Reading& reading) {
             ? phrase(
                   "leave out \"condition\": no factor is in [analysis] %1, and no block has an instruction",
                   {plain("\"by\"")})
-            : text::suggestion(code.condition, known));
-  code.code = reader.integer("code", 1, 255);
+            : core::suggestion(code.condition, known));
+  code.code = reader.integer("code");
   const auto& send = reading.protocol.triggers.send;
   if (std::find(send.begin(), send.end(), code.event) == send.end())
     reader.problem("event", phrase("\"%1\" is not in \"send\"", {plain(name(code.event))}),
@@ -76,7 +75,7 @@ void check_unique(TableReader& reader, const Reading& reading) {
       reader.problem(
           "code",
           phrase("the code %1 stands for %2 and for %3",
-                 {plain(text::number(code.code)), plain(described(first->second)), plain(described(code))}),
+                 {plain(core::number(code.code)), plain(described(first->second)), plain(described(code))}),
           phrase("give each event of each condition its own code"));
   }
 }
@@ -86,7 +85,7 @@ void check_unique(TableReader& reader, const Reading& reading) {
 void read_triggers(TableReader& file, Reading& reading) {
   const auto* table = file.maybe_table("triggers");
   if (!table) return;
-  TableReader reader(*table, "triggers", reading.findings);
+  TableReader reader(*table, "triggers", reading.findings, file.keys("triggers"));
   reading.protocol.triggers.place = table->place;
   read_send(reader, reading.protocol.triggers);
   for (const auto* code : reader.tables("code")) read_code(*code, reading);

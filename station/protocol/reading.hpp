@@ -4,18 +4,22 @@
 #include <string>
 #include <vector>
 
+#include "station/core/reader.hpp"
 #include "station/protocol/key_places.hpp"
 #include "station/protocol/protocol.hpp"
-#include "station/text/reader.hpp"
+#include "station/protocol/protocol_keys.hpp"
 
 // The functions with which load() and parse() read a protocol file, one for each part of the file. A function
 // reads its tables into the protocol and reports problems. Call the functions in the order of their
 // declaration, because later ones rely on earlier ones.
 namespace turnpoint::protocol {
 
+/// The declared keys of a table of a protocol file, such as `task.rating`.
+inline const core::Keys& keys_of(const std::string& path) { return core::below(protocol_keys(), path); }
+
 struct Reading {
   Protocol& protocol;
-  text::Findings& findings;
+  core::Findings& findings;
   const KeyPlaces& places;
   /// names of all scenes in the file, even of those that could not be read
   std::vector<std::string> declared_scenes;
@@ -23,31 +27,31 @@ struct Reading {
   std::map<std::string, std::vector<std::string>> families = {};
 };
 
-void read_header(text::TableReader& file, Reading& reading);  ///< Reads `format`, [protocol] and [random].
-void read_factors(text::TableReader& file, Reading& reading);
-void read_scenes(text::TableReader& file, Reading& reading);
-void read_instructions(text::TableReader& file, Reading& reading);
-void read_task(text::TableReader& file, Reading& reading);
-void read_timing(text::TableReader& file, Reading& reading);
-void read_procedures(text::TableReader& file, Reading& reading);
-void read_sessions(text::TableReader& file, Reading& reading);
-void read_plan(text::TableReader& file, Reading& reading);
-void read_interludes(text::TableReader& file, Reading& reading);
+void read_header(core::TableReader& file, Reading& reading);  ///< Reads `format`, [protocol] and [random].
+void read_factors(core::TableReader& file, Reading& reading);
+void read_scenes(core::TableReader& file, Reading& reading);
+void read_instructions(core::TableReader& file, Reading& reading);
+void read_task(core::TableReader& file, Reading& reading);
+void read_timing(core::TableReader& file, Reading& reading);
+void read_procedures(core::TableReader& file, Reading& reading);
+void read_sessions(core::TableReader& file, Reading& reading);
+void read_plan(core::TableReader& file, Reading& reading);
+void read_interludes(core::TableReader& file, Reading& reading);
 /// Reads the keys of a block of strokes (kind "training" or "friction-table").
-void read_strokes(text::TableReader& block_reader, const std::string& kind, Block& block,
+void read_strokes(core::TableReader& block_reader, const std::string& kind, Block& block,
                   const Reading& reading);
 /// Reads the keys "sessions" and "groups".
-void read_audience(text::TableReader& reader, Audience& audience, const Reading& reading);
-void read_break(text::TableReader& block_reader, Block& block, const Reading& reading);
-void read_analysis(text::TableReader& file, Reading& reading);
-void read_exclusion(text::TableReader& file, Reading& reading);
-void read_triggers(text::TableReader& file, Reading& reading);
-void read_sensing(text::TableReader& file, Reading& reading);
-void read_resume(text::TableReader& file, Reading& reading);
+void read_audience(core::TableReader& reader, Audience& audience, const Reading& reading);
+void read_break(core::TableReader& block_reader, Block& block, const Reading& reading);
+void read_analysis(core::TableReader& file, Reading& reading);
+void read_exclusion(core::TableReader& file, Reading& reading);
+void read_triggers(core::TableReader& file, Reading& reading);
+void read_sensing(core::TableReader& file, Reading& reading);
+void read_resume(core::TableReader& file, Reading& reading);
 
 /// Checks what can be checked only when the whole file has been read: values of factors in each trial,
 /// answers, pass criteria, deadlines.
-void check_whole(text::TableReader& file, Reading& reading);
+void check_whole(core::TableReader& file, Reading& reading);
 /// Checks that a response signal that is part of the stimulus (a tone or a buzz) fits into it.
 void check_signal(const Reading& reading);
 /// Checks sessions and groups: that each has blocks, and that nothing depends on what a session does not
@@ -55,32 +59,28 @@ void check_signal(const Reading& reading);
 void check_visits(const Reading& reading);
 
 /// Reads a text in each declared language. Reports a problem for a missing or an undeclared language.
-Localised read_localised(text::TableReader& reader, const std::string& key, const Reading& reading);
-Localised localised_from(const text::Value& value, const std::string& key, const Reading& reading);
+Localised read_localised(core::TableReader& reader, const std::string& key, const Reading& reading);
+Localised localised_from(const core::Value& value, const std::string& key, const Reading& reading);
 
 /// Reads the points or the line of a scale, with their labels.
-Scale read_scale(const text::Value& table, const std::string& path, const Reading& reading);
+Scale read_scale(const core::Value& table, const std::string& path, const Reading& reading);
 /// Reads low, high and decimals of a number that is typed.
-ValueAnswer read_typed(text::TableReader& reader);
+ValueAnswer read_typed(core::TableReader& reader);
 /// Reads the list `choices`.
-std::vector<Choice> read_choice_list(text::TableReader& reader, const std::string& path,
+std::vector<Choice> read_choice_list(core::TableReader& reader, const std::string& path,
                                      const Reading& reading);
 /// Reads the name of a scene. Reports a problem if the file has no such scene.
-std::string read_scene_name(text::TableReader& reader, const std::string& key, const texts::Phrase& what,
-                            const Reading& reading);
+std::string read_scene_name(core::TableReader& reader, const std::string& key, const Reading& reading);
 
 /// Reads a number, or { uniform = [low, high] }.
-std::optional<Distribution> read_distribution(text::TableReader& reader, const std::string& key);
-
-/// Reads a name made of letters, digits, _ and -. Reports a problem for any other character.
-std::string read_name(text::TableReader& reader, const std::string& key, const texts::Phrase& what);
+std::optional<Distribution> read_distribution(core::TableReader& reader, const std::string& key);
 
 /// Reads a value of a factor and checks it against the factor's range or levels.
-std::optional<FactorValue> read_factor_value(const text::Value& value, const Factor& factor,
-                                             text::Findings& findings);
+std::optional<FactorValue> read_factor_value(const core::Value& value, const Factor& factor,
+                                             core::Findings& findings);
 
 /// Returns the factor that `key` names. If there is no such factor or it is not numeric, reports a problem
 /// and returns nullptr.
-const Factor* read_numeric_factor(text::TableReader& reader, const std::string& key, const Reading& reading);
+const Factor* read_numeric_factor(core::TableReader& reader, const std::string& key, const Reading& reading);
 
 }  // namespace turnpoint::protocol

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "station/text/problem.hpp"
+#include "station/core/problem.hpp"
 
 namespace turnpoint::protocol {
 
@@ -18,7 +18,7 @@ struct SessionPlan {
   /// The least number of calendar days from one session to the next; 0: sessions may be on the same day.
   int min_days = 0;
   Unfinished incomplete = Unfinished::repeat;
-  text::Place place;
+  core::Place place;
 };
 
 /// The sessions and groups that have a part of the plan, such as a block. An empty list stands for all.

@@ -6,7 +6,7 @@
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
@@ -38,7 +38,7 @@ void add_block(const Protocol& protocol, const Block& block, const std::string& 
   std::set<std::string> fixed;
   for (const auto& [name, value] : block.fixed) fixed.insert(name);
   if (!over.empty()) fixed.insert(over);
-  const auto push = [&](const texts::Phrase& what, const std::string& level, std::vector<double> levels,
+  const auto push = [&](const core::Phrase& what, const std::string& level, std::vector<double> levels,
                         const procedure::Spec* spec) {
     auto sets = fixed;
     sets.insert(level);

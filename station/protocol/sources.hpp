@@ -12,7 +12,7 @@ namespace turnpoint::protocol {
 struct Source {
   const Block* block = nullptr;
   /// name of the source for messages: `procedure "levels"`, `fixed levels`, `catch trials`
-  texts::Phrase what;
+  core::Phrase what;
   std::string level;  ///< name of the factor whose levels the source presents
   /// values that this factor can take; for a staircase or slider, evenly spaced samples
   std::vector<double> levels;

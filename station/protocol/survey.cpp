@@ -9,6 +9,8 @@
 #include <stdexcept>
 
 #include "physics/boundary_map.hpp"
+#include "station/core/limits.hpp"
+#include "station/core/number.hpp"
 #include "station/protocol/carrier_advice.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/protocol/key_places.hpp"
@@ -17,12 +19,10 @@
 #include "station/protocol/sources.hpp"
 #include "station/scene/planner.hpp"
 #include "station/scene/transducer.hpp"
-#include "station/terms/limits.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
@@ -33,7 +33,7 @@ constexpr std::size_t most_plans_of_a_scene = 120, most_plans_of_a_zone = 6, mos
 
 // Returns a text for messages that says where this rig can place a boundary that is defined in the same way
 // as the scene's edge.
-texts::Phrase reach(const scene::Scene& scene, const rig::Rig& rig, const scene::Planner& planner) {
+core::Phrase reach(const scene::Scene& scene, const rig::Rig& rig, const scene::Planner& planner) {
   if (!scene.boundary_m) return {};
   physics::MapOptions options;
   options.edge = scene.edge;
@@ -42,7 +42,7 @@ texts::Phrase reach(const scene::Scene& scene, const rig::Rig& rig, const scene:
                                                 rig.friction.fingertip_m};
   const physics::BoundaryMap map(planner.surface(), options);
   const double low_Hz = scene::lowest_frequency(rig, 0),
-               high_Hz = scene::highest_frequency(rig, terms::kHighestShareOfRate * rig.output.rate_Hz);
+               high_Hz = scene::highest_frequency(rig, core::kHighestShareOfRate * rig.output.rate_Hz);
   std::optional<double> nearest, furthest;
   constexpr int steps = 400;
   for (int i = 0; i <= steps; ++i)
@@ -52,8 +52,8 @@ texts::Phrase reach(const scene::Scene& scene, const rig::Rig& rig, const scene:
     }
   if (!nearest) return phrase("this rig cannot present any boundary with this edge");
   return phrase("with this edge the rig can present boundaries from %1 to %2 mm (%3 to %4 kHz)",
-                {plain(text::number(1e3 * *nearest, 4)), plain(text::number(1e3 * *furthest, 4)),
-                 plain(text::number(1e-3 * low_Hz, 4)), plain(text::number(1e-3 * high_Hz, 4))});
+                {plain(core::number(1e3 * *nearest, 4)), plain(core::number(1e3 * *furthest, 4)),
+                 plain(core::number(1e-3 * low_Hz, 4)), plain(core::number(1e-3 * high_Hz, 4))});
 }
 
 Sight sight_of(const Combination& combination, const scene::DrivePlan& plan) {
@@ -79,7 +79,7 @@ Sight sight_of(const Combination& combination, const scene::DrivePlan& plan) {
 // A problem that may occur in several combinations. It is reported once, with the first combination and the
 // number of the others.
 struct Trouble {
-  texts::Phrase first, allowed;
+  core::Phrase first, allowed;
   Place place = {};
   int cases = 0;
 };
@@ -105,7 +105,7 @@ std::vector<Combination> planned(const Protocol& protocol, const std::vector<Com
 struct Answer {
   std::optional<scene::DrivePlan> plan;
   std::optional<scene::Cues> cues_roved_down;
-  texts::Phrase refused, allowed;
+  core::Phrase refused, allowed;
   Place place;  ///< place in the file of the key that the rig cannot satisfy
 };
 
@@ -235,7 +235,7 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   const auto answers = plan_all(protocol, rig, combinations, stop, progress);
   std::map<std::string, Trouble> unreachable, inexact;
   // the text of the first warning with each warning code, because each code is reported only once
-  std::map<std::string, texts::Phrase> told;
+  std::map<std::string, core::Phrase> told;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const auto& combination = combinations[i];
     if (!answers[i].plan) {
@@ -270,9 +270,9 @@ void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey)
     survey.problems.push_back(
         {KeyPlaces(protocol.source, protocol.path)
              .of(protocol.task.duration_s ? "task.duration_s" : "timing.explore_s"),
-         phrase("tones last up to %1 s without a pause", {plain(text::number(longest_s))}),
+         phrase("tones last up to %1 s without a pause", {plain(core::number(longest_s))}),
          phrase("the rig allows at most continuous_s = %1 s",
-                {plain(text::number(rig.limits.continuous_s))})});
+                {plain(core::number(rig.limits.continuous_s))})});
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ struct Sight {
 
 /// The result of checking a protocol against a rig. Problems prevent a session, warnings do not.
 struct Survey {
-  std::vector<text::Problem> problems, warnings;
+  std::vector<core::Problem> problems, warnings;
   std::vector<Sight> sights;  ///< in the order of blocks in the file; each combination appears once
   /// number of combinations that can occur; if `sights` has fewer, only the extremes and evenly spaced values
   /// between them were planned
@@ -65,6 +65,6 @@ Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_tok
 /// Returns advice about mistakes that are likely on any rig, each at the line of its key. Examples: levels
 /// smaller than the tolerance, answers that are never right, practice that is passed by always pressing the
 /// same key, times in wrong units, breaks that never come, and scenes that nothing uses.
-std::vector<text::Problem> advice(const Protocol& protocol);
+std::vector<core::Problem> advice(const Protocol& protocol);
 
 }  // namespace turnpoint::protocol

@@ -1,18 +1,18 @@
 #include <algorithm>
 #include <optional>
 
+#include "station/core/number.hpp"
 #include "station/protocol/advice_list.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
-using text::number;
+using core::number;
 
 // No part of a trial takes minutes. A larger number was probably meant in milliseconds.
 constexpr double longest_s = 120;

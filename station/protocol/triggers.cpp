@@ -19,6 +19,14 @@ std::string trigger_condition(const Protocol& protocol, const Factors& factors) 
 
 }  // namespace
 
+std::vector<std::string> trigger_event_names() {
+  std::vector<std::string> names;
+  for (const auto event :
+       {TriggerEvent::trial, TriggerEvent::onset, TriggerEvent::change, TriggerEvent::response})
+    names.emplace_back(name(event));
+  return names;
+}
+
 const char* name(TriggerEvent event) {
   switch (event) {
     case TriggerEvent::trial:

@@ -8,6 +8,8 @@ namespace turnpoint::protocol {
 
 /// The word for an event in files and records: "trial", "onset", "change" or "response".
 const char* name(TriggerEvent event);
+/// The names of all events, in the order of TriggerEvent.
+std::vector<std::string> trigger_event_names();
 
 /// All codes of the protocol: those that the file states, and the default codes of the other events. With k
 /// events to send, event e (from 0, in the order of `send`) in condition c (from 0, in the order of

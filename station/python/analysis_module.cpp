@@ -29,7 +29,7 @@ using Texts = std::vector<std::string>;
 
 std::vector<std::string> sentences(const std::vector<Statement>& statements) {
   std::vector<std::string> all;
-  for (const auto& one : statements) all.push_back(texts::say(one.text, "en"));
+  for (const auto& one : statements) all.push_back(core::say(one.text, "en"));
   return all;
 }
 

@@ -17,7 +17,7 @@ pybind11_add_module(turnpoint_python_store NO_EXTRAS ${station_python}/store_mod
 target_link_libraries(turnpoint_python_store PRIVATE turnpoint_collector turnpoint_store)
 set_target_properties(turnpoint_python_store PROPERTIES OUTPUT_NAME _store)
 pybind11_add_module(turnpoint_python_analysis NO_EXTRAS ${station_python}/analysis_module.cpp)
-target_link_libraries(turnpoint_python_analysis PRIVATE turnpoint_analysis turnpoint_texts)
+target_link_libraries(turnpoint_python_analysis PRIVATE turnpoint_analysis turnpoint_core)
 set_target_properties(turnpoint_python_analysis PROPERTIES OUTPUT_NAME _analysis)
 set(turnpoint_python_modules turnpoint_python_physics turnpoint_python_store turnpoint_python_analysis)
 set_target_properties(${turnpoint_python_modules} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${turnpoint_python_folder})

@@ -5,8 +5,8 @@
 
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/quantile.hpp"
+#include "station/core/number.hpp"
 #include "station/report/words.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::report {
 
@@ -19,8 +19,8 @@ constexpr std::size_t kMostJoined = 8;
 // a level below this, from a surface that hardly moves, is drawn at this level
 constexpr double kLowestLevel_dB = -40;
 
-plot::Points observed(const NamedFit& named, int series, const std::string& name) {
-  plot::Points points;
+Points observed(const NamedFit& named, int series, const std::string& name) {
+  Points points;
   points.series = series;
   points.name = name;
   for (const auto& point : named.fit.data) {
@@ -35,12 +35,12 @@ plot::Points observed(const NamedFit& named, int series, const std::string& name
   return points;
 }
 
-plot::Line curve(const NamedFit& named, int series, const plot::Axis& axis, const std::string& name) {
-  plot::Line line;
+Line curve(const NamedFit& named, int series, const Axis& axis, const std::string& name) {
+  Line line;
   line.series = series;
   line.name = name;
   const auto& options = named.fit.options;
-  const bool logarithmic = axis.scale == plot::AxisScale::log10;
+  const bool logarithmic = axis.scale == AxisScale::log10;
   for (int i = 0; i <= 120; ++i) {
     const double share = i / 120.0;
     const double x = logarithmic ? axis.low * std::pow(axis.high / axis.low, share)
@@ -61,23 +61,21 @@ std::optional<double> false_alarms(const NamedFit& named) {
 /// Marks the threshold (or PSE) on the curve: a thin line labelled with its value and, at the curve, its
 /// interval.
 void mark_threshold(const NamedFit& named, const LevelAnalysis& data, const Words& words, int series,
-                    const std::string& name, plot::Chart& panel) {
+                    const std::string& name, Chart& panel) {
   const auto& fit = named.fit;
   const double at = fit.parameters->threshold;
   if (at < panel.x.low || at > panel.x.high) return;
   const auto unit = data.level_unit.empty() ? "" : " " + data.level_unit;
-  panel.layers.push_back(
-      plot::Rule{plot::Rule::Direction::vertical, at,
-                 words(data.design == Design::two_sided ? "figure.pse" : "figure.threshold",
-                       (name.empty() ? "" : name + " ") + text::number(at, 3) + unit)});
+  panel.layers.push_back(Rule{Rule::Direction::vertical, at,
+                              words(data.design == Design::two_sided ? "figure.pse" : "figure.threshold",
+                                    (name.empty() ? "" : name + " ") + core::number(at, 3) + unit)});
   if (!named.intervals.threshold) return;
   const auto& interval = named.intervals.threshold->interval;
   const double height = analysis::probability(fit.options.function, fit.options.scale, *fit.parameters, at);
-  panel.layers.push_back(
-      plot::Line{{std::max(interval.low, panel.x.low), std::min(interval.high, panel.x.high)},
-                 {height, height},
-                 series,
-                 ""});
+  panel.layers.push_back(Line{{std::max(interval.low, panel.x.low), std::min(interval.high, panel.x.high)},
+                              {height, height},
+                              series,
+                              ""});
 }
 
 std::string or_default(const std::string& name, const std::string& fallback) {
@@ -89,18 +87,17 @@ std::string or_default(const std::string& name, const std::string& fallback) {
 namespace {
 
 /// The chart of the functions of one analysis; empty if there are no levels.
-std::optional<plot::Chart> psychometric_chart(const std::vector<const NamedFit*>& fits,
-                                              const LevelAnalysis& data, int alternatives,
-                                              const Words& words) {
+std::optional<Chart> psychometric_chart(const std::vector<const NamedFit*>& fits, const LevelAnalysis& data,
+                                        int alternatives, const Words& words) {
   std::vector<double> levels;
   for (const auto* named : fits)
     for (const auto& point : named->fit.data)
       if (point.level != analysis::kNoise) levels.push_back(point.level);
   if (levels.empty()) return std::nullopt;
   const bool logarithmic = data.scale == analysis::Scale::log10;
-  plot::Chart panel;
-  panel.x = plot::fitted(data.level_label, levels, 0.05,
-                         logarithmic ? plot::AxisScale::log10 : plot::AxisScale::linear);
+  Chart panel;
+  panel.x =
+      report::fitted(data.level_label, levels, 0.05, logarithmic ? AxisScale::log10 : AxisScale::linear);
   const bool forced = data.design == Design::forced_choice;
   const auto& positive = fits.front()->positive;
   panel.y = {words("figure.proportion", positive == "correct" ? words("figure.correct") : positive),
@@ -111,18 +108,15 @@ std::optional<plot::Chart> psychometric_chart(const std::vector<const NamedFit*>
         panel.y.low = std::min(panel.y.low, analysis::wilson(point.positive, point.trials).low - 0.03);
   for (std::size_t i = 0; i < fits.size(); ++i)
     if (const auto& band = fits[i]->intervals; !band.band_level.empty())
-      panel.layers.push_back(
-          plot::Band{band.band_level, band.band_low, band.band_high, static_cast<int>(i), ""});
+      panel.layers.push_back(Band{band.band_level, band.band_low, band.band_high, static_cast<int>(i), ""});
   if (forced)
-    panel.layers.push_back(
-        plot::Rule{plot::Rule::Direction::horizontal, 1.0 / alternatives, words("figure.chance")});
+    panel.layers.push_back(Rule{Rule::Direction::horizontal, 1.0 / alternatives, words("figure.chance")});
   if (has_noise(data.design))
     for (const auto* named : fits)
       if (const auto noise = false_alarms(*named))
-        panel.layers.push_back(plot::Rule{plot::Rule::Direction::horizontal, *noise,
-                                          named->name.empty()
-                                              ? words("figure.false_alarms")
-                                              : words("figure.false_alarms_of", named->name)});
+        panel.layers.push_back(Rule{Rule::Direction::horizontal, *noise,
+                                    named->name.empty() ? words("figure.false_alarms")
+                                                        : words("figure.false_alarms_of", named->name)});
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const auto& named = *fits[i];
     const int series = static_cast<int>(i);
@@ -137,8 +131,8 @@ std::optional<plot::Chart> psychometric_chart(const std::vector<const NamedFit*>
 
 }  // namespace
 
-std::optional<plot::Figure> psychometric_figure(const Summary& summary) {
-  plot::Figure figure;
+std::optional<Figure> psychometric_figure(const Summary& summary) {
+  Figure figure;
   figure.title = "Psychometric function";
   figure.chart_width_px = 620;
   figure.chart_height_px = 380;
@@ -156,17 +150,17 @@ std::optional<plot::Figure> psychometric_figure(const Summary& summary) {
   return figure;
 }
 
-std::optional<plot::Figure> trace_figure(const Summary& summary) {
-  plot::Figure figure;
+std::optional<Figure> trace_figure(const Summary& summary) {
+  Figure figure;
   const Words words(summary.data.language);
   figure.title = "Levels in the order presented";
   figure.chart_width_px = 620;
   figure.chart_height_px = 240;
   for (const auto& trace : summary.traces) {
-    plot::Points right, wrong;
+    Points right, wrong;
     right.series = wrong.series = static_cast<int>(figure.charts.size());
-    plot::Line line;
-    line.series = plot::kNeutral;
+    Line line;
+    line.series = report::kNeutral;
     for (const auto& point : trace.points) {
       const bool is_wrong = point.correct && !*point.correct;
       auto& points = is_wrong ? wrong : right;
@@ -177,11 +171,11 @@ std::optional<plot::Figure> trace_figure(const Summary& summary) {
       line.y.push_back(points.y.back());
     }
     if (!wrong.x.empty()) right.name = words("figure.right"), wrong.name = words("figure.wrong");
-    plot::Chart panel;
+    Chart panel;
     panel.title = or_default(trace.procedure, words("figure.all_trials"));
-    panel.x = plot::fitted(words("figure.trial_in_session"), line.x, 0.03);
+    panel.x = report::fitted(words("figure.trial_in_session"), line.x, 0.03);
     panel.x.counts = true;
-    panel.y = plot::fitted(summary.data.level_label, line.y, 0.1);
+    panel.y = report::fitted(summary.data.level_label, line.y, 0.1);
     // Draw a line only if the procedure moves in small steps. A line through shuffled levels would only
     // zigzag.
     double steps = 0;
@@ -197,14 +191,14 @@ std::optional<plot::Figure> trace_figure(const Summary& summary) {
   return figure;
 }
 
-std::optional<plot::Figure> settings_figure(const Summary& summary) {
-  plot::Figure figure;
+std::optional<Figure> settings_figure(const Summary& summary) {
+  Figure figure;
   figure.title = "Settings in the order made";
   figure.chart_width_px = 620;
   figure.chart_height_px = 260;
   for (const auto& settings : summary.settings) {
-    plot::Points starts, ends;
-    starts.name = "start", starts.series = plot::kNeutral;
+    Points starts, ends;
+    starts.name = "start", starts.series = report::kNeutral;
     ends.name = "setting", ends.series = static_cast<int>(figure.charts.size());
     for (std::size_t i = 0; i < settings.values.size(); ++i) {
       starts.x.push_back(static_cast<double>(i + 1));
@@ -215,12 +209,12 @@ std::optional<plot::Figure> settings_figure(const Summary& summary) {
     ends.x = starts.x;
     auto both = starts.y;
     both.insert(both.end(), ends.y.begin(), ends.y.end());
-    plot::Chart panel;
+    Chart panel;
     panel.title = settings.procedure + (settings.condition.empty() ? "" : ", " + settings.condition);
-    panel.x = plot::fitted("Setting (number)", starts.x, 0.03);
-    panel.y = plot::fitted(summary.data.level_label, both, 0.1);
+    panel.x = report::fitted("Setting (number)", starts.x, 0.03);
+    panel.y = report::fitted(summary.data.level_label, both, 0.1);
     if (settings.mean)
-      panel.layers.push_back(plot::Rule{plot::Rule::Direction::horizontal, settings.mean->value, "mean"});
+      panel.layers.push_back(Rule{Rule::Direction::horizontal, settings.mean->value, "mean"});
     panel.layers.push_back(starts);
     panel.layers.push_back(ends);
     figure.charts.push_back(std::move(panel));
@@ -229,14 +223,14 @@ std::optional<plot::Figure> settings_figure(const Summary& summary) {
   return figure;
 }
 
-std::optional<plot::Figure> judgement_figure(const Summary& summary) {
+std::optional<Figure> judgement_figure(const Summary& summary) {
   const Words words(summary.data.language);
   const bool numbers = summary.data.design == Design::numbers;
-  plot::Chart chart;
+  Chart chart;
   std::vector<double> levels, values;
   for (const auto& judged : summary.judgements) {
-    plot::Points points;
-    plot::Line line;
+    Points points;
+    Line line;
     points.series = line.series = static_cast<int>(chart.layers.size()) / 2;
     if (!judged.condition.empty()) points.name = judged.condition;
     for (const auto& level : judged.levels) {
@@ -254,13 +248,11 @@ std::optional<plot::Figure> judgement_figure(const Summary& summary) {
   if (levels.empty()) return std::nullopt;
   const bool ratios =
       numbers && summary.data.level_unit != "dB" && *std::min_element(levels.begin(), levels.end()) > 0;
-  const auto scale = [](bool logarithmic) {
-    return logarithmic ? plot::AxisScale::log10 : plot::AxisScale::linear;
-  };
-  chart.x = plot::fitted(summary.data.level_label, levels, 0.06, scale(ratios));
-  chart.y = plot::fitted(words(numbers ? "figure.geometric_mean" : "figure.mean_rating"), values, 0.08,
-                         scale(numbers));
-  plot::Figure figure;
+  const auto scale = [](bool logarithmic) { return logarithmic ? AxisScale::log10 : AxisScale::linear; };
+  chart.x = report::fitted(summary.data.level_label, levels, 0.06, scale(ratios));
+  chart.y = report::fitted(words(numbers ? "figure.geometric_mean" : "figure.mean_rating"), values, 0.08,
+                           scale(numbers));
+  Figure figure;
   figure.title = numbers ? "Numbers at each level" : "Ratings at each level";
   figure.chart_width_px = 620;
   figure.chart_height_px = 320;
@@ -268,27 +260,27 @@ std::optional<plot::Figure> judgement_figure(const Summary& summary) {
   return figure;
 }
 
-std::optional<plot::Figure> confusion_figure(const Summary& summary) {
+std::optional<Figure> confusion_figure(const Summary& summary) {
   const auto edges = [](std::size_t count) {
     std::vector<double> all;
     for (std::size_t i = 0; i <= count; ++i) all.push_back(static_cast<double>(i) + 0.5);
     return all;
   };
-  plot::Figure figure;
+  Figure figure;
   const Words words(summary.data.language);
   figure.title = "Answers to each stimulus";
   figure.chart_width_px = 620;
   figure.chart_height_px = 380;
   for (const auto& confusion : summary.confusions) {
     if (confusion.rows.empty()) continue;
-    plot::HeatMap shares{
+    HeatMap shares{
         edges(summary.data.choices.size()), edges(confusion.rows.size()), {}, 0, 1, words("figure.share")};
     for (const auto& row : confusion.rows)
       for (const int count : row.answers) shares.values.push_back(static_cast<double>(count) / row.trials);
-    plot::Chart chart;
+    Chart chart;
     chart.title = or_default(confusion.condition, words("figure.all_trials"));
-    chart.x = {words("figure.answer"), 0.5, shares.x_edges.back(), plot::AxisScale::linear, true};
-    chart.y = {words("figure.stimulus"), 0.5, shares.y_edges.back(), plot::AxisScale::linear, true};
+    chart.x = {words("figure.answer"), 0.5, shares.x_edges.back(), AxisScale::linear, true};
+    chart.y = {words("figure.stimulus"), 0.5, shares.y_edges.back(), AxisScale::linear, true};
     chart.layers.push_back(std::move(shares));
     figure.charts.push_back(std::move(chart));
   }
@@ -296,24 +288,24 @@ std::optional<plot::Figure> confusion_figure(const Summary& summary) {
   return figure;
 }
 
-std::optional<plot::Figure> vibration_figure(const Summary& summary) {
+std::optional<Figure> vibration_figure(const Summary& summary) {
   if (summary.data.measured.empty()) return std::nullopt;
-  plot::Points points;
+  Points points;
   for (const auto& trial : summary.data.measured) {
     points.x.push_back(trial.trial_index + 1);
     points.y.push_back(std::max(trial.level_dB, kLowestLevel_dB));
     points.open.push_back(!trial.counts);
   }
-  plot::Chart chart;
-  chart.x = plot::fitted("Trial (number)", points.x, 0.03);
+  Chart chart;
+  chart.x = report::fitted("Trial (number)", points.x, 0.03);
   chart.x.counts = true;
   auto levels = points.y;
   // the axis always includes 0.6 dB below and above the plan, beyond the 0.5 dB of ProofLimits::level_dB
   levels.insert(levels.end(), {-0.6, 0.6});
-  chart.y = plot::fitted("Measured against plan (dB)", levels, 0.1);
-  chart.layers.push_back(plot::Rule{plot::Rule::Direction::horizontal, 0, "as planned"});
+  chart.y = report::fitted("Measured against plan (dB)", levels, 0.1);
+  chart.layers.push_back(Rule{Rule::Direction::horizontal, 0, "as planned"});
   chart.layers.push_back(points);
-  plot::Figure figure;
+  Figure figure;
   figure.title = "Vibration of the surface";
   figure.chart_width_px = 620;
   figure.chart_height_px = 220;
@@ -321,7 +313,7 @@ std::optional<plot::Figure> vibration_figure(const Summary& summary) {
   return figure;
 }
 
-std::optional<plot::Figure> response_time_figure(const Summary& summary) {
+std::optional<Figure> response_time_figure(const Summary& summary) {
   std::vector<double> all;
   for (const auto& entry : summary.trade.instructions)
     all.insert(all.end(), entry.times_s.begin(), entry.times_s.end());
@@ -329,35 +321,35 @@ std::optional<plot::Figure> response_time_figure(const Summary& summary) {
   const double width = std::pow(10.0, std::floor(std::log10(analysis::quantile(all, 0.98)))) / 4;
   const double high = std::ceil(analysis::quantile(all, 1) / width) * width;
   const int bins = std::clamp(static_cast<int>(std::lround(high / width)) * 2, 10, 60);
-  plot::Figure figure;
+  Figure figure;
   const Words words(summary.data.language);
   figure.title = "Response times";
   figure.chart_width_px = 620;
   figure.chart_height_px = 200;
   double tallest = 1;
-  std::vector<plot::Histogram> bars;
+  std::vector<Histogram> bars;
   for (const auto& entry : summary.trade.instructions) {
-    bars.push_back(plot::histogram(entry.times_s, 0, high, bins));
+    bars.push_back(report::histogram(entry.times_s, 0, high, bins));
     for (const double count : bars.back().heights) tallest = std::max(tallest, count);
   }
   for (std::size_t i = 0; i < bars.size(); ++i) {
     const auto& entry = summary.trade.instructions[i];
     bars[i].series = static_cast<int>(i);
-    plot::Chart panel;
+    Chart panel;
     panel.title = or_default(entry.instruction, words("figure.all_trials"));
     panel.x = {words("figure.response_time"), 0, high};
-    panel.y = {words("figure.trials"), 0, tallest * 1.12, plot::AxisScale::linear, true};
+    panel.y = {words("figure.trials"), 0, tallest * 1.12, AxisScale::linear, true};
     panel.layers.push_back(bars[i]);
     if (entry.times)
-      panel.layers.push_back(plot::Rule{plot::Rule::Direction::vertical, entry.times->median_s,
-                                        words("figure.median", text::number(entry.times->median_s, 3))});
+      panel.layers.push_back(Rule{Rule::Direction::vertical, entry.times->median_s,
+                                  words("figure.median", core::number(entry.times->median_s, 3))});
     figure.charts.push_back(std::move(panel));
   }
   return figure;
 }
 
-std::optional<plot::Figure> quantile_probability_figure(const Summary& summary) {
-  plot::Figure figure;
+std::optional<Figure> quantile_probability_figure(const Summary& summary) {
+  Figure figure;
   figure.title = "Quantiles of response times, observed and predicted";
   figure.chart_width_px = 420;
   figure.columns = 2;
@@ -368,9 +360,9 @@ std::optional<plot::Figure> quantile_probability_figure(const Summary& summary) 
   std::vector<double> times{0};
   for (const auto& entry : summary.trade.instructions) {
     if (!entry.check) continue;
-    plot::Chart chart{or_default(entry.instruction, "all trials"), {}, {}, {}};
+    Chart chart{or_default(entry.instruction, "all trials"), {}, {}, {}};
     for (std::size_t q = 0; q < analysis::kPredictedQuantiles.size(); ++q) {
-      plot::Points points;
+      Points points;
       std::vector<std::pair<double, double>> predicted;
       for (const auto& difficulty : entry.check->difficulties)
         for (const auto* answers : {&difficulty.right, &difficulty.wrong}) {
@@ -384,7 +376,7 @@ std::optional<plot::Figure> quantile_probability_figure(const Summary& summary) 
           times.push_back(observed.interval.high);
         }
       std::sort(predicted.begin(), predicted.end());
-      plot::Line line;
+      Line line;
       for (const auto& [probability, time_s] : predicted)
         line.x.push_back(probability), line.y.push_back(time_s);
       points.series = line.series = static_cast<int>(q);
@@ -396,7 +388,7 @@ std::optional<plot::Figure> quantile_probability_figure(const Summary& summary) 
   if (figure.charts.empty()) return std::nullopt;
   for (auto& chart : figure.charts) {
     chart.x = {"Probability of the answer (0 to 1)", 0, 1};
-    chart.y = plot::fitted("Response time (s)", times, 0.06);
+    chart.y = report::fitted("Response time (s)", times, 0.06);
   }
   return figure;
 }
@@ -405,7 +397,7 @@ namespace {
 
 /// Where the person could move by changing nothing but the boundary: accuracy over the mean time of right
 /// answers, with the fitted drifts and the fitted time outside the decision, averaged over the conditions.
-plot::Line boundary_curve(const Summary& summary, const std::string& name) {
+Line boundary_curve(const Summary& summary, const std::string& name) {
   constexpr double s2 = analysis::kDiffusionScale * analysis::kDiffusionScale;
   struct Cell {
     double drift, weight;
@@ -420,8 +412,8 @@ plot::Line boundary_curve(const Summary& summary, const std::string& name) {
     for (const auto& cell : entry.cells)
       if (cell.drift) cells.push_back({cell.drift->value, static_cast<double>(cell.answered)});
   }
-  plot::Line line;
-  line.series = plot::kNeutral;
+  Line line;
+  line.series = report::kNeutral;
   line.name = name;
   for (int i = 1; i <= 80 && !cells.empty(); ++i) {
     const double boundary = 1.4 * widest * i / 80;
@@ -441,10 +433,10 @@ plot::Line boundary_curve(const Summary& summary, const std::string& name) {
 
 /// Accuracy over time with a region of uncertainty for each condition, and the curve along which only the
 /// boundary changes. Empty with one condition.
-std::optional<plot::Chart> conditions_chart(const Summary& summary, const Words& words) {
-  plot::Chart chart{words("figure.trade"), {}, {}, {}};
+std::optional<Chart> conditions_chart(const Summary& summary, const Words& words) {
+  Chart chart{words("figure.trade"), {}, {}, {}};
   std::vector<double> times_s, accuracies;
-  std::vector<plot::Layer> points;
+  std::vector<Layer> points;
   int series = 0;
   for (const auto& entry : summary.trade.instructions) {
     const int own = series++;
@@ -452,11 +444,11 @@ std::optional<plot::Chart> conditions_chart(const Summary& summary, const Words&
     const auto& right = *entry.correct_times;
     const auto& accuracy = *entry.proportion_correct;
     const double half_s = analysis::kZ95 * right.sd_s / std::sqrt(static_cast<double>(right.count));
-    plot::Band region;
+    Band region;
     region.x = {right.mean_s - half_s, right.mean_s + half_s};
     region.low = {accuracy.interval.low, accuracy.interval.low};
     region.high = {accuracy.interval.high, accuracy.interval.high};
-    plot::Points point;
+    Points point;
     point.x = {right.mean_s}, point.y = {accuracy.value};
     region.series = point.series = own;
     point.name = or_default(entry.instruction, words("figure.all_trials"));
@@ -469,7 +461,7 @@ std::optional<plot::Chart> conditions_chart(const Summary& summary, const Words&
   if (auto curve = boundary_curve(summary, words("figure.boundary_curve")); !curve.x.empty())
     chart.layers.push_back(std::move(curve));
   chart.layers.insert(chart.layers.end(), points.begin(), points.end());
-  chart.x = plot::fitted(words("figure.correct_time"), times_s, 0.3);
+  chart.x = report::fitted(words("figure.correct_time"), times_s, 0.3);
   chart.y = {words("figure.proportion", words("figure.correct")),
              std::min(0.45, *std::min_element(accuracies.begin(), accuracies.end()) - 0.03), 1.03};
   return chart;
@@ -477,17 +469,16 @@ std::optional<plot::Chart> conditions_chart(const Summary& summary, const Words&
 
 }  // namespace
 
-std::optional<plot::Figure> trade_figure(const Summary& summary) {
+std::optional<Figure> trade_figure(const Summary& summary) {
   const Words words(summary.data.language);
-  plot::Chart caf{words("figure.conditional"), {}, {}, {}},
-      cells{words("figure.equal_difficulty"), {}, {}, {}};
+  Chart caf{words("figure.conditional"), {}, {}, {}}, cells{words("figure.equal_difficulty"), {}, {}, {}};
   std::vector<double> caf_times, cell_times, accuracies;
   int series = 0;
   // in an identification task, the level says which answer is right, not how difficult the trial is
   const bool categories = summary.data.design == Design::categories;
   for (const auto& entry : summary.trade.instructions) {
-    plot::Points bins, by_difficulty;
-    plot::Line bin_line, cell_line;
+    Points bins, by_difficulty;
+    Line bin_line, cell_line;
     for (const auto& bin : entry.caf) {
       const auto interval = analysis::wilson(bin.correct, bin.trials);
       bins.x.push_back(bin.mean_time_s);
@@ -518,10 +509,10 @@ std::optional<plot::Figure> trade_figure(const Summary& summary) {
   }
   if (cell_times.empty() && caf_times.empty()) return std::nullopt;
   const double lowest = std::min(0.45, *std::min_element(accuracies.begin(), accuracies.end()) - 0.03);
-  caf.x = plot::fitted(words("figure.bin_time"), caf_times, 0.12);
-  cells.x = plot::fitted(words("figure.correct_time"), cell_times, 0.12);
+  caf.x = report::fitted(words("figure.bin_time"), caf_times, 0.12);
+  cells.x = report::fitted(words("figure.correct_time"), cell_times, 0.12);
   caf.y = cells.y = {words("figure.proportion", words("figure.correct")), lowest, 1.03};
-  plot::Figure figure;
+  Figure figure;
   figure.title = "Speed and accuracy";
   figure.columns = 2;
   figure.chart_width_px = 400;

@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "station/plot/chart.hpp"
+#include "station/report/chart.hpp"
 #include "station/report/summary.hpp"
 
 namespace turnpoint::report {
@@ -11,45 +11,45 @@ namespace turnpoint::report {
 
 /// Plots the proportion of answers at each level with its Wilson interval, and the fitted curve with its
 /// band. The area of a marker is proportional to the number of trials.
-std::optional<plot::Figure> psychometric_figure(const Summary& summary);
+std::optional<Figure> psychometric_figure(const Summary& summary);
 /// Plots the threshold along the second dimension with its band, one panel per procedure and block. Markers
 /// are trials; open markers are answers that were wrong, or not the tracked answer.
-std::optional<plot::Figure> threshold_curve_figure(const Summary& summary);
+std::optional<Figure> threshold_curve_figure(const Summary& summary);
 /// Plots the levels in order of presentation, one panel per procedure. Open markers are wrong answers.
-std::optional<plot::Figure> trace_figure(const Summary& summary);
+std::optional<Figure> trace_figure(const Summary& summary);
 /// Draws one histogram of the response times for each instruction. All have the same time axis.
-std::optional<plot::Figure> response_time_figure(const Summary& summary);
+std::optional<Figure> response_time_figure(const Summary& summary);
 /// Plots the settings of a slider in order of presentation, with the slider's starting positions and the mean
 /// setting.
-std::optional<plot::Figure> settings_figure(const Summary& summary);
+std::optional<Figure> settings_figure(const Summary& summary);
 /// Plots the mean rating, or the geometric mean of the numbers, at each level, with its interval.
-std::optional<plot::Figure> judgement_figure(const Summary& summary);
+std::optional<Figure> judgement_figure(const Summary& summary);
 /// Plots the level of the measured vibration relative to the planned vibration, in order of presentation.
 /// Open markers are trials that are void because of their level.
-std::optional<plot::Figure> vibration_figure(const Summary& summary);
+std::optional<Figure> vibration_figure(const Summary& summary);
 /// Plots d' against the response time at each lag of the response signal, and the fitted curve.
-std::optional<plot::Figure> signal_figure(const Summary& summary);
+std::optional<Figure> signal_figure(const Summary& summary);
 /// Plots hits against false alarms for each degree of confidence, with one curve for each level.
-std::optional<plot::Figure> roc_figure(const Summary& summary);
+std::optional<Figure> roc_figure(const Summary& summary);
 /// Plots the share of each answer by stimulus, in one chart for each condition.
-std::optional<plot::Figure> confusion_figure(const Summary& summary);
+std::optional<Figure> confusion_figure(const Summary& summary);
 /// Plots accuracy against response time in two panels: the conditional accuracy functions, and one point for
 /// the trials of each difficulty.
-std::optional<plot::Figure> trade_figure(const Summary& summary);
+std::optional<Figure> trade_figure(const Summary& summary);
 /// Quantiles of response times over the probability of the answer: right answers on the right, wrong ones on
 /// the left, one chart for each condition (Ratcliff & McKoon 2008). Markers are observed, lines predicted.
-std::optional<plot::Figure> quantile_probability_figure(const Summary& summary);
+std::optional<Figure> quantile_probability_figure(const Summary& summary);
 
 /// Plots the normal force and the speed of the finger over the session, with one series for each condition.
 /// With more than 40 trials, a marker is the mean of several, with a bar from the smallest to the largest.
-std::optional<plot::Figure> finger_figure(const Summary& summary);
+std::optional<Figure> finger_figure(const Summary& summary);
 /// Plots what the finger met against the planned boundary. The first panel shows the felt minus the planned
 /// boundary, the second the friction on both sides; open markers are single trials. A third panel shows the
 /// friction along the strip.
-std::optional<plot::Figure> friction_figure(const Summary& summary);
+std::optional<Figure> friction_figure(const Summary& summary);
 /// Plots friction along the strip beside the planned boundary, with bars of one standard error. Empty without
 /// curves.
-std::optional<plot::Chart> strip_chart(const std::vector<analysis::FrictionCurve>& curves,
-                                       const std::string& language = "en");
+std::optional<Chart> strip_chart(const std::vector<analysis::FrictionCurve>& curves,
+                                 const std::string& language = "en");
 
 }  // namespace turnpoint::report

@@ -28,7 +28,7 @@ std::vector<Reading> readings(const analysis::Finger& finger, const std::string&
 }
 
 /// Adds one marker: the mean of the readings in `group`, with a bar from the smallest to the largest reading.
-void add_mean(plot::Points& points, std::span<const Reading> group) {
+void add_mean(Points& points, std::span<const Reading> group) {
   Reading mean;
   double low = group.front().value, high = low;
   for (const auto& [trial, value] : group) {
@@ -44,8 +44,8 @@ void add_mean(plot::Points& points, std::span<const Reading> group) {
 
 /// Divides the readings into groups of `size` successive readings. A reading from another block always begins
 /// a new group.
-plot::Points grouped(const std::vector<Reading>& list, std::size_t size) {
-  plot::Points points;
+Points grouped(const std::vector<Reading>& list, std::size_t size) {
+  Points points;
   std::size_t first = 0;
   for (std::size_t i = 1; i <= list.size(); ++i) {
     const bool apart =
@@ -58,8 +58,8 @@ plot::Points grouped(const std::vector<Reading>& list, std::size_t size) {
 }
 
 /// Draws one value over the session, with a series for each condition.
-plot::Chart over_session(const analysis::Finger& finger, const Words& words, const char* label, Value value) {
-  plot::Chart chart;
+Chart over_session(const analysis::Finger& finger, const Words& words, const char* label, Value value) {
+  Chart chart;
   std::vector<double> all, trials;
   const auto size = (finger.trials.size() + kMostMarkers - 1) / kMostMarkers;
   for (std::size_t i = 0; i < finger.conditions.size(); ++i) {
@@ -71,10 +71,10 @@ plot::Chart over_session(const analysis::Finger& finger, const Words& words, con
     trials.insert(trials.end(), points.x.begin(), points.x.end());
     chart.layers.push_back(std::move(points));
   }
-  chart.x = plot::fitted(words("figure.trial_in_session"), trials, 0.04);
+  chart.x = report::fitted(words("figure.trial_in_session"), trials, 0.04);
   chart.x.counts = true;
   all.push_back(0);  // force and speed are shown from 0, so that conditions can be compared by their ratio
-  chart.y = plot::fitted(words(label), all, 0.12);
+  chart.y = report::fitted(words(label), all, 0.12);
   chart.y.low = 0;
   return chart;
 }
@@ -87,9 +87,9 @@ constexpr double kBeside = 0.02;
 
 /// Returns markers for these values. Values with the same planned boundary stand side by side, so that their
 /// bars do not hide each other.
-plot::Points markers(const std::vector<AtBoundary>& values, const plot::Axis& along, int series,
-                     const std::string& name) {
-  plot::Points points;
+Points markers(const std::vector<AtBoundary>& values, const Axis& along, int series,
+               const std::string& name) {
+  Points points;
   points.series = series;
   points.name = name;
   for (auto group = values.begin(); group != values.end();) {
@@ -120,23 +120,22 @@ std::vector<double> extent(const std::vector<AtBoundary>& values) {
 
 /// Makes two charts against the planned boundary: the felt minus the planned boundary, and the friction on
 /// both sides of it.
-std::vector<plot::Chart> boundary_charts(const Summary& summary) {
+std::vector<Chart> boundary_charts(const Summary& summary) {
   const auto& [shift_mm, mu_low, mu_high] = summary.finger->boundaries;
   std::vector<double> planned;
   for (const auto& at : shift_mm) planned.push_back(at.planned_mm);
   const Words words(summary.data.language);
-  const auto along = plot::fitted(words("figure.planned_boundary"), planned, 0.08);
-  plot::Chart felt{words("figure.where_changes"), along, {}, {}},
-      sides{words("figure.both_sides"), along, {}, {}};
+  const auto along = report::fitted(words("figure.planned_boundary"), planned, 0.08);
+  Chart felt{words("figure.where_changes"), along, {}, {}}, sides{words("figure.both_sides"), along, {}, {}};
   auto shifts = extent(shift_mm);
   shifts.push_back(0);
-  felt.y = plot::fitted(words("figure.felt"), shifts, 0.1);
-  felt.layers.push_back(plot::Rule{plot::Rule::Direction::horizontal, 0, ""});
-  felt.layers.push_back(markers(shift_mm, along, plot::kNeutral, ""));
+  felt.y = report::fitted(words("figure.felt"), shifts, 0.1);
+  felt.layers.push_back(Rule{Rule::Direction::horizontal, 0, ""});
+  felt.layers.push_back(markers(shift_mm, along, report::kNeutral, ""));
   auto friction = extent(mu_low);
   for (const double value : extent(mu_high)) friction.push_back(value);
   friction.push_back(0);
-  sides.y = plot::fitted(words("figure.coefficient"), friction, 0.1);
+  sides.y = report::fitted(words("figure.coefficient"), friction, 0.1);
   sides.y.low = 0;
   sides.layers.push_back(markers(mu_low, along, kSmoothSeries, words("figure.smooth_side")));
   sides.layers.push_back(markers(mu_high, along, kRoughSeries, words("figure.rough_side")));
@@ -145,9 +144,9 @@ std::vector<plot::Chart> boundary_charts(const Summary& summary) {
 
 }  // namespace
 
-std::optional<plot::Figure> finger_figure(const Summary& summary) {
+std::optional<Figure> finger_figure(const Summary& summary) {
   if (!summary.finger) return std::nullopt;
-  plot::Figure figure;
+  Figure figure;
   figure.title = "Force and speed of the finger";
   figure.columns = 2;
   figure.chart_width_px = 400;
@@ -161,15 +160,15 @@ std::optional<plot::Figure> finger_figure(const Summary& summary) {
   return figure;
 }
 
-std::optional<plot::Chart> strip_chart(const std::vector<analysis::FrictionCurve>& curves,
-                                       const std::string& language) {
+std::optional<Chart> strip_chart(const std::vector<analysis::FrictionCurve>& curves,
+                                 const std::string& language) {
   const Words words(language);
-  plot::Chart chart;
+  Chart chart;
   chart.title = words("figure.along_strip");
   std::vector<double> along, friction{0};
   for (const auto& curve : curves) {
     if (curve.from_boundary_mm.empty()) continue;
-    plot::Points points;
+    Points points;
     points.series = static_cast<int>(chart.layers.size());
     points.name = words(curve.narrow ? "figure.towards_narrow" : "figure.towards_wide");
     points.x = curve.from_boundary_mm;
@@ -184,18 +183,17 @@ std::optional<plot::Chart> strip_chart(const std::vector<analysis::FrictionCurve
   }
   if (along.empty()) return std::nullopt;
   along.push_back(0);
-  chart.x = plot::fitted(words("figure.from_boundary"), along, 0.04);
-  chart.y = plot::fitted(words("figure.coefficient"), friction, 0.1);
+  chart.x = report::fitted(words("figure.from_boundary"), along, 0.04);
+  chart.y = report::fitted(words("figure.coefficient"), friction, 0.1);
   chart.y.low = 0;
-  chart.layers.insert(chart.layers.begin(),
-                      plot::Rule{plot::Rule::Direction::vertical, 0, words("figure.planned")});
+  chart.layers.insert(chart.layers.begin(), Rule{Rule::Direction::vertical, 0, words("figure.planned")});
   return chart;
 }
 
-std::optional<plot::Figure> friction_figure(const Summary& summary) {
+std::optional<Figure> friction_figure(const Summary& summary) {
   const auto strip = strip_chart(summary.data.strip, summary.data.language);
   if (!summary.finger || (summary.finger->boundaries.shift_mm.empty() && !strip)) return std::nullopt;
-  plot::Figure figure;
+  Figure figure;
   figure.title = "Friction along the strip";
   figure.columns = 2;
   figure.chart_width_px = 400;

@@ -5,24 +5,23 @@
 #include <algorithm>
 #include <set>
 
-#include "station/plot/svg.hpp"
+#include "station/core/number.hpp"
 #include "station/report/figures.hpp"
 #include "station/report/html_choices.hpp"
 #include "station/report/html_parts.hpp"
-#include "station/text/number.hpp"
+#include "station/report/svg.hpp"
 
 namespace turnpoint::report {
 
 namespace {
 
 using analysis::Estimate;
-using plot::escaped;
 
 std::string row(const std::string& name, double value,
                 const std::optional<analysis::ParameterInterval>& interval, bool limited = false) {
   const double error =
-      interval ? text::uncertainty(value, interval->interval.low, interval->interval.high) : 0;
-  const auto shown = [error](double number) { return minus(text::estimated(number, error)); };
+      interval ? core::uncertainty(value, interval->interval.low, interval->interval.high) : 0;
+  const auto shown = [error](double number) { return minus(core::estimated(number, error)); };
   std::string html = "<tr><td>" + escaped(name) + "</td><td class=\"n\">";
   html += limited ? "<span class=\"soft\">only limited</span>" : shown(value);
   if (interval) {
@@ -39,11 +38,11 @@ std::string in_unit(const std::string& name, const LevelAnalysis& data) {
 
 std::string slope_name(const NamedFit& named, const LevelAnalysis& data) {
   switch (named.fit.options.function) {
-    case terms::Function::normal:
+    case core::Function::normal:
       return in_unit("Spread, standard deviation", data);
-    case terms::Function::logistic:
+    case core::Function::logistic:
       return data.level_unit.empty() ? "Slope (no unit)" : "Slope (1/" + data.level_unit + ")";
-    case terms::Function::weibull:
+    case core::Function::weibull:
       break;
   }
   return "Slope (exponent, no unit)";
@@ -72,7 +71,7 @@ std::string fit_table(const NamedFit& named, const SessionData& session) {
           row("Share of bootstrap replicates with a worse fit (proportion)", *found.deviance_p, std::nullopt);
     html += "</table>\n";
   }
-  if (const auto text = texts::say(describe_intervals(named, session), "en"); !text.empty())
+  if (const auto text = core::say(describe_intervals(named, session), "en"); !text.empty())
     html += "<p class=\"soft\">" + escaped(text) + "</p>\n";
   return html + notes(named.fit.statements) + notes(named.intervals.statements);
 }
@@ -339,7 +338,7 @@ std::string trade_section(const Summary& summary) {
   for (const auto& entry : summary.trade.instructions) {
     for (auto statement : entry.statements) {
       if (!entry.instruction.empty())
-        statement.text = {"", "", {texts::plain(entry.instruction + ": "), statement.text}};
+        statement.text = {"", "", {core::plain(entry.instruction + ": "), statement.text}};
       html += notes({statement});
     }
   }
@@ -351,7 +350,7 @@ std::string detection_section(const Summary& summary) {
   const auto& data = summary.data;
   std::string html =
       "<h2>Sensitivity and criterion</h2>\n<table><tr><th>Condition</th><th>" +
-      escaped(data.cut != 0 ? "Distance from " + text::number(data.cut, 6) : data.level_label) +
+      escaped(data.cut != 0 ? "Distance from " + core::number(data.cut, 6) : data.level_label) +
       "</th><th>Hits</th><th>False alarms</th><th>d\u2032 (standard deviations)</th>"
       "<th>Criterion c (standard deviations)</th></tr>";
   for (const auto& entry : summary.detections) {

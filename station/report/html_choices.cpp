@@ -4,14 +4,12 @@
 
 #include <cmath>
 
-#include "station/plot/svg.hpp"
 #include "station/report/html_parts.hpp"
+#include "station/report/svg.hpp"
 
 namespace turnpoint::report {
 
 namespace {
-
-using plot::escaped;
 
 std::string quoted(const std::string& choice) { return "\u201c" + escaped(choice) + "\u201d"; }
 

@@ -4,20 +4,18 @@
 #include <set>
 #include <string>
 
-#include "station/plot/svg.hpp"
+#include "station/core/number.hpp"
 #include "station/report/figures.hpp"
 #include "station/report/html_parts.hpp"
-#include "station/text/number.hpp"
+#include "station/report/svg.hpp"
 
 namespace turnpoint::report {
 
 namespace {
 
-using plot::escaped;
-
 std::string bare(double value, const analysis::Interval& interval) {
   const auto shown = [&](double end) {
-    return text::estimated(end, text::uncertainty(value, interval.low, interval.high));
+    return core::estimated(end, core::uncertainty(value, interval.low, interval.high));
   };
   return minus(shown(interval.low)) + " to " + minus(shown(interval.high));
 }
@@ -70,7 +68,7 @@ const char* const kEstimateTitles =
 
 std::string estimate_cells(const ProcedureEstimate& estimate) {
   const auto mean =
-      estimate.sd ? text::estimated(estimate.mean, *estimate.sd) : text::number(estimate.mean, 3);
+      estimate.sd ? core::estimated(estimate.mean, *estimate.sd) : core::number(estimate.mean, 3);
   const bool level = estimate.parameter.starts_with("threshold") || estimate.parameter == "pse";
   const auto unit = estimate.unit.empty() && level ? "no unit" : estimate.unit;
   return "<td>" + escaped(estimate.procedure) + "</td><td>" + escaped(estimate.block) + "</td><td>" +
@@ -81,7 +79,7 @@ std::string estimate_cells(const ProcedureEstimate& estimate) {
 }
 
 std::string early_end(const EarlyEnd& end) {
-  return "<p>Ended early in " + escaped(end.block) + ": " + escaped(texts::say(end.why, "en")) + ".</p>\n";
+  return "<p>Ended early in " + escaped(end.block) + ": " + escaped(core::say(end.why, "en")) + ".</p>\n";
 }
 
 std::string estimate_section(const SessionData& data) {
@@ -105,7 +103,7 @@ std::string threshold_curve_section(const Summary& summary) {
             "</th><th>95 % interval</th></tr>";
     for (const auto& point : curve.points)
       html += "<tr><td class=\"n\">" + number(point.second, 4) + "</td><td class=\"n\">" +
-              minus(text::estimated(point.threshold, text::uncertainty(point.threshold, point.interval.low,
+              minus(core::estimated(point.threshold, core::uncertainty(point.threshold, point.interval.low,
                                                                        point.interval.high))) +
               "</td><td class=\"n\">" + bare(point.threshold, point.interval) + "</td></tr>";
     html += "</table>\n";

@@ -1,9 +1,9 @@
 #include <cmath>
 
-#include "station/plot/svg.hpp"
+#include "station/core/number.hpp"
 #include "station/report/figures.hpp"
 #include "station/report/html_parts.hpp"
-#include "station/text/number.hpp"
+#include "station/report/svg.hpp"
 
 namespace turnpoint::report {
 
@@ -11,7 +11,6 @@ namespace {
 
 using analysis::Estimate;
 using analysis::FingerCondition;
-using plot::escaped;
 
 struct Measure {
   const char* title;
@@ -45,10 +44,10 @@ std::string repeats_table(const std::vector<analysis::RepeatedTrials>& repeats) 
   std::string html =
       "<table><tr><th>Level</th><th>Presented</th><th>Presented again because of the movement</th></tr>";
   for (const auto& at : repeats)
-    html += "<tr><th>" + (at.level ? text::number(*at.level, 4) : std::string("none")) +
+    html += "<tr><th>" + (at.level ? core::number(*at.level, 4) : std::string("none")) +
             "</th><td class=\"n\">" + std::to_string(at.presented) + "</td><td class=\"n\">" +
             std::to_string(at.repeated) + " (" +
-            text::number(std::round(100.0 * at.repeated / at.presented), 3) + " %)</td></tr>";
+            core::number(std::round(100.0 * at.repeated / at.presented), 3) + " %)</td></tr>";
   return html +
          "</table>\n<p class=\"soft\">If some levels are repeated more often than others, the trials that "
          "count are a selection.</p>\n";

@@ -2,14 +2,13 @@
 
 #include <cmath>
 
-#include "station/plot/svg.hpp"
-#include "station/text/number.hpp"
+#include "station/core/number.hpp"
+#include "station/report/svg.hpp"
 
 namespace turnpoint::report {
 
 using analysis::Estimate;
 using analysis::Interval;
-using plot::escaped;
 
 namespace {
 
@@ -46,12 +45,12 @@ std::string minus(std::string text) {
   return escaped(text);
 }
 
-std::string number(double value, int digits) { return minus(text::number(value, digits)); }
+std::string number(double value, int digits) { return minus(core::number(value, digits)); }
 
 std::string estimated(double value, const Interval& interval) {
-  const double error = text::uncertainty(value, interval.low, interval.high);
+  const double error = core::uncertainty(value, interval.low, interval.high);
   const auto shown = [error](double number) {
-    return std::isfinite(number) ? minus(text::estimated(number, error)) : "not determined";
+    return std::isfinite(number) ? minus(core::estimated(number, error)) : "not determined";
   };
   return shown(value) + " <span class=\"soft\">[" + shown(interval.low) + ", " + shown(interval.high) +
          "]</span>";
@@ -65,12 +64,12 @@ std::string cell(const std::optional<Estimate>& estimate) {
 std::string notes(const std::vector<analysis::Statement>& statements) {
   std::string html;
   for (const auto& statement : statements)
-    html += "<p class=\"note\">" + escaped(texts::say(statement.text, "en")) + "</p>\n";
+    html += "<p class=\"note\">" + escaped(core::say(statement.text, "en")) + "</p>\n";
   return html;
 }
 
-std::string picture(const std::optional<plot::Figure>& figure) {
-  return figure ? "<figure>" + plot::render(*figure) + "</figure>\n" : "";
+std::string picture(const std::optional<Figure>& figure) {
+  return figure ? "<figure>" + report::render(*figure) + "</figure>\n" : "";
 }
 
 std::string name_of(const std::string& condition) { return condition.empty() ? "all trials" : condition; }
@@ -79,7 +78,7 @@ std::string meanings_list(const SessionData& data) {
   std::string html;
   const auto add = [&html](const LevelAnalysis& part) {
     if (part.meaning.empty()) return;
-    html += "<li>" + plot::escaped((part.name.empty() ? "" : part.name + ": ") + part.meaning) + "</li>";
+    html += "<li>" + report::escaped((part.name.empty() ? "" : part.name + ": ") + part.meaning) + "</li>";
   };
   for (const auto& part : data.parts) add(part);
   if (data.parts.empty()) add(data);

@@ -5,7 +5,7 @@
 
 #include "station/analysis/estimate.hpp"
 #include "station/analysis/trial_record.hpp"
-#include "station/plot/chart.hpp"
+#include "station/report/chart.hpp"
 #include "station/report/summary.hpp"
 
 namespace turnpoint::report {
@@ -24,7 +24,7 @@ std::string estimated(double value, const analysis::Interval& interval);
 /// A table cell with an estimate and its interval.
 std::string cell(const std::optional<analysis::Estimate>& estimate);
 std::string notes(const std::vector<analysis::Statement>& statements);
-std::string picture(const std::optional<plot::Figure>& figure);
+std::string picture(const std::optional<Figure>& figure);
 /// The name of a condition, or "all trials" if there is only one condition.
 std::string name_of(const std::string& condition);
 

@@ -1,12 +1,10 @@
-#include "station/plot/svg.hpp"
 #include "station/report/figures.hpp"
 #include "station/report/html_parts.hpp"
+#include "station/report/svg.hpp"
 
 namespace turnpoint::report {
 
 namespace {
-
-using plot::escaped;
 
 std::string level_of(const analysis::RatedDetection& entry) {
   return entry.level ? number(*entry.level, 4) : "all";
@@ -35,9 +33,9 @@ std::string criteria_table(const Summary& summary) {
 
 }  // namespace
 
-std::optional<plot::Figure> roc_figure(const Summary& summary) {
+std::optional<Figure> roc_figure(const Summary& summary) {
   if (summary.rocs.empty()) return std::nullopt;
-  plot::Figure figure;
+  Figure figure;
   figure.title = "Receiver operating characteristic";
   figure.chart_width_px = 420, figure.chart_height_px = 420;
   std::string last;
@@ -47,8 +45,8 @@ std::optional<plot::Figure> roc_figure(const Summary& summary) {
       last = entry.condition;
     }
     auto& layers = figure.charts.back().layers;
-    plot::Line line;
-    plot::Points points;
+    Line line;
+    Points points;
     line.series = points.series = static_cast<int>(layers.size() / 2);
     line.name = level_of(entry);
     for (const auto& point : entry.roc.points) {

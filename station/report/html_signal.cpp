@@ -1,15 +1,14 @@
 #include <algorithm>
 
-#include "station/plot/svg.hpp"
 #include "station/report/figures.hpp"
 #include "station/report/html_parts.hpp"
+#include "station/report/svg.hpp"
 
 namespace turnpoint::report {
 
 namespace {
 
 using analysis::SpeedAccuracyCurve;
-using plot::escaped;
 
 std::string curve_table(const Summary& summary) {
   std::string html =
@@ -70,13 +69,13 @@ std::string lag_table(const Summary& summary) {
 
 }  // namespace
 
-std::optional<plot::Figure> signal_figure(const Summary& summary) {
-  plot::Chart chart{"", {}, {}, {}};
+std::optional<Figure> signal_figure(const Summary& summary) {
+  Chart chart{"", {}, {}, {}};
   std::vector<double> times{0}, heights{0};
   int series = 0;
   for (const auto& curve : summary.curves) {
-    plot::Points points;
-    plot::Line line;
+    Points points;
+    Line line;
     points.series = line.series = series++;
     points.name = line.name = name_of(curve.condition);
     for (const auto& point : curve.points) {
@@ -97,9 +96,9 @@ std::optional<plot::Figure> signal_figure(const Summary& summary) {
     chart.layers.push_back(points);
   }
   if (times.size() < 2) return std::nullopt;
-  chart.x = plot::fitted("Time from response zero to the answer (s)", times, 0.06);
-  chart.y = plot::fitted("Sensitivity d\u2032", heights, 0.08);
-  plot::Figure figure;
+  chart.x = report::fitted("Time from response zero to the answer (s)", times, 0.06);
+  chart.y = report::fitted("Sensitivity d\u2032", heights, 0.08);
+  Figure figure;
   figure.title = "Sensitivity over time";
   figure.chart_width_px = 560;
   figure.charts.push_back(std::move(chart));

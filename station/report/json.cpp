@@ -51,7 +51,7 @@ Json fit_json(const NamedFit& named, const SessionData& data) {
   json["deviance"] = p && !posterior ? value(named.fit.deviance) : Json(nullptr);
   json["deviance_p"] = value(named.intervals.deviance_p);
   json["replicates"] = named.intervals.replicates;
-  json["intervals"] = texts::say(describe_intervals(named, data), "en");
+  json["intervals"] = core::say(describe_intervals(named, data), "en");
   json["prior"] = prior_json(named);
   json["levels"] = Json::array();  // a noise trial has no level, so its level is null
   for (const auto& point : named.fit.data)

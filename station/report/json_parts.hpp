@@ -43,13 +43,13 @@ inline Json value(const ProcedureEstimate& estimate) {
 }
 
 inline Json value(const EarlyEnd& end) {
-  return {{"block", end.block}, {"procedure", end.procedure}, {"reason", texts::say(end.why, "en")}};
+  return {{"block", end.block}, {"procedure", end.procedure}, {"reason", core::say(end.why, "en")}};
 }
 
 inline Json value(const std::vector<analysis::Statement>& statements) {
   Json list = Json::array();
   for (const auto& statement : statements)
-    list.push_back({{"code", statement.code}, {"text", texts::say(statement.text, "en")}});
+    list.push_back({{"code", statement.code}, {"text", core::say(statement.text, "en")}});
   return list;
 }
 

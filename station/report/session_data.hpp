@@ -10,10 +10,10 @@
 #include "station/analysis/psychometric_fit.hpp"
 #include "station/analysis/speed_accuracy.hpp"
 #include "station/analysis/trial_record.hpp"
+#include "station/core/texts.hpp"
 #include "station/procedure/continuation.hpp"
 #include "station/procedure/description.hpp"
 #include "station/protocol/meaning.hpp"
-#include "station/texts/texts.hpp"
 
 namespace turnpoint::report {
 
@@ -40,7 +40,7 @@ struct ProcedureEstimate {
 /// A procedure that ended although its stopping rules were not met.
 struct EarlyEnd {
   std::string block, procedure;
-  texts::Phrase why;  ///< see procedure::end_in_words()
+  core::Phrase why;  ///< see procedure::end_in_words()
 };
 
 /// The threshold along the second dimension of a procedure in one block, and the answers that it was learned
@@ -64,11 +64,11 @@ struct ThresholdCurve {
 /// A name and its text, for the head of a report.
 using Fact = std::pair<std::string, std::string>;
 /// A fact in a language that is chosen later.
-using SpokenFact = std::pair<texts::Phrase, texts::Phrase>;
+using SpokenFact = std::pair<core::Phrase, core::Phrase>;
 /// The facts as a file says them.
 inline std::vector<Fact> in_english(const std::vector<SpokenFact>& facts) {
   std::vector<Fact> said;
-  for (const auto& [name, text] : facts) said.emplace_back(texts::say(name, "en"), texts::say(text, "en"));
+  for (const auto& [name, text] : facts) said.emplace_back(core::say(name, "en"), core::say(text, "en"));
   return said;
 }
 
@@ -84,7 +84,7 @@ struct LevelAnalysis {
   std::string name;     ///< "" if the protocol has only one analysis
   std::string meaning;  ///< in words, as `turnpoint check` prints it
   Design design = Design::forced_choice;
-  terms::Function function = terms::Function::weibull;
+  core::Function function = core::Function::weibull;
   analysis::Scale scale = analysis::Scale::linear;
   std::string level_label;  ///< name and unit, for an axis: "Contrast (dB)"
   std::string level_unit;   ///< unit of the level; "" if it has none
@@ -103,7 +103,7 @@ struct LevelAnalysis {
   std::vector<std::string> conditions;
 };
 
-/// All data for a report. They come from a database (desk/report_data.cpp) or from a simulated session.
+/// All data for a report. They come from a database (view/report_data.cpp) or from a simulated session.
 struct SessionData : LevelAnalysis {
   /// The analyses, if the protocol has several; TrialRecord::part is a place in this list. What SessionData
   /// itself inherits is then that of the first one, with all conditions.

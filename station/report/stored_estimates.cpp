@@ -30,22 +30,22 @@ std::size_t place_in_block(const procedure::Spec& spec, const std::string& block
 
 /// An answer that a procedure has learned from.
 struct Learned {
-  const records::TrialRow* row;
+  const core::TrialRow* row;
   bool one;
 };
 
 /// Gives the procedure the answers of its trials in a block. Returns those from which it has learned; nothing
 /// if a procedure that continues would have presented other levels, because its earlier sessions are not
 /// known.
-std::optional<std::vector<Learned>> replay(const std::vector<records::TrialRow>& trials,
+std::optional<std::vector<Learned>> replay(const std::vector<core::TrialRow>& trials,
                                            const procedure::Spec& spec, procedure::Procedure& replayed) {
   std::vector<Learned> learned;
   for (const auto& row : trials) {
-    if (row.procedure != spec.name || row.type != terms::TrialType::experimental ||
-        row.outcome == terms::Outcome::fault || row.outcome == terms::Outcome::aborted || !replayed.next())
+    if (row.procedure != spec.name || row.type != core::TrialType::experimental ||
+        row.outcome == core::Outcome::fault || row.outcome == core::Outcome::aborted || !replayed.next())
       continue;
     if (spec.continues && replayed.next()->level != row.level) return std::nullopt;
-    if (row.outcome != terms::Outcome::answered) {
+    if (row.outcome != core::Outcome::answered) {
       replayed.record(procedure::Answer::none);
       continue;
     }
@@ -85,7 +85,7 @@ std::string unit_of_program(const std::string& parameter, const std::string& lev
 
 }  // namespace
 
-void add_estimates(const std::vector<records::BlockRecord>& blocks, const protocol::Protocol& protocol,
+void add_estimates(const std::vector<core::BlockRecord>& blocks, const protocol::Protocol& protocol,
                    std::uint64_t seed, const procedure::EarlierTrials& earlier, SessionData& data) {
   const auto counted = last_attempts(blocks);
   const auto choices = std::max<std::size_t>(2, protocol.task.choices.size());
@@ -116,11 +116,11 @@ void add_estimates(const std::vector<records::BlockRecord>& blocks, const protoc
   }
 }
 
-void add_program_estimates(const std::vector<records::BlockRecord>& blocks,
-                           const std::vector<records::EventRow>& events, const protocol::Protocol& protocol,
+void add_program_estimates(const std::vector<core::BlockRecord>& blocks,
+                           const std::vector<core::EventRow>& events, const protocol::Protocol& protocol,
                            SessionData& data) {
   // The newest event about a block counts: an interrupted session may have ended the block twice.
-  std::map<std::tuple<int, std::string, std::string>, std::pair<int, records::EstimateRow>> newest;
+  std::map<std::tuple<int, std::string, std::string>, std::pair<int, core::EstimateRow>> newest;
   for (const auto& event : events)
     for (const auto& row : event.estimates)
       newest.insert_or_assign({row.block_index, row.procedure, row.parameter}, std::pair(row.attempt, row));

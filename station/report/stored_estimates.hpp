@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "station/core/records.hpp"
 #include "station/procedure/continuation.hpp"
 #include "station/protocol/protocol.hpp"
-#include "station/records/records.hpp"
 #include "station/report/session_data.hpp"
 
 namespace turnpoint::report {
@@ -14,12 +14,12 @@ namespace turnpoint::report {
 /// Recomputes the final estimates of adaptive procedures, and which of them ended early, from the stored answers of a session, from the last
 /// attempt at each block, and adds them to `data`. `seed` is that of the session, and `earlier` are the
 /// trials of the participant's earlier sessions, for procedures that continue.
-void add_estimates(const std::vector<records::BlockRecord>& blocks, const protocol::Protocol& protocol,
+void add_estimates(const std::vector<core::BlockRecord>& blocks, const protocol::Protocol& protocol,
                    std::uint64_t seed, const procedure::EarlierTrials& earlier, SessionData& data);
 
 /// Adds the estimates that separate programs gave at the end of these blocks.
-void add_program_estimates(const std::vector<records::BlockRecord>& blocks,
-                           const std::vector<records::EventRow>& events, const protocol::Protocol& protocol,
+void add_program_estimates(const std::vector<core::BlockRecord>& blocks,
+                           const std::vector<core::EventRow>& events, const protocol::Protocol& protocol,
                            SessionData& data);
 
 /// Adds what a separate program has estimated from all trials of the session.

@@ -9,12 +9,12 @@
 #include <utility>
 
 #include "station/analysis/psychometric_posterior.hpp"
+#include "station/core/number.hpp"
 #include "station/procedure/description.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/report/stored_estimates.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::report {
 
@@ -28,7 +28,7 @@ std::optional<int> index_of(const std::optional<std::string>& id, const protocol
   return std::nullopt;
 }
 
-protocol::Factors factors_of(const records::TrialRow& row) {
+protocol::Factors factors_of(const core::TrialRow& row) {
   protocol::Factors factors;
   for (const auto& [name, value] : row.factors)
     std::visit([&factors, &key = name](const auto& v) { factors[key] = v; }, value);
@@ -36,7 +36,7 @@ protocol::Factors factors_of(const records::TrialRow& row) {
 }
 
 /// Returns the side from which a slider started.
-analysis::StartSide side_of(const records::TrialRow& row, const protocol::Protocol& protocol) {
+analysis::StartSide side_of(const core::TrialRow& row, const protocol::Protocol& protocol) {
   const auto* spec = protocol::find_procedure(protocol, row.procedure);
   if (!spec || spec->kind != procedure::Kind::adjustment || !row.level) return analysis::StartSide::none;
   const auto has = [&](const std::vector<double>& starts) {
@@ -47,13 +47,13 @@ analysis::StartSide side_of(const records::TrialRow& row, const protocol::Protoc
                                         : analysis::StartSide::none;
 }
 
-analysis::TrialRecord record_of(const records::TrialRow& row, const records::BlockStart& block,
+analysis::TrialRecord record_of(const core::TrialRow& row, const core::BlockStart& block,
                                 const protocol::Protocol& protocol) {
   analysis::TrialRecord record;
   record.trial_index = row.trial_index;
   record.block_index = block.block_index;
   record.block = block.name;
-  record.type = block.practice ? terms::TrialType::practice : row.type;
+  record.type = block.practice ? core::TrialType::practice : row.type;
   record.procedure = row.procedure;
   record.level = row.level;
   record.right_choice = index_of(row.correct_response, protocol);
@@ -62,7 +62,7 @@ analysis::TrialRecord record_of(const records::TrialRow& row, const records::Blo
   if (protocol.task.present) record.present = protocol::holds(*protocol.task.present, factors_of(row));
   if (row.response &&
       (protocol.task.kind == protocol::TaskKind::adjustment || protocol::judges(protocol.task)))
-    record.setting = text::read_number(*row.response);
+    record.setting = core::read_number(*row.response);
   record.start_side = side_of(row, protocol);
   record.confidence = row.confidence;
   record.outcome = row.outcome;
@@ -84,10 +84,10 @@ analysis::TrialRecord record_of(const records::TrialRow& row, const records::Blo
 }
 
 /// Adds what force cells measured in a trial, unless the trial is practice or was not answered.
-void add_finger(const records::TrialRow& row, const analysis::TrialRecord& trial, report::SessionData& data) {
+void add_finger(const core::TrialRow& row, const analysis::TrialRecord& trial, SessionData& data) {
   const auto& finger = row.finger;
-  if (finger.sensing.empty() || trial.type == terms::TrialType::practice ||
-      trial.outcome != terms::Outcome::answered)
+  if (finger.sensing.empty() || trial.type == core::TrialType::practice ||
+      trial.outcome != core::Outcome::answered)
     return;
   analysis::FingerTrial added;
   added.trial_index = row.trial_index;
@@ -114,11 +114,10 @@ bool nothing_asked(const protocol::Protocol& protocol, const std::string& block)
 
 /// True if the trial was presented again because the finger did not move in the way that the protocol asks
 /// for.
-bool moved_otherwise(const records::TrialRow& row) {
+bool moved_otherwise(const core::TrialRow& row) {
   const auto& sensing = row.finger.sensing;
-  return row.outcome == terms::Outcome::fault &&
-         (sensing == "strokes" || sensing == "light" || sensing == "hard" || sensing == "slow" ||
-          sensing == "fast");
+  return row.outcome == core::Outcome::fault && (sensing == "strokes" || sensing == "light" ||
+                                                 sensing == "hard" || sensing == "slow" || sensing == "fast");
 }
 
 using analysis::Range;
@@ -169,7 +168,7 @@ std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol,
   }
   if (!levels) return std::nullopt;
   // In a yes/no task only the magnitude of the level matters.
-  if (meaning.size || meaning.design == report::Design::yes_no)
+  if (meaning.size || meaning.design == Design::yes_no)
     levels = Range{0, std::max(std::fabs(levels->first), std::fabs(levels->second))};
   if (meaning.log_axis) levels->first = std::max(levels->first, levels->second * kLowestRatio);
   const auto scale = meaning.log_axis ? analysis::Scale::log10 : analysis::Scale::linear;
@@ -178,8 +177,8 @@ std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol,
 
 /// Fills in one analysis. The label of its axis follows from the factor's name: `contrast_dB` gives
 /// `Contrast` and `dB`.
-report::LevelAnalysis analysis_of(const protocol::Protocol& protocol, const protocol::Meaning& meaning) {
-  report::LevelAnalysis part;
+LevelAnalysis analysis_of(const protocol::Protocol& protocol, const protocol::Meaning& meaning) {
+  LevelAnalysis part;
   part.name = meaning.name;
   part.meaning = protocol::in_words(meaning, protocol);
   part.design = meaning.design;
@@ -187,7 +186,7 @@ report::LevelAnalysis analysis_of(const protocol::Protocol& protocol, const prot
   part.scale = meaning.log_axis ? analysis::Scale::log10 : analysis::Scale::linear;
   part.positive = meaning.rule.positive;
   part.cut = meaning.rule.cut;
-  if (protocol.task.kind == protocol::TaskKind::two_interval && meaning.design == report::Design::two_sided)
+  if (protocol.task.kind == protocol::TaskKind::two_interval && meaning.design == Design::two_sided)
     part.scenes = {protocol::scene_of(protocol.task, 0), protocol::scene_of(protocol.task, 1)};
   part.thresholds_differ = !meaning.along.empty();
   const auto words = protocol::words_of(meaning.level);
@@ -203,10 +202,10 @@ report::LevelAnalysis analysis_of(const protocol::Protocol& protocol, const prot
 }
 
 /// Fills in all analyses, and what they have in common.
-void set_analyses(const protocol::Protocol& protocol, report::SessionData& data) {
-  std::vector<report::LevelAnalysis> parts;
+void set_analyses(const protocol::Protocol& protocol, SessionData& data) {
+  std::vector<LevelAnalysis> parts;
   for (const auto& meaning : protocol.meanings) parts.push_back(analysis_of(protocol, meaning));
-  static_cast<report::LevelAnalysis&>(data) = parts.front();
+  static_cast<LevelAnalysis&>(data) = parts.front();
   if (parts.size() < 2) return;
   data.name.clear(), data.meaning.clear(), data.conditions.clear();
   for (const auto& part : parts) {
@@ -227,13 +226,13 @@ void assign(const protocol::Protocol& protocol, analysis::TrialRecord& trial) {
 
 }  // namespace
 
-std::vector<const records::BlockRecord*> last_attempts(const std::vector<records::BlockRecord>& blocks) {
-  std::map<int, const records::BlockRecord*> last;
+std::vector<const core::BlockRecord*> last_attempts(const std::vector<core::BlockRecord>& blocks) {
+  std::map<int, const core::BlockRecord*> last;
   for (const auto& block : blocks) {
     auto& entry = last[block.start.block_index];
     if (!entry || block.start.attempt >= entry->start.attempt) entry = &block;
   }
-  std::vector<const records::BlockRecord*> result;
+  std::vector<const core::BlockRecord*> result;
   for (const auto& [index, block] : last) result.push_back(block);
   return result;
 }
@@ -246,8 +245,8 @@ std::vector<analysis::Deciding> deciding_in(protocol::TaskKind kind) {
   return {};
 }
 
-void add_trials(const std::vector<records::BlockRecord>& blocks, const protocol::Protocol& protocol,
-                report::SessionData& data) {
+void add_trials(const std::vector<core::BlockRecord>& blocks, const protocol::Protocol& protocol,
+                SessionData& data) {
   const auto counted = last_attempts(blocks);
   std::map<std::optional<double>, analysis::RepeatedTrials> repeats;
   for (const auto* block : counted) {

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
+#include "station/core/records.hpp"
 #include "station/protocol/protocol.hpp"
-#include "station/records/records.hpp"
 #include "station/report/session_data.hpp"
 
 namespace turnpoint::report {
@@ -14,10 +14,10 @@ std::vector<analysis::Deciding> deciding_in(protocol::TaskKind kind);
 /// fills in the settings that determine their analysis: design, conditions, function, scale, ids of the
 /// answers, the parts of the report, and the rule that excludes response times. Used for both stored and
 /// simulated sessions.
-void add_trials(const std::vector<records::BlockRecord>& blocks, const protocol::Protocol& protocol,
-                report::SessionData& data);
+void add_trials(const std::vector<core::BlockRecord>& blocks, const protocol::Protocol& protocol,
+                SessionData& data);
 
 /// Returns the last attempt at each block. The trials of earlier attempts are not analysed.
-std::vector<const records::BlockRecord*> last_attempts(const std::vector<records::BlockRecord>& blocks);
+std::vector<const core::BlockRecord*> last_attempts(const std::vector<core::BlockRecord>& blocks);
 
 }  // namespace turnpoint::report

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "station/analysis/quantile.hpp"
-#include "station/text/number.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::report {
 
@@ -47,7 +47,7 @@ void count_trials(const SessionData& data, StudyPerson& person) {
   if (const auto catches = analysis::catch_accuracy(data.trials)) person.catch_accuracy = catches->value;
 }
 
-std::string percent(double share) { return text::number(100 * share, 3) + " %"; }
+std::string percent(double share) { return core::number(100 * share, 3) + " %"; }
 
 /// One rule of exclusion: the rule in words, and how one participant breaks it ("" if the participant does
 /// not break it).
@@ -69,8 +69,8 @@ void add_time(std::vector<StudyRule>& rules, const std::optional<double>& limit,
   if (!limit) return;
   const bool below = std::string(side) == "below";
   const bool broken = found && (below ? *found < *limit : *found > *limit);
-  rules.push_back({std::string("median response time ") + side + " " + text::number(*limit, 4) + " s",
-                   broken ? "median response time " + text::number(*found, 3) + " s" : ""});
+  rules.push_back({std::string("median response time ") + side + " " + core::number(*limit, 4) + " s",
+                   broken ? "median response time " + core::number(*found, 3) + " s" : ""});
 }
 
 std::vector<StudyRule> applied(const protocol::Exclusion& rules, const StudyPerson& person) {
@@ -118,7 +118,7 @@ void add_measures(const Summary& summary, StudyPerson& person) {
     const auto& part = analysis_of(named, data);
     // only numbers that mean the same are compared: those of one analysis
     const auto of = part.name.empty() ? "" : " of " + part.name;
-    const bool normal = named.fit.options.function == terms::Function::normal;
+    const bool normal = named.fit.options.function == core::Function::normal;
     measures.add(named.name, (part.design == Design::two_sided ? "PSE" : "threshold") + of, part.level_unit,
                  std::optional<double>(named.fit.parameters->threshold));
     if (slope_estimated(named))
@@ -178,7 +178,7 @@ void add_measures(const Summary& summary, StudyPerson& person) {
     const std::string what = data.design == Design::ratings ? "mean rating" : "geometric mean";
     for (const auto& level : judged.levels)
       measures.add(judged.condition,
-                   what + " at " + text::number(level.level, 4) + (data.level_unit.empty() ? "" : " ") +
+                   what + " at " + core::number(level.level, 4) + (data.level_unit.empty() ? "" : " ") +
                        data.level_unit,
                    "", level.mean);
   }
@@ -284,7 +284,7 @@ void add_balanced(Study& study) {
   }
   const auto scores = analysis::balanced_integration(proportions, times_s);
   if (!scores) {
-    study.statements.push_back({"no-bis", texts::phrase("statement.no_bis")});
+    study.statements.push_back({"no-bis", core::phrase("statement.no_bis")});
     return;
   }
   for (std::size_t i = 0; i < cells.size(); ++i)

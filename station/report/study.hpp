@@ -6,8 +6,8 @@
 
 #include "station/analysis/group.hpp"
 #include "station/analysis/mixed_fit.hpp"
-#include "station/plot/chart.hpp"
 #include "station/protocol/protocol.hpp"
+#include "station/report/chart.hpp"
 #include "station/report/summary.hpp"
 
 namespace turnpoint::report {
@@ -95,9 +95,9 @@ void finish_study(Study& study);
 std::string to_html(const Study& study);
 std::string to_json(const Study& study);
 
-std::optional<plot::Figure> group_curve_figure(const Study& study);
-std::optional<plot::Figure> shrinkage_figure(const Study& study);
-std::optional<plot::Figure> group_trade_figure(const Study& study);
+std::optional<Figure> group_curve_figure(const Study& study);
+std::optional<Figure> shrinkage_figure(const Study& study);
+std::optional<Figure> group_trade_figure(const Study& study);
 
 /// A table that becomes a CSV file with one header row.
 struct Table {

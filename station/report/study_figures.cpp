@@ -1,21 +1,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "station/plot/chart.hpp"
+#include "station/report/chart.hpp"
 #include "station/report/study.hpp"
 
 namespace turnpoint::report {
 
 namespace {
 
-plot::Line curve_of(const analysis::MixedOptions& options, const analysis::Psychometric& parameters,
-                    const plot::Axis& axis, int series) {
-  plot::Line line;
+Line curve_of(const analysis::MixedOptions& options, const analysis::Psychometric& parameters,
+              const Axis& axis, int series) {
+  Line line;
   line.series = series;
   for (int i = 0; i <= 80; ++i) {
     const double share = i / 80.0;
-    const double x = axis.scale == plot::AxisScale::log10 ? axis.low * std::pow(axis.high / axis.low, share)
-                                                          : axis.low + share * (axis.high - axis.low);
+    const double x = axis.scale == AxisScale::log10 ? axis.low * std::pow(axis.high / axis.low, share)
+                                                    : axis.low + share * (axis.high - axis.low);
     line.x.push_back(x);
     line.y.push_back(analysis::probability(options.function, options.scale, parameters, x));
   }
@@ -42,8 +42,8 @@ std::vector<double> levels_of(const Study& study, std::size_t part) {
 
 }  // namespace
 
-std::optional<plot::Figure> group_curve_figure(const Study& study) {
-  plot::Figure figure;
+std::optional<Figure> group_curve_figure(const Study& study) {
+  Figure figure;
   figure.title = "Psychometric functions of the participants and of the group";
   figure.columns = study.groups.size() > 1 ? 2 : 1;
   figure.chart_width_px = study.groups.size() > 1 ? 400 : 620;
@@ -53,17 +53,17 @@ std::optional<plot::Figure> group_curve_figure(const Study& study) {
     ++series;
     if (!group.result.fit || !group.result.fit->threshold) continue;
     const auto& fit = *group.result.fit;
-    plot::Chart chart;
+    Chart chart;
     chart.title = group.condition.empty() ? "all trials" : group.condition;
     const auto& part = analysis_of(group, study.settings);
-    chart.x = plot::fitted(
-        part.level_label, levels_of(study, group.part), 0.05,
-        fit.options.scale == analysis::Scale::log10 ? plot::AxisScale::log10 : plot::AxisScale::linear);
+    chart.x =
+        report::fitted(part.level_label, levels_of(study, group.part), 0.05,
+                       fit.options.scale == analysis::Scale::log10 ? AxisScale::log10 : AxisScale::linear);
     chart.y = {"Proportion " + group.positive + " (0 to 1)", -0.03, 1.03};
     if (part.design == Design::forced_choice) chart.y.low = 0.3;
     for (const auto& person : fit.persons)
       if (person.threshold)
-        chart.layers.push_back(curve_of(fit.options, person.parameters, chart.x, plot::kNeutral));
+        chart.layers.push_back(curve_of(fit.options, person.parameters, chart.x, report::kNeutral));
     auto whole = curve_of(fit.options, group_parameters(fit), chart.x, series);
     whole.name = "group";
     chart.layers.push_back(std::move(whole));
@@ -73,8 +73,8 @@ std::optional<plot::Figure> group_curve_figure(const Study& study) {
   return figure;
 }
 
-std::optional<plot::Figure> shrinkage_figure(const Study& study) {
-  plot::Figure figure;
+std::optional<Figure> shrinkage_figure(const Study& study) {
+  Figure figure;
   figure.title = "Thresholds of the participants, alone and with partial pooling";
   figure.chart_width_px = 620;
   figure.chart_height_px = 260;
@@ -82,8 +82,8 @@ std::optional<plot::Figure> shrinkage_figure(const Study& study) {
   for (const auto& group : study.groups) {
     ++series;
     if (!group.result.fit || !group.result.fit->threshold) continue;
-    plot::Points alone, pooled;
-    alone.name = "alone", alone.series = plot::kNeutral;
+    Points alone, pooled;
+    alone.name = "alone", alone.series = report::kNeutral;
     pooled.name = "partial pooling", pooled.series = series;
     std::vector<double> all;
     double number = 0;
@@ -103,12 +103,11 @@ std::optional<plot::Figure> shrinkage_figure(const Study& study) {
           }
     }
     if (all.empty()) continue;
-    plot::Chart chart;
+    Chart chart;
     chart.title = group.condition.empty() ? "all trials" : group.condition;
-    chart.x = {"Participant (number in the table below)", 0.4, number + 0.6, plot::AxisScale::linear, true};
-    chart.y = plot::fitted(analysis_of(group, study.settings).level_label, all, 0.08);
-    chart.layers.push_back(
-        plot::Rule{plot::Rule::Direction::horizontal, group.result.fit->threshold->value, "group"});
+    chart.x = {"Participant (number in the table below)", 0.4, number + 0.6, AxisScale::linear, true};
+    chart.y = report::fitted(analysis_of(group, study.settings).level_label, all, 0.08);
+    chart.layers.push_back(Rule{Rule::Direction::horizontal, group.result.fit->threshold->value, "group"});
     chart.layers.push_back(alone);
     chart.layers.push_back(pooled);
     figure.charts.push_back(std::move(chart));
@@ -117,15 +116,15 @@ std::optional<plot::Figure> shrinkage_figure(const Study& study) {
   return figure;
 }
 
-std::optional<plot::Figure> group_trade_figure(const Study& study) {
-  plot::Chart chart;
+std::optional<Figure> group_trade_figure(const Study& study) {
+  Chart chart;
   std::vector<double> times, accuracies;
   std::vector<std::string> conditions;
   for (const auto& mean : study.means)
     if (mean.measure == "proportion correct") conditions.push_back(mean.condition);
   int series = 0;
   for (const auto& condition : conditions) {
-    plot::Points points;
+    Points points;
     points.series = series++;
     points.name = conditions.size() > 1 ? condition : "";
     for (const auto& person : study.persons) {
@@ -143,10 +142,10 @@ std::optional<plot::Figure> group_trade_figure(const Study& study) {
     if (!points.x.empty()) chart.layers.push_back(std::move(points));
   }
   if (times.empty()) return std::nullopt;
-  chart.x = plot::fitted("Median response time (s)", times, 0.1);
+  chart.x = report::fitted("Median response time (s)", times, 0.1);
   const double lowest = *std::min_element(accuracies.begin(), accuracies.end());
   chart.y = {"Proportion correct (0 to 1)", std::min(0.45, lowest - 0.03), 1.03};
-  plot::Figure figure;
+  Figure figure;
   figure.title = "Speed and accuracy of each participant";
   figure.chart_width_px = 620;
   figure.chart_height_px = 330;

@@ -1,13 +1,12 @@
-#include "station/plot/svg.hpp"
+#include "station/core/number.hpp"
 #include "station/report/html_parts.hpp"
 #include "station/report/study.hpp"
-#include "station/text/number.hpp"
+#include "station/report/svg.hpp"
 
 namespace turnpoint::report {
 
 namespace {
 
-using plot::escaped;
 
 std::string with_unit(const std::string& name, const std::string& unit) {
   return escaped(unit.empty() ? name : name + " (" + unit + ")");
@@ -87,7 +86,7 @@ std::string group_section(const Study& study) {
       const auto& unit = part.level_unit;
       const bool two_sided = part.design == Design::two_sided;
       html += "<table>" + group_row(with_unit(two_sided ? "PSE" : "Threshold", unit), fit.threshold);
-      html += group_row(fit.options.function == terms::Function::normal
+      html += group_row(fit.options.function == core::Function::normal
                             ? with_unit("Spread, standard deviation", unit)
                             : "Slope",
                         fit.slope);

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "station/core/number.hpp"
 #include "station/report/study.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::report {
 
@@ -16,18 +16,18 @@ std::string csv_field(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string csv_number(double value) { return std::isfinite(value) ? text::number(value, 12) : ""; }
+std::string csv_number(double value) { return std::isfinite(value) ? core::number(value, 12) : ""; }
 std::string csv_number(const std::optional<double>& value) { return value ? csv_number(*value) : ""; }
 
 const char* yes_or_no(bool value) { return value ? "yes" : "no"; }
 
-const char* function_name(terms::Function function) {
+const char* function_name(core::Function function) {
   switch (function) {
-    case terms::Function::weibull:
+    case core::Function::weibull:
       return "weibull";
-    case terms::Function::normal:
+    case core::Function::normal:
       return "normal";
-    case terms::Function::logistic:
+    case core::Function::logistic:
       break;
   }
   return "logistic";
@@ -95,7 +95,7 @@ std::string participants_table(const Study& study) {
     for (const auto& reason : person.excluded) reasons += (reasons.empty() ? "" : "; ") + reason;
     std::string ends;
     for (const auto& [session, end] : person.early_ends)
-      ends += (ends.empty() ? "" : "; ") + session + ", " + end.block + ", " + texts::say(end.why, "en");
+      ends += (ends.empty() ? "" : "; ") + session + ", " + end.block + ", " + core::say(end.why, "en");
     csv += csv_field(person.person) + "," + csv_field(person.group) + "," +
            std::to_string(person.sessions.size()) + "," + std::to_string(person.presented) + "," +
            std::to_string(person.answered) + "," + csv_number(person.accuracy) + "," +
@@ -150,7 +150,7 @@ std::string trial_table_rows(const StudyPerson& person, const SessionData& data)
            csv_field(trial.instruction) + "," + csv_field(trial.block) + "," + csv_field(trial.procedure) +
            "," + csv_number(trial.level) + "," +
            (choice < data.choices.size() ? csv_field(data.choices[choice]) : "") + "," +
-           (trial.correct ? (*trial.correct ? "1" : "0") : "") + "," + terms::name(trial.outcome) + "," +
+           (trial.correct ? (*trial.correct ? "1" : "0") : "") + "," + core::name(trial.outcome) + "," +
            csv_number(trial.response_time_s) + "\n";
   }
   return csv;

@@ -4,11 +4,11 @@
 #include <map>
 
 #include "station/analysis/psychometric_posterior.hpp"
-#include "station/text/number.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::report {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
@@ -196,7 +196,7 @@ bool slope_estimated(const NamedFit& named) {
   return !named.fit.at_bound.slope_low && !named.fit.at_bound.slope_high;
 }
 
-texts::Phrase describe_intervals(const NamedFit& named, const SessionData& data) {
+core::Phrase describe_intervals(const NamedFit& named, const SessionData& data) {
   const auto& intervals = named.intervals;
   if (intervals.method == analysis::IntervalMethod::none) return {};
   if (intervals.method == analysis::IntervalMethod::bootstrap)
@@ -204,8 +204,8 @@ texts::Phrase describe_intervals(const NamedFit& named, const SessionData& data)
   const auto& prior = *intervals.prior;
   const auto& options = named.fit.options;
   const auto flat = analysis::flat_part(options.function, options.scale, prior);
-  const auto number = [](double value) { return plain(text::number(value, 3)); };
-  texts::Phrase parts;
+  const auto number = [](double value) { return plain(core::number(value, 3)); };
+  core::Phrase parts;
   const auto add = [&](const char* name, const char* how, double low, double high) {
     if (!parts.values.empty()) parts.values.push_back(plain("; "));
     parts.values.push_back(phrase(how, {phrase(name), number(low), number(high)}));
@@ -221,7 +221,7 @@ texts::Phrase describe_intervals(const NamedFit& named, const SessionData& data)
       flat.threshold_high);
   if (!part.level_unit.empty()) parts.values.push_back(plain(" " + part.level_unit));
   falling(prior.threshold_low, prior.threshold_high);
-  add(options.function == terms::Function::normal ? "report.spread" : "report.slope", kLogarithm,
+  add(options.function == core::Function::normal ? "report.spread" : "report.slope", kLogarithm,
       flat.slope_low, flat.slope_high);
   falling(prior.slope_low, prior.slope_high);
   add("report.lapse", kUniform, options.lapse_low, options.lapse_high);

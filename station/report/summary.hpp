@@ -69,7 +69,7 @@ std::vector<analysis::Judgements> judgements_of(const SessionData& data);
 bool slope_estimated(const NamedFit& named);
 
 /// Says in a sentence or two how the intervals of a fit were computed, and with which prior.
-texts::Phrase describe_intervals(const NamedFit& named, const SessionData& data);
+core::Phrase describe_intervals(const NamedFit& named, const SessionData& data);
 
 /// The options for analysing the speed-accuracy trade-off of these data.
 analysis::TradeOptions trade_options(const SessionData& data);

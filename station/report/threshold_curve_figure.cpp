@@ -12,13 +12,13 @@ namespace {
 constexpr double kApart = 0.014;
 
 /// One marker for all trials with the same stimulus and answer; its area shows how many they are.
-plot::Points trials_of(const ThresholdCurve& curve, bool logarithmic) {
+Points trials_of(const ThresholdCurve& curve, bool logarithmic) {
   const double apart = kApart * (curve.points.back().second - curve.points.front().second);
   std::map<std::pair<std::pair<double, double>, bool>, int> counts;
   for (const auto& trial : curve.trials)
     if (!logarithmic || trial.level > 0) ++counts[{{trial.second, trial.level}, trial.one}];
-  plot::Points points;
-  points.series = plot::kNeutral;
+  Points points;
+  points.series = report::kNeutral;
   for (const auto& [what, count] : counts) {
     points.x.push_back(what.first.first + (what.second ? -0.5 : 0.5) * apart),
         points.y.push_back(what.first.second);
@@ -28,9 +28,9 @@ plot::Points trials_of(const ThresholdCurve& curve, bool logarithmic) {
   return points;
 }
 
-plot::Chart panel_of(const ThresholdCurve& curve, const std::string& level_label) {
-  plot::Band band;
-  plot::Line line;
+Chart panel_of(const ThresholdCurve& curve, const std::string& level_label) {
+  Band band;
+  Line line;
   for (const auto& point : curve.points) {
     band.x.push_back(point.second), line.x.push_back(point.second);
     line.y.push_back(point.threshold);
@@ -40,19 +40,18 @@ plot::Chart panel_of(const ThresholdCurve& curve, const std::string& level_label
   auto seconds = line.x, levels = points.y;
   levels.insert(levels.end(), band.low.begin(), band.low.end());
   levels.insert(levels.end(), band.high.begin(), band.high.end());
-  plot::Chart panel;
+  Chart panel;
   panel.title = curve.procedure;
-  panel.x = plot::fitted(curve.label, seconds, 0.06);
-  panel.y = plot::fitted(level_label, levels, 0.08,
-                         curve.ratios ? plot::AxisScale::log10 : plot::AxisScale::linear);
+  panel.x = report::fitted(curve.label, seconds, 0.06);
+  panel.y = report::fitted(level_label, levels, 0.08, curve.ratios ? AxisScale::log10 : AxisScale::linear);
   panel.layers = {band, points, line};
   return panel;
 }
 
 }  // namespace
 
-std::optional<plot::Figure> threshold_curve_figure(const Summary& summary) {
-  plot::Figure figure;
+std::optional<Figure> threshold_curve_figure(const Summary& summary) {
+  Figure figure;
   figure.title = "Threshold along the second dimension";
   figure.chart_width_px = 620;
   figure.chart_height_px = 340;

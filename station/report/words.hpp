@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "station/texts/texts.hpp"
+#include "station/core/texts.hpp"
 
 namespace turnpoint::report {
 
@@ -11,17 +11,17 @@ namespace turnpoint::report {
 class Words {
  public:
   explicit Words(std::string language) : language_(std::move(language)) {}
-  std::string operator()(const char* key) const { return texts::text(key, language_); }
-  std::string operator()(const texts::Phrase& phrase) const { return texts::say(phrase, language_); }
+  std::string operator()(const char* key) const { return core::text(key, language_); }
+  std::string operator()(const core::Phrase& phrase) const { return core::say(phrase, language_); }
   /// The text with `value` in its place %1.
   std::string operator()(const char* key, const std::string& value) const {
-    return texts::say({key, "", {texts::plain(value)}}, language_);
+    return core::say({key, "", {core::plain(value)}}, language_);
   }
   /// The text with these values in its places %1, %2 and so on.
   std::string operator()(const char* key, std::initializer_list<std::string> values) const {
-    texts::Phrase phrase{key, "", {}};
-    for (const auto& value : values) phrase.values.push_back(texts::plain(value));
-    return texts::say(phrase, language_);
+    core::Phrase phrase{key, "", {}};
+    for (const auto& value : values) phrase.values.push_back(core::plain(value));
+    return core::say(phrase, language_);
   }
 
  private:

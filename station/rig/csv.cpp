@@ -8,7 +8,7 @@
 
 namespace turnpoint::rig {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
@@ -54,7 +54,7 @@ struct Line {
 /// Returns the lines of a table without comments and empty lines. A line that contains only separators is
 /// empty too.
 std::vector<Line> lines_of(const std::string& bytes) {
-  std::istringstream in{std::string(text::without_byte_order_mark(bytes))};
+  std::istringstream in{std::string(core::without_byte_order_mark(bytes))};
   std::vector<Line> lines;
   std::string line;
   for (int number = 1; std::getline(in, line); ++number)
@@ -66,11 +66,11 @@ std::vector<Line> lines_of(const std::string& bytes) {
 }  // namespace
 
 std::vector<std::vector<double>> read_table(const std::string& path, const std::vector<std::string>& columns,
-                                            const text::Place& needed_by, text::Findings& findings,
+                                            const core::Place& needed_by, core::Findings& findings,
                                             std::size_t least) {
   std::string bytes;
   try {
-    bytes = text::read_text_file(path);
+    bytes = core::read_text_file(path);
   } catch (const std::runtime_error& error) {
     findings.add(needed_by, phrase("cannot read %1", {plain(std::string(error.what()))}),
                  phrase("write a path relative to the rig file"));

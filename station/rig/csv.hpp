@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "station/text/reader.hpp"
+#include "station/core/reader.hpp"
 
 namespace turnpoint::rig {
 
@@ -13,7 +13,7 @@ namespace turnpoint::rig {
 /// returns the readable rows. `needed_by` is the place in the rig file that names the file. Fewer than
 /// `least` rows are a problem.
 std::vector<std::vector<double>> read_table(const std::string& path, const std::vector<std::string>& columns,
-                                            const text::Place& needed_by, text::Findings& findings,
+                                            const core::Place& needed_by, core::Findings& findings,
                                             std::size_t least = 2);
 
 }  // namespace turnpoint::rig

@@ -5,13 +5,13 @@
 
 namespace turnpoint::rig {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::TableReader;
+using core::TableReader;
 
 std::string read_uri(TableReader& reader) {
   const auto& forms = reader.words("uri");
-  const auto allowed = text::quoted_list(forms);
+  const auto allowed = core::quoted_list(forms);
   const auto uri = reader.string("uri", allowed);
   if (uri.empty()) return uri;
   for (const auto& form : forms) {
@@ -39,12 +39,12 @@ void check_gpio(TableReader& reader, const std::string& uri, const std::vector<s
     const bool known = std::find(all.begin(), all.end(), name) != all.end();
     if (!known || equals == std::string::npos || equals + 1 == part.size() || !seen.insert(name).second)
       return reader.problem("uri", phrase("\"%1\" in \"%2\" does not name a line", {plain(part), plain(uri)}),
-                            phrase("each of %1 once, as name=LINE", {text::quoted_list(all)}));
+                            phrase("each of %1 once, as name=LINE", {core::quoted_list(all)}));
   }
   for (const auto& name : needed)
     if (!seen.count(name))
       return reader.problem("uri", phrase("\"%1\" has no line \"%2\"", {plain(uri), plain(name)}),
-                            phrase("needed: %1", {text::quoted_list(needed)}));
+                            phrase("needed: %1", {core::quoted_list(needed)}));
 }
 
 namespace {
@@ -76,10 +76,10 @@ std::optional<Thermometers> read_thermometers(TableReader& file) {
 
 void read_devices(TableReader& file, Rig& rig) {
   file.require("amplifier");
-  rig.amplifier_uri =
-      read_device(file, "amplifier", {"enable"},
-                  {"fault", "stop", "heartbeat", "gate", "read_back", "active", "fault_active", "stop_active"})
-          .value_or("");
+  rig.amplifier_uri = read_device(file, "amplifier", {"enable"},
+                                  {"fault", "stop", "heartbeat", "gate", "read_back", "active",
+                                   "fault_active", "stop_active"})
+                          .value_or("");
   rig.buttons_uri =
       read_device(file, "buttons", {"left", "right"}, {"third", "active", "hold_ms", "refractory_ms"});
   rig.contact_uri = read_device(file, "contact", {"line"}, {"active", "hold_ms", "refractory_ms"});

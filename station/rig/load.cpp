@@ -3,18 +3,18 @@
 #include <filesystem>
 #include <set>
 
+#include "station/core/limits.hpp"
+#include "station/core/number.hpp"
 #include "station/rig/csv.hpp"
 #include "station/rig/devices.hpp"
 #include "station/rig/rig.hpp"
 #include "station/rig/rig_keys.hpp"
 #include "station/rig/spare_channels.hpp"
 #include "station/rig/surface.hpp"
-#include "station/terms/limits.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::rig {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
@@ -45,8 +45,8 @@ FrictionTable falling(const FrictionTable& table) {
 
 namespace {
 
-using text::Findings;
-using text::TableReader;
+using core::Findings;
+using core::TableReader;
 constexpr double pi = 3.14159265358979323846;
 
 std::string beside(const std::string& path, const std::string& file) {
@@ -69,13 +69,13 @@ void read_response(TableReader& reader, const std::string& rig_path, Transducer&
       return reader.findings().add(
           place,
           phrase("%1 has a row %2 Hz with a value that is not allowed",
-                 {plain(csv), plain(text::number(row[0]))}),
+                 {plain(csv), plain(core::number(row[0]))}),
           phrase("frequencies must be above 0 and in ascending order; um_per_full_scale must be above 0"));
     transducer.response.push_back({row[0], 1e-6 * row[1], row[2] * pi / 180});
   }
 }
 
-Transducer read_transducer(const text::Value& table, const std::string& rig_path, TableReader& file) {
+Transducer read_transducer(const core::Value& table, const std::string& rig_path, TableReader& file) {
   TableReader reader(table, titled("transducer", table), file.findings(), file.keys("transducer"));
   Transducer transducer;
   transducer.name = reader.string("name");
@@ -92,8 +92,8 @@ Transducer read_transducer(const text::Value& table, const std::string& rig_path
        transducer.high_Hz > response.back().frequency_Hz))
     reader.problem("band_kHz", phrase("the band extends beyond the measured response"),
                    phrase("it must lie within %1 to %2 kHz",
-                          {plain(text::number(1e-3 * response.front().frequency_Hz)),
-                           plain(text::number(1e-3 * response.back().frequency_Hz))}));
+                          {plain(core::number(1e-3 * response.front().frequency_Hz)),
+                           plain(core::number(1e-3 * response.back().frequency_Hz))}));
   reader.finish();
   return transducer;
 }
@@ -136,10 +136,10 @@ void read_output(TableReader& file, Rig& rig) {
     reader.problem(
         "period_frames",
         phrase("a period lasts %1 ms; the amplifier's guard would conclude that the audio thread has stopped",
-               {plain(text::number(1e3 * period_s, 3))}),
+               {plain(core::number(1e3 * period_s, 3))}),
         phrase("at most %1 ms: %2 frames",
-               {plain(text::number(1e3 * longest_period_s)),
-                plain(text::number(std::floor(longest_period_s * output.rate_Hz)))}));
+               {plain(core::number(1e3 * longest_period_s)),
+                plain(core::number(std::floor(longest_period_s * output.rate_Hz)))}));
   if (!reader.has("allow_plugin")) reader.defaulted("allow_plugin", "[]");
   output.allow_plugin = reader.maybe_strings("allow_plugin");
   reader.finish();
@@ -158,14 +158,14 @@ void check_bands(TableReader& file, const Rig& rig) {
   if (rig.output.rate_Hz <= 0) return;
   // Above 0.45 of the sampling rate the level depends on the converter's filter, which the rig file does not
   // describe.
-  const double limit_Hz = terms::kHighestShareOfRate * rig.output.rate_Hz;
+  const double limit_Hz = core::kHighestShareOfRate * rig.output.rate_Hz;
   for (const auto* table : file.tables("transducer")) {
     const auto* band = table->find("band_kHz");
     if (!band || band->value.items.size() != 2 || band->value.items[1].number * 1e3 <= limit_Hz) continue;
     file.findings().add(band->value.place,
-                        phrase("the band ends at %1 kHz", {plain(text::number(band->value.items[1].number))}),
+                        phrase("the band ends at %1 kHz", {plain(core::number(band->value.items[1].number))}),
                         phrase("it may extend at most to 0.45 of rate_Hz, which is %1 kHz",
-                               {plain(text::number(1e-3 * limit_Hz))}));
+                               {plain(core::number(1e-3 * limit_Hz))}));
   }
 }
 
@@ -179,7 +179,7 @@ void read_friction_table(TableReader& reader, const std::string& file, Rig& rig)
       return reader.findings().add(
           place,
           phrase("%1 has a row %2 um with a value that is not allowed",
-                 {plain(csv), plain(text::number(row[0]))}),
+                 {plain(csv), plain(core::number(row[0]))}),
           phrase("displacements must be in ascending order from 0; friction must be 1 at displacement 0, at "
                  "least 0.001, never increase, and end below 1"));
     table.emplace_back(1e-6 * row[0], row[1]);
@@ -187,14 +187,14 @@ void read_friction_table(TableReader& reader, const std::string& file, Rig& rig)
   if (!table.empty() && falling(table).empty())
     reader.findings().add(place,
                           phrase("%1 has a row %2 um with a value that is not allowed",
-                                 {plain(csv), plain(text::number(1e6 * table.back().first))}),
+                                 {plain(csv), plain(core::number(1e6 * table.back().first))}),
                           phrase("displacements must be in ascending order from 0; friction must be 1 at "
                                  "displacement 0, at least 0.001, never increase, and end below 1"));
   rig.friction.measured = true;
 }
 
 void read_friction(TableReader& file, Rig& rig) {
-  static const text::Value empty;
+  static const core::Value empty;
   const auto* table = file.maybe_table("friction");
   rig.friction.stated = table != nullptr;
   TableReader reader(table ? *table : empty, "friction", file.findings(), file.keys("friction"));
@@ -210,7 +210,7 @@ void read_friction(TableReader& file, Rig& rig) {
 }
 
 void read_finger(TableReader& file, Rig& rig) {
-  static const text::Value empty;
+  static const core::Value empty;
   const auto* table = file.maybe_table("finger");
   TableReader reader(table ? *table : empty, "finger", file.findings(), file.keys("finger"));
   constexpr double degree = pi / 180;
@@ -237,16 +237,15 @@ void read_limits(TableReader& file, Rig& rig) {
 }  // namespace
 
 Rig parse(const std::string& source, const std::string& path) {
-  const auto document = text::parse_toml(source, path);
+  const auto document = core::parse_toml(source, path);
   Findings findings;
   Rig rig;
-  rig.path = path, rig.source = source, rig.sha256 = text::sha256(source);
+  rig.path = path, rig.source = source, rig.sha256 = core::sha256(source);
   TableReader file(document, "", findings, rig_keys());
   file.word("format");
   rig.name = file.string("name");
   rig.reproduction = file.boolean("reproduction");
-  if (const auto* surface = file.table("surface"))
-    rig.surface = read_surface(*surface, file);
+  if (const auto* surface = file.table("surface")) rig.surface = read_surface(*surface, file);
   read_transducers(file, rig);
   read_output(file, rig);
   check_bands(file, rig);
@@ -262,6 +261,6 @@ Rig parse(const std::string& source, const std::string& path) {
   return rig;
 }
 
-Rig load(const std::string& path) { return parse(text::read_text_file(path), path); }
+Rig load(const std::string& path) { return parse(core::read_text_file(path), path); }
 
 }  // namespace turnpoint::rig

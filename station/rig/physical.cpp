@@ -62,10 +62,10 @@ physics::Surface fitted(physics::Surface surface, const SurfaceFit& fit) {
   return physics::with_fit(std::move(surface), parameters, correlations);
 }
 
-texts::Phrase said(const physics::Statement& statement, const std::string& table) {
-  std::vector<texts::Phrase> values;
-  for (const auto& value : statement.values) values.push_back(texts::plain(value));
-  return texts::phrase(table + "." + statement.code, std::move(values));
+core::Phrase said(const physics::Statement& statement, const std::string& table) {
+  std::vector<core::Phrase> values;
+  for (const auto& value : statement.values) values.push_back(core::plain(value));
+  return core::phrase(table + "." + statement.code, std::move(values));
 }
 
 }  // namespace
@@ -114,7 +114,7 @@ physics::FrictionMap friction_of(const Rig& rig) {
   return physics::FrictionMap(points);
 }
 
-texts::Phrase phrase_of(const physics::Warning& warning) { return said(warning, "physics_warning"); }
-texts::Phrase phrase_of(const physics::Refused& refused) { return said(refused.why(), "physics_refusal"); }
+core::Phrase phrase_of(const physics::Warning& warning) { return said(warning, "physics_warning"); }
+core::Phrase phrase_of(const physics::Refused& refused) { return said(refused.why(), "physics_refusal"); }
 
 }  // namespace turnpoint::rig

@@ -2,8 +2,8 @@
 #include "physics/friction.hpp"
 #include "physics/surface.hpp"
 #include "physics/warning.hpp"
+#include "station/core/texts.hpp"
 #include "station/rig/rig.hpp"
-#include "station/texts/texts.hpp"
 
 namespace turnpoint::rig {
 
@@ -13,7 +13,7 @@ physics::Surface surface_of(const Rig& rig);
 physics::FrictionMap friction_of(const Rig& rig);
 
 /// Says a warning or a refusal of the physics library in a language that is chosen later.
-texts::Phrase phrase_of(const physics::Warning& warning);
-texts::Phrase phrase_of(const physics::Refused& refused);
+core::Phrase phrase_of(const physics::Warning& warning);
+core::Phrase phrase_of(const physics::Refused& refused);
 
 }  // namespace turnpoint::rig

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "station/text/problem.hpp"
+#include "station/core/problem.hpp"
 
 namespace turnpoint::rig {
 
@@ -97,7 +97,7 @@ struct Output {
 };
 
 /// A signal for recording equipment at each onset and change, on a channel that drives no transducer. A code
-/// tells which event it is (drive/trigger_code.hpp).
+/// tells which event it is (audio/trigger_code.hpp).
 struct Marker {
   enum class Kind { pulse, tone, code };
   int channel = 1;
@@ -275,7 +275,7 @@ std::vector<std::string> unproven_transducers(const Rig& rig);
 /// such output.
 int largest_trigger_code(const Rig& rig);
 
-/// Reads and checks a rig file (format "friction-rig/1"). Throws text::BadInput with all problems at once, or
+/// Reads and checks a rig file (format "friction-rig/1"). Throws core::BadInput with all problems at once, or
 /// std::system_error if the file cannot be read.
 Rig load(const std::string& path);
 

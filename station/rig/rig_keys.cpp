@@ -5,12 +5,14 @@
 
 namespace turnpoint::rig {
 
+// The short names of this file are nobody else's.
+namespace declarations {
 namespace {
 
-using text::Key;
-using text::Keys;
-using text::Range;
-using namespace text::key;
+using core::Key;
+using core::Keys;
+using core::Range;
+using namespace core::key;
 using Ends = Range::Ends;
 
 const Range sd_mm{0, 100, Ends::closed, "mm"};
@@ -20,7 +22,8 @@ Keys taper() {
       number("half_width_mm", {0.5, 1000, Ends::closed, "mm"}, "half of the width at the wide end")
           .required()
           .only_without("profile_mm"),
-      number("slope", {0, 1, Ends::open_low}, "a straight taper: by how much the half-width falls per length"),
+      number("slope", {0, 1, Ends::open_low},
+             "a straight taper: by how much the half-width falls per length"),
       number("decay_length_mm", {1, 1e6, Ends::closed, "mm"},
              "an exponential taper: the length over which the half-width falls to 1/e"),
       list("profile_mm", {numbers("", {0, 1e6, Ends::closed, "mm"}, "").holding(2, 2)},
@@ -52,11 +55,13 @@ Keys surface() {
       number("tension_Pa", {0, 1e12, Ends::closed, "Pa"}, "tension of a membrane; 0 for a plate").required(),
       number("thickness_mm", {1e-3, 100, Ends::closed, "mm"}, "thickness").required(),
       number("length_mm", {1, 1e5, Ends::closed, "mm"}, "length, from the wide to the narrow end").required(),
-      number("quality_factor", {1, 1e9, Ends::closed, "(or inf: lossless)"}, "quality factor of the resonances")
+      number("quality_factor", {1, 1e9, Ends::closed, "(or inf: lossless)"},
+             "quality factor of the resonances")
           .or_infinite()
           .required(),
       word("edges", {"supported", "clamped"}, "how the sides are held").by_default("\"supported\""),
-      word("bending", {"auto", "on", "off"}, "whether the stiffness to bending counts").by_default("\"auto\""),
+      word("bending", {"auto", "on", "off"}, "whether the stiffness to bending counts")
+          .by_default("\"auto\""),
       word("plate_theory", {"kirchhoff", "mindlin", "elastic", "auto"}, "how a clamped plate is calculated")
           .by_default("\"kirchhoff\""),
       word("wide_end", {"left", "right"}, "where the wide end is, seen by the participant")
@@ -97,8 +102,7 @@ Keys output() {
       uri({"null:", "wav:FILE", "alsa:DEVICE"}, "where the samples go"),
       integer("rate_Hz", 8000, 1536000, "samples per second").required(),
       integer("bits", 16, 32, "bits of a sample").by_default("24"),
-      integer("period_frames", 16, 65536, "frames of a period, which lasts at most 50 ms")
-          .by_default("384"),
+      integer("period_frames", 16, 65536, "frames of a period, which lasts at most 50 ms").by_default("384"),
       integer("periods", 2, 64, "periods in the device's buffer").by_default("4"),
       number("converter_delay_ms", {0, 100, Ends::closed, "ms"},
              "time that a sample takes from the device's buffer to the analog output")
@@ -113,8 +117,8 @@ Keys marker() {
   return {
       integer("channel", 0, kLastChannel, "an output channel of its own").required(),
       word("kind", {"pulse", "tone", "code"}, "what it plays at each event").required(),
-      // The code of an answer may be sent while an interval is played. It can then overlap the interval's code,
-      // and the drive adds the amplitudes of both.
+      // The code of an answer may be sent while an interval is played. It can then overlap the interval's
+      // code, and the drive adds the amplitudes of both.
       number("amplitude", {0, 0.49, Ends::open_low}, "fraction of full scale")
           .by_default("0.45")
           .only_with("kind", {"code"}),
@@ -169,14 +173,16 @@ Keys capture() {
 
 Keys force_cells() {
   const auto name = [](const char* key, const char* help) {
-    return string(key, help).matching("^[^ \\t/,\"]+$", "a name without spaces, slashes and commas, such as \"voltage0-voltage1\"");
+    return string(key, help).matching(
+        "^[^ \\t/,\"]+$", "a name without spaces, slashes and commas, such as \"voltage0-voltage1\"");
   };
   return {
       uri({"iio:DEVICE"}, "name or label of the converter"),
       name("a", "channel of the normal cell near the wide edge, such as \"voltage0-voltage1\"").required(),
       name("b", "channel of the other normal cell").required(),
       name("lateral", "channel of the lateral cell").required(),
-      // Below 80 samples a second the contact of a finger is not seen in time; the grid has 1000 points a second.
+      // Below 80 samples a second the contact of a finger is not seen in time; the grid has 1000 points a
+      // second.
       number("rate_Hz", {80, 1000, Ends::closed, "Hz"}, "samples of each channel per second").required(),
       number("sampling_frequency", {0, 1e9, Ends::open_low}, "the driver's setting, in its own unit")
           .without_it("as the driver has it"),
@@ -194,9 +200,7 @@ Key thermometer(const char* name, const char* help) {
       .required();
 }
 
-}  // namespace
-
-const Keys& rig_keys() {
+const Keys& all() {
   const Range impedance{0, 1000, Ends::closed, "N s/m"};
   static const Keys keys{
       word("format", {"friction-rig/1"}, "the version of this format").required(),
@@ -205,8 +209,7 @@ const Keys& rig_keys() {
       table("surface", surface(), "the membrane or plate").required(),
       tables("transducer", transducer(), "one table for each drive element").required(),
       table("output", output(), "the converter that drives the surface").required(),
-      table("amplifier",
-            {uri({"sim:", "gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE"}, "its lines")},
+      table("amplifier", {uri({"sim:", "gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE"}, "its lines")},
             "the amplifier's lines")
           .required(),
       table("buttons", {uri({"sim:", "gpio:left=LINE,right=LINE"}, "their lines")}, "answer buttons"),
@@ -230,7 +233,9 @@ const Keys& rig_keys() {
       table("friction",
             {string("table_csv",
                     "measured friction: file with the columns displacement_um and relative_friction"),
-             word("model", {"load-sharing"}, "model of the friction").by_default("\"load-sharing\"").only_without("table_csv"),
+             word("model", {"load-sharing"}, "model of the friction")
+                 .by_default("\"load-sharing\"")
+                 .only_without("table_csv"),
              number("pressure_kPa", {0.01, 36, Ends::closed, "kPa"}, "pressure under the finger")
                  .by_default("5")
                  .only_without("table_csv"),
@@ -243,7 +248,8 @@ const Keys& rig_keys() {
       table("finger",
             {number("impedance_Ns_per_m", impedance, "force divided by velocity at ultrasonic frequencies")
                  .by_default("55"),
-             number("impedance_sd_Ns_per_m", impedance, "its standard deviation between people").by_default("15"),
+             number("impedance_sd_Ns_per_m", impedance, "its standard deviation between people")
+                 .by_default("15"),
              number("phase_deg", {-90, 90, Ends::closed, "degrees"},
                     "0: viscous; above 0: like a mass; below 0: like a spring")
                  .by_default("0"),
@@ -255,12 +261,19 @@ const Keys& rig_keys() {
             {number("displacement_um", {0, 1000, Ends::open_low, "um"}, "largest displacement").required(),
              number("continuous_s", {0, 3600, Ends::open_low, "s"}, "longest time without a pause")
                  .by_default("30"),
-             number("duty", {0, 1, Ends::open_low}, "largest share of the time with vibration").by_default("0.8"),
-             number("session_minutes", {0, 1440, Ends::open_low, "minutes"}, "longest session").by_default("60")},
+             number("duty", {0, 1, Ends::open_low}, "largest share of the time with vibration")
+                 .by_default("0.8"),
+             number("session_minutes", {0, 1440, Ends::open_low, "minutes"}, "longest session")
+                 .by_default("60")},
             "what the finger may be exposed to")
           .required(),
   };
   return keys;
 }
+
+}  // namespace
+}  // namespace declarations
+
+const core::Keys& rig_keys() { return declarations::all(); }
 
 }  // namespace turnpoint::rig

@@ -1,9 +1,9 @@
 #pragma once
-#include "station/text/keys.hpp"
+#include "station/core/keys.hpp"
 
 namespace turnpoint::rig {
 
 /// All keys of a rig file.
-const text::Keys& rig_keys();
+const core::Keys& rig_keys();
 
 }  // namespace turnpoint::rig

@@ -4,16 +4,16 @@
 #include <cmath>
 #include <set>
 
+#include "station/core/limits.hpp"
+#include "station/core/number.hpp"
 #include "station/rig/devices.hpp"
-#include "station/terms/limits.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::rig {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::Range;
-using text::TableReader;
+using core::Range;
+using core::TableReader;
 
 namespace {
 
@@ -31,9 +31,9 @@ void check_spare(TableReader& reader, const std::string& key, int channel, const
                    phrase("use a channel of its own"));
 }
 
-double highest_Hz(const Rig& rig) { return terms::kHighestShareOfRate * std::max(rig.output.rate_Hz, 8000); }
+double highest_Hz(const Rig& rig) { return core::kHighestShareOfRate * std::max(rig.output.rate_Hz, 8000); }
 
-Marker read_marker(const text::Value& table, const Rig& rig, TableReader& file) {
+Marker read_marker(const core::Value& table, const Rig& rig, TableReader& file) {
   TableReader reader(table, "marker", file.findings(), file.keys("marker"));
   Marker marker;
   marker.channel = reader.integer("channel");
@@ -50,7 +50,7 @@ Marker read_marker(const text::Value& table, const Rig& rig, TableReader& file) 
   return marker;
 }
 
-MaskingNoise read_noise(const text::Value& table, const Rig& rig, TableReader& file) {
+MaskingNoise read_noise(const core::Value& table, const Rig& rig, TableReader& file) {
   TableReader reader(table, "noise", file.findings(), file.keys("noise"));
   MaskingNoise noise;
   noise.channel = reader.integer("channel");
@@ -124,7 +124,7 @@ void read_marker_channel(TableReader& reader, const Rig& rig, Capture& capture) 
                    phrase("add [marker] with %1, or leave this out", {plain("kind = \"code\"")}));
 }
 
-Sync read_sync(const text::Value& table, const Rig& rig, TableReader& file) {
+Sync read_sync(const core::Value& table, const Rig& rig, TableReader& file) {
   TableReader reader(table, "sync", file.findings(), file.keys("sync"));
   Sync sync;
   sync.uri = read_uri(reader);
@@ -141,7 +141,7 @@ Sync read_sync(const text::Value& table, const Rig& rig, TableReader& file) {
   return sync;
 }
 
-Capture read_capture(const text::Value& table, const Rig& rig, TableReader& file) {
+Capture read_capture(const core::Value& table, const Rig& rig, TableReader& file) {
   TableReader reader(table, "capture", file.findings(), file.keys("capture"));
   Capture capture;
   capture.uri = read_uri(reader);
@@ -151,7 +151,7 @@ Capture read_capture(const text::Value& table, const Rig& rig, TableReader& file
     if (channel != std::floor(channel) || channel >= capture.channels || !seen.insert(channel).second)
       reader.problem(
           "pickups",
-          phrase("channel %1 is not a captured channel of its own", {plain(text::number(channel))}),
+          phrase("channel %1 is not a captured channel of its own", {plain(core::number(channel))}),
           phrase("write different whole numbers from 0 to %1", {plain(capture.channels - 1)}));
     capture.pick_ups.push_back(static_cast<int>(channel));
   }
@@ -163,7 +163,7 @@ Capture read_capture(const text::Value& table, const Rig& rig, TableReader& file
   return capture;
 }
 
-CellConverter read_converter(const text::Value& table, Rig& rig, TableReader& file) {
+CellConverter read_converter(const core::Value& table, Rig& rig, TableReader& file) {
   TableReader reader(table, "force_cells", file.findings(), file.keys("force_cells"));
   CellConverter converter;
   converter.uri = read_uri(reader);
@@ -200,8 +200,7 @@ bool has_force_cells(const Rig& rig) {
 void read_spare_channels(TableReader& file, Rig& rig) {
   if (const auto* table = file.maybe_table("marker")) rig.marker = read_marker(*table, rig, file);
   if (const auto* table = file.maybe_table("noise")) rig.noise = read_noise(*table, rig, file);
-  if (const auto* table = file.maybe_table("capture"))
-    rig.capture = read_capture(*table, rig, file);
+  if (const auto* table = file.maybe_table("capture")) rig.capture = read_capture(*table, rig, file);
   if (const auto* table = file.maybe_table("force_cells")) {
     const auto converter = read_converter(*table, rig, file);
     if (rig.capture) rig.capture->converter = converter;

@@ -1,6 +1,6 @@
 #pragma once
+#include "station/core/reader.hpp"
 #include "station/rig/rig.hpp"
-#include "station/text/reader.hpp"
 
 namespace turnpoint::rig {
 
@@ -9,6 +9,6 @@ inline constexpr int kLastChannel = 7;
 
 /// Reads [marker], [noise], [capture] and [sync], which use channels that drive no transducer. Call after the
 /// transducers and the output have been read.
-void read_spare_channels(text::TableReader& file, Rig& rig);
+void read_spare_channels(core::TableReader& file, Rig& rig);
 
 }  // namespace turnpoint::rig

@@ -5,10 +5,9 @@
 
 namespace turnpoint::rig {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
-
 
 // Handbook values for common tempers. A rig used for research should state its own values. The yield strength
 // is only used to warn about a tension that the material cannot carry. expansion_per_K and modulus_per_K are
@@ -35,7 +34,7 @@ const Material* find_material(const std::string& name) {
   return nullptr;
 }
 
-void read_material(text::TableReader& reader, Surface& surface) {
+void read_material(core::TableReader& reader, Surface& surface) {
   const auto word = reader.maybe_word("material");
   surface.material = word.value_or("");
   const auto* filled = find_material(surface.material);
@@ -59,25 +58,24 @@ void read_material(text::TableReader& reader, Surface& surface) {
     surface.poisson = reader.maybe_number("poisson");
   }
   if (filled) surface.yield_Pa = 1e6 * filled->yield_MPa;
-  if (const auto yield = reader.maybe_number("yield_MPa"))
-    surface.yield_Pa = 1e6 * *yield;
+  if (const auto yield = reader.maybe_number("yield_MPa")) surface.yield_Pa = 1e6 * *yield;
 }
 
-void read_profile(const text::Value& list, text::TableReader& reader, Taper& taper) {
+void read_profile(const core::Value& list, core::TableReader& reader, Taper& taper) {
   const auto allowed = phrase(
       "write a list of %1 pairs in mm, with x in ascending order from 0 and half-widths above 0 that never "
       "increase",
       {plain("[x, half-width]")});
-  const auto bad = [&](const text::Place& place, const texts::Phrase& what) {
+  const auto bad = [&](const core::Place& place, const core::Phrase& what) {
     reader.findings().add(place, what, allowed);
   };
-  if (list.kind != text::Value::Kind::array)
+  if (list.kind != core::Value::Kind::array)
     return bad(list.place, phrase("\"%1\" is %2", {plain("profile_mm"), describe(list)}));
   for (const auto& item : list.items) {
-    const bool pair = item.kind == text::Value::Kind::array && item.items.size() == 2;
+    const bool pair = item.kind == core::Value::Kind::array && item.items.size() == 2;
     if (!pair) return bad(item.place, phrase("a point of \"profile_mm\" is not a pair"));
     for (const auto& x : item.items)
-      if ((x.kind != text::Value::Kind::number && x.kind != text::Value::Kind::integer) ||
+      if ((x.kind != core::Value::Kind::number && x.kind != core::Value::Kind::integer) ||
           !std::isfinite(x.number))
         return bad(x.place, phrase("a point of \"profile_mm\" contains %1", {describe(x)}));
     const double x_m = 1e-3 * item.items[0].number, w_m = 1e-3 * item.items[1].number;
@@ -93,19 +91,19 @@ void read_profile(const text::Value& list, text::TableReader& reader, Taper& tap
   taper.half_width_m = taper.profile_m.front().second;
 }
 
-void check_length(const Surface& surface, text::TableReader& reader) {
+void check_length(const Surface& surface, core::TableReader& reader) {
   const auto& taper = surface.taper;
   if (taper.slope && taper.half_width_m - *taper.slope * surface.length_m < -1e-9)
     reader.problem("slope",
                    phrase("the half-width reaches 0 at %1 mm, before the end of the surface",
-                          {plain(text::number(1e3 * taper.half_width_m / *taper.slope))}),
+                          {plain(core::number(1e3 * taper.half_width_m / *taper.slope))}),
                    phrase("\"length_mm\" must be at most %1", {plain("half_width_mm / slope")}));
   if (!taper.profile_m.empty() && taper.profile_m.back().first < surface.length_m - 1e-9)
     reader.problem("profile_mm", phrase("the profile ends before the surface does"),
                    phrase("the last point must be at \"length_mm\" or beyond"));
 }
 
-void read_taper(text::TableReader& reader, Surface& surface) {
+void read_taper(core::TableReader& reader, Surface& surface) {
   auto& taper = surface.taper;
   const auto slope = reader.maybe_number("slope");
   const auto decay_mm = reader.maybe_number("decay_length_mm");
@@ -127,7 +125,7 @@ void read_taper(text::TableReader& reader, Surface& surface) {
 }
 
 /// Reads standard deviations, and the changes of the surface with temperature.
-void read_deviations(text::TableReader& reader, Surface& surface) {
+void read_deviations(core::TableReader& reader, Surface& surface) {
   const auto number = [&](const char* key) { return reader.maybe_number(key).value_or(0); };
   surface.tension_sd_Pa = number("tension_sd_Pa");
   surface.thickness_sd_m = 1e-3 * number("thickness_sd_mm");
@@ -143,7 +141,7 @@ void read_deviations(text::TableReader& reader, Surface& surface) {
                    phrase("add \"expansion_per_K\" and \"modulus_per_K\""));
 }
 
-void read_plate_theory(text::TableReader& reader, Surface& surface) {
+void read_plate_theory(core::TableReader& reader, Surface& surface) {
   const auto word = reader.word("plate_theory");
   surface.plate_theory = word == "mindlin"   ? PlateTheory::mindlin
                          : word == "elastic" ? PlateTheory::elastic
@@ -164,8 +162,8 @@ std::vector<std::string> materials() {
   return names;
 }
 
-Surface read_surface(const text::Value& table, text::TableReader& file) {
-  text::TableReader reader(table, "surface", file.findings(), file.keys("surface"));
+Surface read_surface(const core::Value& table, core::TableReader& file) {
+  core::TableReader reader(table, "surface", file.findings(), file.keys("surface"));
   Surface surface;
   read_material(reader, surface);
   surface.thickness_m = 1e-3 * reader.number("thickness_mm");
@@ -176,7 +174,7 @@ Surface read_surface(const text::Value& table, text::TableReader& file) {
   surface.wide_end = reader.word("wide_end") == "left" ? WideEnd::left : WideEnd::right;
   read_deviations(reader, surface);
   if (const auto* taper = reader.table("taper")) {
-    text::TableReader inner(*taper, "surface.taper", file.findings(), reader.keys("taper"));
+    core::TableReader inner(*taper, "surface.taper", file.findings(), reader.keys("taper"));
     read_taper(inner, surface);
   }
   reader.finish();

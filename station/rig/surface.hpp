@@ -1,10 +1,10 @@
 #pragma once
+#include "station/core/reader.hpp"
 #include "station/rig/rig.hpp"
-#include "station/text/reader.hpp"
 
 namespace turnpoint::rig {
 
 /// Reads the [surface] table with its [surface.taper].
-Surface read_surface(const text::Value& table, text::TableReader& file);
+Surface read_surface(const core::Value& table, core::TableReader& file);
 
 }  // namespace turnpoint::rig

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "station/text/number.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::scene {
 
@@ -15,14 +15,14 @@ double captured_at(double frequency_Hz, int rate_Hz) {
 std::string name(const ToneProduct& product) {
   const auto term = [](int factor, double frequency_Hz) {
     return (std::abs(factor) == 1 ? "" : fmt::format("{} x ", std::abs(factor))) +
-           text::number(frequency_Hz, 7) + " Hz";
+           core::number(frequency_Hz, 7) + " Hz";
   };
   if (product.second == 0) return term(product.first, product.first_Hz);
   const double sum_Hz = product.first * product.first_Hz + product.second * product.second_Hz;
   std::string all = term(product.first, product.first_Hz) + " - " + term(product.second, product.second_Hz) +
-                    " = " + text::number(std::abs(sum_Hz), 7) + " Hz";
+                    " = " + core::number(std::abs(sum_Hz), 7) + " Hz";
   if (std::abs(std::abs(sum_Hz) - product.captured_Hz) > 0.5)
-    all += ", captured at " + text::number(product.captured_Hz, 7) + " Hz";
+    all += ", captured at " + core::number(product.captured_Hz, 7) + " Hz";
   return all;
 }
 

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "station/terms/limits.hpp"
-#include "station/text/number.hpp"
+#include "station/core/limits.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::scene {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
@@ -65,7 +65,7 @@ Cues cues_of(const physics::Surface& surface, const std::vector<physics::Tone>& 
   for (const auto& tone : tones) {
     if (tone.amplitude_m > tones[strongest].amplitude_m)
       strongest = static_cast<std::size_t>(&tone - tones.data());
-    if (tone.frequency_Hz >= terms::kAudible_Hz) continue;
+    if (tone.frequency_Hz >= core::kAudible_Hz) continue;
     cues.pitch_Hz = cues.pitch_Hz == 0 ? tone.frequency_Hz : std::min(cues.pitch_Hz, tone.frequency_Hz);
     squares += tone.amplitude_m * tone.amplitude_m;
   }
@@ -128,8 +128,8 @@ double scale_to_friction(const physics::Surface& surface, const physics::Frictio
   double low = 0, high = 1;
   while (mean_at(high) > scene.zone->friction) {
     if (high > 64)
-      throw Unreachable(phrase("problem.zone_friction", {plain(text::number(scene.zone->friction, 4)),
-                                                         plain(text::number(mean_at(high), 4))}));
+      throw Unreachable(phrase("problem.zone_friction", {plain(core::number(scene.zone->friction, 4)),
+                                                         plain(core::number(mean_at(high), 4))}));
     low = high, high *= 2;
   }
   // Find the scale by regula falsi (Illinois variant): the mean friction falls smoothly as the scale rises,

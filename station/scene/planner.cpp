@@ -15,20 +15,20 @@
 #include "physics/planner.hpp"
 #include "physics/plate_theory.hpp"
 #include "physics/warning.hpp"
+#include "station/core/limits.hpp"
+#include "station/core/number.hpp"
 #include "station/scene/measures.hpp"
 #include "station/scene/tone_designer.hpp"
 #include "station/scene/transducer.hpp"
 #include "station/scene/under_finger.hpp"
-#include "station/terms/limits.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::scene {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
+using core::number;
 using physics::Model;
 using physics::Tone;
-using text::number;
 
 namespace {
 
@@ -201,10 +201,10 @@ void Planner::State::drive(DrivePlan& plan, const std::vector<Tone>& tones, cons
     driven.gain = info.gain;
     driven.displacement_m = info.gain * tone.amplitude_m;
     assign_transducer(rig, driven);
-    if (driven.frequency_Hz >= terms::kHighestShareOfRate * rig.output.rate_Hz)
+    if (driven.frequency_Hz >= core::kHighestShareOfRate * rig.output.rate_Hz)
       throw Unreachable(
           phrase("problem.too_high", {plain(number(driven.frequency_Hz)), plain(rig.output.rate_Hz),
-                                      plain(number(terms::kHighestShareOfRate * rig.output.rate_Hz))}));
+                                      plain(number(core::kHighestShareOfRate * rig.output.rate_Hz))}));
     plan.tones.push_back(driven);
   }
   std::stable_sort(plan.tones.begin(), plan.tones.end(),
@@ -233,8 +233,8 @@ double Planner::State::drive_under_finger_m(const Scene& scene, double frequency
 }
 
 /// Says which error bounds of the chosen model are beyond the tolerance.
-texts::Phrase beyond_tolerance(const physics::PlanChoice& choice, const physics::Tolerance& tolerance) {
-  texts::Phrase all = plain("");
+core::Phrase beyond_tolerance(const physics::PlanChoice& choice, const physics::Tolerance& tolerance) {
+  core::Phrase all = plain("");
   const auto add = [&all](const char* key, double bound, std::optional<double> limit, double unit) {
     if (!limit || bound <= *limit) return;
     if (!all.values.empty()) all.values.push_back(plain("; "));
@@ -270,8 +270,8 @@ Planner& Planner::by_theory(physics::PlateTheory theory) {
 DrivePlan Planner::plan(const Scene& scene) {
   if (state_->rig.surface.plate_theory == rig::PlateTheory::automatic) {
     const auto& rig = state_->rig;
-    const std::array band{lowest_frequency(rig, terms::kAudible_Hz),
-                          highest_frequency(rig, terms::kHighestShareOfRate * rig.output.rate_Hz)};
+    const std::array band{lowest_frequency(rig, core::kAudible_Hz),
+                          highest_frequency(rig, core::kHighestShareOfRate * rig.output.rate_Hz)};
     const auto choice = physics::choose_theory(surface(), band, scene.tolerance.boundary_m);
     DrivePlan plan = by_theory(choice.theory).plan(scene);
     plan.reason += "; " + choice.reason;

@@ -12,16 +12,16 @@
 #include "physics/planner.hpp"
 #include "physics/surface.hpp"
 #include "physics/warning.hpp"
+#include "station/core/texts.hpp"
 #include "station/rig/physical.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/cues.hpp"
 #include "station/scene/scene.hpp"
-#include "station/texts/texts.hpp"
 
 namespace turnpoint::scene {
 
 /// Thrown for a scene that this rig cannot present. The message says why, and what would be possible.
-class Unreachable : public texts::Refusal {
+class Unreachable : public core::Refusal {
  public:
   using Refusal::Refusal;
 };
@@ -51,10 +51,10 @@ struct DrivePlan {
   std::vector<DrivenTone> tones;  ///< all tones, in order of falling frequency
   physics::Model model = physics::Model::mode;
   bool inside_tolerance = true;
-  texts::Phrase beyond_tolerance;  ///< says which error bounds are too large; empty if inside_tolerance
-  double error_bound_m = 0;        ///< upper limit of the model's error in the boundary's position
-  double level_bound_dB = 0;       ///< upper limit of the model's error in the level at the last maximum
-  double amplitude_bound = 0;      ///< upper limit of the model's relative error in the amplitude
+  core::Phrase beyond_tolerance;  ///< says which error bounds are too large; empty if inside_tolerance
+  double error_bound_m = 0;       ///< upper limit of the model's error in the boundary's position
+  double level_bound_dB = 0;      ///< upper limit of the model's error in the level at the last maximum
+  double amplitude_bound = 0;     ///< upper limit of the model's relative error in the amplitude
   /// standard deviation of the boundary's position, from the standard deviations in the rig file
   double uncertainty_m = 0;
   std::string reason;                            ///< why the planner chose this model

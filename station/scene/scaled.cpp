@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "station/core/number.hpp"
 #include "station/scene/measures.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::scene {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 double mean_displacement_m(Planner& planner, const DrivePlan& plan, const Stretch& stretch) {
   const auto profile = planner.profile(plan, profile_points);
@@ -20,8 +20,8 @@ double mean_displacement_m(Planner& planner, const DrivePlan& plan, const Stretc
   if (points == 0 || stretch.to_m > planner.surface().length_m)
     throw Unreachable(
         phrase("problem.not_on_surface",
-               {plain(text::number(1e3 * stretch.from_m)), plain(text::number(1e3 * stretch.to_m)),
-                plain(text::number(1e3 * planner.surface().length_m))}));
+               {plain(core::number(1e3 * stretch.from_m)), plain(core::number(1e3 * stretch.to_m)),
+                plain(core::number(1e3 * planner.surface().length_m))}));
   return std::sqrt(sum / points);
 }
 

@@ -9,7 +9,7 @@ struct Stretch {
 };
 
 /// Returns the displacement that a plan predicts for this part of the surface (rms over the part, without a
-/// finger). Throws terms::UsageError if the part is not on the surface.
+/// finger). Throws core::UsageError if the part is not on the surface.
 double mean_displacement_m(Planner& planner, const DrivePlan& plan, const Stretch& stretch);
 
 /// Returns the plan with all amplitudes multiplied by `factor`; a factor of 0 removes the tones. Of the

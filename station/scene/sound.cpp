@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "physics/airborne.hpp"
+#include "station/core/limits.hpp"
 #include "station/scene/planner.hpp"
-#include "station/terms/limits.hpp"
 
 namespace turnpoint::scene {
 
@@ -52,7 +52,7 @@ std::optional<SoundBound> ToneLevels::bound(std::span<const physics::Tone> tones
   }
   std::optional<SoundBound> worst;
   for (const auto& [number, band] : bands) {
-    const SoundBound bound{10 * std::log10(band.power), terms::allowed_sound_dB(band.frequency_Hz),
+    const SoundBound bound{10 * std::log10(band.power), core::allowed_sound_dB(band.frequency_Hz),
                            band.frequency_Hz};
     if (!worst || bound.level_dB - bound.allowed_dB > worst->level_dB - worst->allowed_dB) worst = bound;
   }

@@ -18,7 +18,7 @@ namespace turnpoint::scene {
 /// (physics/airborne.hpp).
 struct SoundBound {
   double level_dB = 0;      ///< rms level of all tones in the band, re 20 uPa
-  double allowed_dB = 0;    ///< highest level allowed in the band, see terms::allowed_sound_dB()
+  double allowed_dB = 0;    ///< highest level allowed in the band, see core::allowed_sound_dB()
   double frequency_Hz = 0;  ///< frequency of the loudest tone in the band
 };
 

@@ -3,18 +3,18 @@
 #include <fmt/format.h>
 
 #include "physics/field.hpp"
+#include "station/core/limits.hpp"
+#include "station/core/number.hpp"
 #include "station/scene/measures.hpp"
 #include "station/scene/transducer.hpp"
-#include "station/terms/limits.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::scene {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-using text::number;
+using core::number;
 
-static_assert(terms::kAudible_Hz == physics::audible_limit_Hz);
+static_assert(core::kAudible_Hz == physics::audible_limit_Hz);
 
 /// An edge defined by a percentage, a peak or a turning point does not depend on the displacement, so one map
 /// for each edge definition is enough. The map covers the frequencies that this rig can play.
@@ -25,7 +25,7 @@ const physics::BoundaryMap& ToneDesigner::map_for(const physics::Edge& edge) {
     physics::MapOptions options;
     options.edge = edge;
     options.band = {lowest_frequency(rig, 0),
-                    highest_frequency(rig, terms::kHighestShareOfRate * rig.output.rate_Hz)};
+                    highest_frequency(rig, core::kHighestShareOfRate * rig.output.rate_Hz)};
     found = maps_.emplace(key, std::make_shared<const physics::BoundaryMap>(surface, options)).first;
   }
   return *found->second;
@@ -100,8 +100,8 @@ std::vector<WantedTone> ToneDesigner::zone(const Scene& scene, DrivePlan& plan) 
     request.friction = designed_for;
     request.tones = wanted.tones;
     request.fingertip_m = rig.friction.fingertip_m;
-    request.band.low_Hz = lowest_frequency(rig, terms::kAudible_Hz);
-    request.band.high_Hz = highest_frequency(rig, terms::kHighestShareOfRate * rig.output.rate_Hz);
+    request.band.low_Hz = lowest_frequency(rig, core::kAudible_Hz);
+    request.band.high_Hz = highest_frequency(rig, core::kHighestShareOfRate * rig.output.rate_Hz);
     found = designs_.emplace(key, physics::design_zone(surface, friction, request)).first;
   }
   auto tones = found->second.tones;

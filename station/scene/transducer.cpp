@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "station/text/number.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::scene {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
 namespace {
 
@@ -28,7 +28,7 @@ std::pair<double, double> response_at(const rig::Transducer& transducer, double 
 }  // namespace
 
 void assign_transducer(const rig::Rig& rig, DrivenTone& tone) {
-  texts::Phrase bands;
+  core::Phrase bands;
   for (const auto& transducer : rig.transducers) {
     if (tone.frequency_Hz >= transducer.low_Hz && tone.frequency_Hz <= transducer.high_Hz) {
       const auto [gain_m, phase_rad] = response_at(transducer, tone.frequency_Hz);
@@ -40,10 +40,10 @@ void assign_transducer(const rig::Rig& rig, DrivenTone& tone) {
     }
     if (!bands.values.empty()) bands.values.push_back(plain(", "));
     bands.values.push_back(
-        phrase("problem.named_band", {plain(transducer.name), plain(text::number(transducer.low_Hz / 1e3)),
-                                      plain(text::number(transducer.high_Hz / 1e3))}));
+        phrase("problem.named_band", {plain(transducer.name), plain(core::number(transducer.low_Hz / 1e3)),
+                                      plain(core::number(transducer.high_Hz / 1e3))}));
   }
-  throw Unreachable(phrase("problem.outside_bands", {plain(text::number(tone.frequency_Hz / 1e3)), bands}));
+  throw Unreachable(phrase("problem.outside_bands", {plain(core::number(tone.frequency_Hz / 1e3)), bands}));
 }
 
 double lowest_frequency(const rig::Rig& rig, double preferred_Hz) {

@@ -17,8 +17,7 @@ AlignedBlocks::AlignedBlocks(int rate_Hz, int channels, std::vector<int> inputs,
       capacity_(block_frames + 2 * high_pass_step),
       raw_(inputs_.size(), std::vector<double>(static_cast<std::size_t>(capacity_))),
       filtered_(inputs_.size(), std::vector<double>(static_cast<std::size_t>(block_frames))),
-      energies_(inputs_.size()),
-      loops_(&best_loops()) {
+      energies_(inputs_.size()) {
   for (const int input : inputs_)
     if (input < 0 || input >= channels) throw std::logic_error("sensing: no such captured channel");
   for (const auto& row : filtered_) rows_.push_back(row.data());
@@ -52,7 +51,7 @@ void AlignedBlocks::take(const CaptureBlock& block, std::int64_t at) noexcept {
   const std::int64_t count = std::min(block.frames() - at, capacity_ - filled_);
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const std::int32_t* from = block.samples.data() + at * channels_ + inputs_[i];
-    loops_->scale(from, channels_, count, raw_[i].data() + filled_);
+    loops::scale(from, channels_, count, raw_[i].data() + filled_);
   }
   filled_ += count;
   next_ += count;
@@ -66,11 +65,11 @@ const AlignedBlock& AlignedBlocks::finish() noexcept {
     const double* s = raw_[i].data() + step_;
     double* y = filtered_[i].data();
     if (step_ > 0)
-      loops_->high_pass(s, block_frames_, step_, y);
+      loops::high_pass(s, block_frames_, step_, y);
     else
       std::copy_n(s, block_frames_, y);
-    energies_[i] = loops_->energy(y, block_frames_);
-    block_.largest = std::max(block_.largest, loops_->largest(s, block_frames_));
+    energies_[i] = loops::energy(y, block_frames_);
+    block_.largest = std::max(block_.largest, loops::largest(s, block_frames_));
     block_.lost = block_.lost || std::isnan(energies_[i]);
     std::copy_n(raw_[i].end() - 2 * step_, 2 * step_, raw_[i].begin());
   }

@@ -66,7 +66,6 @@ class AlignedBlocks {
   std::vector<std::vector<double>> raw_, filtered_;
   std::vector<const double*> rows_;
   std::vector<double> energies_;
-  const SampleLoops* loops_;
   AlignedBlock block_;
 };
 

@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "station/drive/sine.hpp"
-#include "station/terms/usage_error.hpp"
+#include "station/audio/sine.hpp"
+#include "station/core/usage_error.hpp"
 
 namespace turnpoint::sensing {
 namespace {
@@ -30,16 +30,15 @@ CarrierFilter::CarrierFilter(const std::vector<double>& taps, int factor, std::u
       channels_(channels),
       stride_(stride),
       kept_(taps.size() + kSpareOutputs * static_cast<std::size_t>(factor)),
-      filled_(taps.size()),
-      loops_(&best_loops()) {
+      filled_(taps.size()) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::fill(kept_.begin(), kept_.end(), Quad{{nan, nan, nan, nan}});
   const double scale = 0x1p-30;  // 2 / 2^31: the factor 2 of the filter, and the full scale of a sample
   for (std::int64_t n = 0; n <= half_; ++n) {
     const double tap = scale * taps[static_cast<std::size_t>(half_ + n)] * (n == 0 ? 0.5 : 1);
     const std::uint64_t phase = increment * static_cast<std::uint64_t>(n);
-    const auto even = static_cast<float>(tap * drive::sine_of_phase(phase + drive::quarter_cycle));
-    const auto odd = static_cast<float>(tap * drive::sine_of_phase(phase));
+    const auto even = static_cast<float>(tap * audio::sine_of_phase(phase + audio::quarter_cycle));
+    const auto odd = static_cast<float>(tap * audio::sine_of_phase(phase));
     even_.push_back({{even, even, even, even}});
     odd_.push_back({{odd, odd, odd, odd}});
   }
@@ -70,16 +69,16 @@ void CarrierFilter::append(const std::int32_t* frames, std::int64_t count) noexc
     std::fill_n(to, count, Quad{{nan, nan, nan, nan}});
     return;
   }
-  loops_->pick_four(frames, count, channels_.data(), stride_, to->value);
+  loops::pick_four(frames, count, channels_.data(), stride_, to->value);
 }
 
 void CarrierFilter::finish(std::int64_t centre) noexcept {
   // The processor works on the sines, each a long chain of operations, while it begins with the filter.
   const std::uint64_t phase = increment_ * static_cast<std::uint64_t>(centre);
-  const double c = drive::sine_of_phase(phase + drive::quarter_cycle), s = drive::sine_of_phase(phase);
+  const double c = audio::sine_of_phase(phase + audio::quarter_cycle), s = audio::sine_of_phase(phase);
   const Quad* middle = kept_.data() + filled_ - 1 - half_;
   Quad re, im;
-  loops_->carrier(middle->value, half_, even_.front().value, odd_.front().value, re.value, im.value);
+  loops::carrier(middle->value, half_, even_.front().value, odd_.front().value, re.value, im.value);
   for (std::size_t i = 0; i < inputs; ++i) {
     const double real = re.value[i], imaginary = -im.value[i];
     output_[i] = {real * c + imaginary * s, imaginary * c - real * s};
@@ -113,8 +112,7 @@ Decimator::Decimator(const std::vector<double>& taps, int factor)
       kept_(taps.size() + kSpareSamples),
       filled_(taps.size()),
       half_(static_cast<std::int64_t>(taps.size() / 2)),
-      factor_(factor),
-      loops_(&best_loops()) {
+      factor_(factor) {
   half_taps_.front() /= 2;  // the loop adds the sample in the middle twice
   for (Lanes& sample : kept_) sample.fill(std::numeric_limits<double>::quiet_NaN());
 }
@@ -130,7 +128,7 @@ bool Decimator::push(std::int64_t index, const Lanes& sample) noexcept {
   if (centre % factor_ != 0) return false;
   output_index_ = centre / factor_;
   const Lanes& middle = kept_[filled_ - 1 - static_cast<std::size_t>(half_)];
-  loops_->eight(middle.data(), half_, half_taps_.data(), output_.data());
+  loops::eight(middle.data(), half_, half_taps_.data(), output_.data());
   return true;
 }
 
@@ -147,7 +145,7 @@ double pass_Hz(Band band) { return band == Band::force ? 400 : 1000; }
 double stop_Hz(Band band) { return band == Band::force ? 600 : 2000; }
 
 const BridgeOptions& checked(const BridgeOptions& options) {
-  const auto fail = [](const std::string& what) { throw terms::UsageError("strain-gauge bridges: " + what); };
+  const auto fail = [](const std::string& what) { throw core::UsageError("strain-gauge bridges: " + what); };
   if (options.rate_Hz < 2 * middle_rate_Hz || options.rate_Hz % middle_rate_Hz != 0)
     fail(fmt::format("rate {} Hz is not a multiple of {} Hz", options.rate_Hz, middle_rate_Hz));
   if (!(options.carrier_Hz > 2 * stop_Hz(options.band) && options.carrier_Hz < 0.45 * options.rate_Hz))
@@ -173,7 +171,7 @@ BridgeDemodulator::BridgeDemodulator(const BridgeOptions& options)
       // The first stage may let signals alias, but only to frequencies that the second stage stops.
       first_(low_pass(pass_Hz(options.band), middle_rate_Hz - stop_Hz(options.band), options.rate_Hz,
                       attenuation_dB),
-             options.rate_Hz / middle_rate_Hz, drive::phase_increment(options.carrier_Hz, options.rate_Hz),
+             options.rate_Hz / middle_rate_Hz, audio::phase_increment(options.carrier_Hz, options.rate_Hz),
              {options.reference, options.bridges[0], options.bridges[1], options.bridges[2]},
              options.channels),
       second_(low_pass(pass_Hz(options.band), stop_Hz(options.band), middle_rate_Hz, attenuation_dB),

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "station/core/limits.hpp"
 #include "station/sensing/capture_block.hpp"
 #include "station/sensing/sample_loops.hpp"
-#include "station/terms/limits.hpp"
 
 namespace turnpoint::sensing {
 
@@ -52,7 +52,6 @@ class CarrierFilter {
   std::vector<Quad> even_, odd_;  ///< filter taps times cosine (even_) or sine (odd_) of the carrier
   std::vector<Quad> kept_;        ///< the most recent frames, the newest last
   std::size_t filled_ = 0;
-  const SampleLoops* loops_;
   bool ready_ = false;
   std::int64_t output_index_ = 0;
   std::array<std::complex<double>, inputs> output_{};
@@ -85,7 +84,6 @@ class Decimator {
   std::vector<Lanes> kept_;        ///< the most recent samples, the newest last
   std::size_t filled_;
   std::int64_t half_, factor_, output_index_ = 0;
-  const SampleLoops* loops_;
   Lanes output_{};
 };
 
@@ -102,7 +100,7 @@ inline constexpr std::size_t bridge_count = 3;
 /// a and b below the surface, and the lateral cell.
 struct BridgeOptions {
   int rate_Hz = 192000;  ///< sampling rate; must be a multiple of 8000
-  double carrier_Hz = terms::kForceCarrier_Hz;
+  double carrier_Hz = core::kForceCarrier_Hz;
   Band band = Band::force;
   int channels = 4;   ///< number of channels in a captured frame
   int reference = 0;  ///< captured channel of the excitation itself
@@ -163,7 +161,7 @@ double bridge_rotation_rad(const BridgePoint& without, const BridgePoint& with, 
 /// the result to points_per_second(). The division cancels gain and drift of converters, buffer and
 /// excitation. The result does not depend on how the frames are divided into blocks. Point k is complete once
 /// frames 17 ms (wide: 4 ms) beyond it have arrived. Not thread-safe; allocates only in the constructor,
-/// which throws terms::UsageError for impossible options.
+/// which throws core::UsageError for impossible options.
 class BridgeDemodulator {
  public:
   explicit BridgeDemodulator(const BridgeOptions& options);

@@ -6,8 +6,8 @@
 #include <set>
 #include <utility>
 
-#include "station/analysis/least_squares.hpp"
-#include "station/terms/usage_error.hpp"
+#include "station/core/least_squares.hpp"
+#include "station/core/usage_error.hpp"
 
 namespace turnpoint::sensing {
 namespace {
@@ -63,7 +63,7 @@ Fit fit(const std::vector<DeadWeight>& weights, const Loads& loads, const Loads&
       values.push_back(loads[i][k]);
       importance.push_back(1 / (sd[i][k] * sd[i][k]));
     }
-    const auto column = analysis::least_squares(rows, values, importance);
+    const auto column = core::least_squares(rows, values, importance);
     for (std::size_t i = 0; i < bridge_count; ++i) result.matrix[i][k] = column.value[i];
     result.misfit[k] = column.sd[0] / column.known_sd[0];
   }
@@ -118,7 +118,7 @@ ForceSd ForceCalibration::sd(const Readings& readings) const {
 
 WeightFit fit_weights(const std::vector<DeadWeight>& weights, const WeightErrors& errors) {
   if (weights.size() <= bridge_count)
-    throw terms::UsageError("the calibration of the forces needs more than three weights");
+    throw core::UsageError("the calibration of the forces needs more than three weights");
   Loads loads;
   for (const auto& weight : weights) loads.push_back(load(weight));
   const Loads sd = load_sd(weights, errors);
@@ -156,7 +156,7 @@ std::vector<double> deviations(const std::vector<DeadWeight>& weights, const Wei
       for (std::size_t k = 0; k < 3; ++k)
         largest =
             std::max(largest, std::abs(measured[k] - stated[k]) / (sd[k] * std::max(1.0, without.misfit[k])));
-    } catch (const terms::UsageError&) {
+    } catch (const core::UsageError&) {
       largest = 0;
     }
     all.push_back(largest);

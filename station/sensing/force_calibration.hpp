@@ -80,7 +80,7 @@ struct WeightFit {
 /// Fits the matrix K in [normal, lateral, normal x position] = [a, b, lateral] K by weighted least squares.
 /// Lateral loads at two places or more are needed: the finger pulls at a height h above the cells' pivots, so
 /// a lateral force T with the normal force N moves the centre of pressure by h T / N. Throws
-/// terms::UsageError if the weights do not determine the fit.
+/// core::UsageError if the weights do not determine the fit.
 WeightFit fit_weights(const std::vector<DeadWeight>& weights, const WeightErrors& errors = {});
 
 /// For each weight: how far its load is from what a fit to the other weights gives. The figure is the largest

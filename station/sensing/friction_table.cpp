@@ -6,8 +6,8 @@
 #include <cmath>
 #include <map>
 
-#include "station/random/draws.hpp"
-#include "station/terms/usage_error.hpp"
+#include "station/core/draws.hpp"
+#include "station/core/usage_error.hpp"
 
 namespace turnpoint::sensing {
 namespace {
@@ -63,7 +63,7 @@ std::optional<double> half_displacement_m(const std::vector<double>& displacemen
 /// One bootstrap replicate: draws the strokes of each level with replacement, and returns the means of the
 /// levels. Deviations are enlarged by sqrt(n / (n - 1)), because deviations from the mean of the n strokes
 /// themselves are too small.
-std::vector<double> redrawn(const ByLevel& by_level, const std::vector<double>& means, random::Draws& draws) {
+std::vector<double> redrawn(const ByLevel& by_level, const std::vector<double>& means, core::Draws& draws) {
   std::vector<double> result;
   for (const auto& [displacement_m, values] : by_level) {
     const double mean = means[result.size()], n = static_cast<double>(values.size());
@@ -109,12 +109,12 @@ std::vector<physics::FrictionPoint> FrictionTable::points() const {
 FrictionTable friction_table(std::span<const TableStroke> strokes, std::uint64_t seed, int replicates) {
   FrictionTable table;
   const ByLevel levels = by_level(strokes, table.unused);
-  if (levels.empty()) throw terms::UsageError("friction table: no strokes over the vibrating surface");
+  if (levels.empty()) throw core::UsageError("friction table: no strokes over the vibrating surface");
   std::vector<double> displacements_m, means, counts;
   for (const auto& [displacement_m, values] : levels) {
     if (values.size() < fewest_strokes_of_level)
-      throw terms::UsageError(fmt::format("friction table: {} usable strokes at {:.3g} um, {} are needed",
-                                          values.size(), 1e6 * displacement_m, fewest_strokes_of_level));
+      throw core::UsageError(fmt::format("friction table: {} usable strokes at {:.3g} um, {} are needed",
+                                         values.size(), 1e6 * displacement_m, fewest_strokes_of_level));
     displacements_m.push_back(displacement_m);
     means.push_back(analysis::mean(values));
     counts.push_back(static_cast<double>(values.size()));
@@ -124,7 +124,7 @@ FrictionTable friction_table(std::span<const TableStroke> strokes, std::uint64_t
 
   std::vector<std::vector<double>> redrawn_levels(means.size());
   std::vector<double> halves;
-  random::Draws draws({seed, random::Stream::bootstrap});
+  core::Draws draws({seed, core::Stream::bootstrap});
   for (int i = 0; i < replicates; ++i) {
     const auto ln_friction = falling(redrawn(levels, means, draws), counts);
     for (std::size_t k = 0; k < means.size(); ++k) redrawn_levels[k].push_back(ln_friction[k]);

@@ -45,7 +45,7 @@ struct FrictionTable {
 /// The means of the levels go through a monotone regression (pool adjacent violators) and are joined by
 /// monotone cubics. (A curve with few parameters would be wrong where friction no longer falls.) Standard
 /// errors and intervals come from a bootstrap over the strokes of each level, widened to allow for the small
-/// number of strokes. Throws terms::UsageError if a level has fewer than three usable strokes or if there are
+/// number of strokes. Throws core::UsageError if a level has fewer than three usable strokes or if there are
 /// no levels.
 FrictionTable friction_table(std::span<const TableStroke> strokes, std::uint64_t seed, int replicates = 1000);
 

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <unsupported/Eigen/FFT>
 
-#include "station/drive/burst.hpp"
-#include "station/drive/sine.hpp"
+#include "station/audio/burst.hpp"
+#include "station/audio/sine.hpp"
 #include "station/sensing/planned_lines.hpp"
 
 namespace turnpoint::sensing {
@@ -23,7 +23,7 @@ constexpr double kLead_s = 0.02;
 constexpr double kMargin_Hz = 6000, kPerGlide = 500;
 
 Amplitude turned(std::uint64_t phase) noexcept {
-  return {drive::sine_of_phase(phase + drive::quarter_cycle), drive::sine_of_phase(phase)};
+  return {audio::sine_of_phase(phase + audio::quarter_cycle), audio::sine_of_phase(phase)};
 }
 
 const Transfer* calibration_of(const PickUp& pick_up, int channel) {
@@ -34,11 +34,11 @@ const Transfer* calibration_of(const PickUp& pick_up, int channel) {
 
 }  // namespace
 
-drive::Partial tone_at(const GlidingTone& tone, std::int64_t frames, std::int64_t frame) noexcept {
-  drive::Partial partial = tone.partial;
+audio::Partial tone_at(const GlidingTone& tone, std::int64_t frames, std::int64_t frame) noexcept {
+  audio::Partial partial = tone.partial;
   const std::int64_t gliding = std::clamp<std::int64_t>(frame, 0, frames);
-  partial = drive::advanced(partial, static_cast<std::uint64_t>(gliding));
-  partial.amplitude += partial.amplitude_change * (frame < 0 ? 0 : drive::ramp_at(frame, frames));
+  partial = audio::advanced(partial, static_cast<std::uint64_t>(gliding));
+  partial.amplitude += partial.amplitude_change * (frame < 0 ? 0 : audio::ramp_at(frame, frames));
   if (frame == gliding) return partial;
   partial.phase += partial.increment * static_cast<std::uint64_t>(frame - gliding);
   partial.curvature = 0;
@@ -64,7 +64,7 @@ GlideResponse::GlideResponse(const Glide& glide, const GlidingTone& tone, const 
   std::vector<Amplitude> turn(values_.size());
   for (std::size_t k = 0; k < values_.size(); ++k) {
     const std::int64_t frame = static_cast<std::int64_t>(k) * step_ - lead_;
-    const drive::Partial now = tone_at(tone, glide.frames, frame);
+    const audio::Partial now = tone_at(tone, glide.frames, frame);
     turn[k] = turned(now.phase - middle * static_cast<std::uint64_t>(frame));
     values_[k] = now.amplitude * turn[k];
   }
@@ -163,7 +163,7 @@ void GlideProof::fill_waves(const AlignedBlock& block) noexcept {
   };
   for (std::size_t l = 0; l < lines_.size(); ++l) {
     const GlidingTone& tone = lines_[l].tones.front();
-    drive::Partial now = tone_at(tone, glide_.frames, first);
+    audio::Partial now = tone_at(tone, glide_.frames, first);
     const double gain = gain_of(now.increment);
     const double rise = gain_of(tone_at(tone, glide_.frames, first + block_frames_).increment) - gain;
     auto* wave = waves_.data() + l * static_cast<std::size_t>(block_frames_);
@@ -172,8 +172,8 @@ void GlideProof::fill_waves(const AlignedBlock& block) noexcept {
           static_cast<std::uint64_t>(std::llround(static_cast<double>(now.increment) * delay_fraction_));
       const std::uint64_t phase = now.phase - of_fraction;
       wave[n] = (gain + rise * n / block_frames_) *
-                std::complex<double>(drive::sine_of_phase(phase + drive::quarter_cycle),
-                                     drive::sine_of_phase(phase));
+                std::complex<double>(audio::sine_of_phase(phase + audio::quarter_cycle),
+                                     audio::sine_of_phase(phase));
       now.phase += now.increment;
       if (first + n >= 0 && first + n < glide_.frames) now.increment += tone.partial.curvature;
     }

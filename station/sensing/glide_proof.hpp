@@ -13,7 +13,7 @@ namespace turnpoint::sensing {
 
 /// The tone at a frame counted from the first frame of its glide of `frames` frames. Before and after the
 /// glide its frequency is constant.
-drive::Partial tone_at(const GlidingTone& tone, std::int64_t frames, std::int64_t frame) noexcept;
+audio::Partial tone_at(const GlidingTone& tone, std::int64_t frames, std::int64_t frame) noexcept;
 
 /// What a pick-up captures of a tone that glides. A tone that passes a resonance in a few milliseconds is
 /// neither as strong nor as late as a steady tone of the same frequency. So the tone is filtered with the

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "station/drive/sine.hpp"
+#include "station/audio/sine.hpp"
 #include "station/sensing/aligned_blocks.hpp"
 #include "station/sensing/glide_proof.hpp"
 #include "station/sensing/joint_fit.hpp"
@@ -68,7 +68,7 @@ struct IntervalProof::State {
   void add_stretch(Stretch plan);
   void add_glide(const Glide& glide, std::int64_t end_frame);
   void size_buffers();
-  void change(const drive::Change& change, const drive::Format& format);
+  void change(const audio::Change& change, const audio::Format& format);
   void end_stretch_at(std::int64_t frame);
   void end_windows_at(std::int64_t end) noexcept;
   std::int64_t block_at_or_after(std::int64_t playback_frame) const;
@@ -199,7 +199,7 @@ IntervalProof::State::State(const IntervalPlan& plan)
       blocks_(plan.rate_Hz, plan.capture_channels, inputs_of(plan), shape_.block_frames,
               high_pass_step(plan.rate_Hz)),
       tones_(plan.burst, plan.rate_Hz),
-      fit_(drive::max_tones) {
+      fit_(audio::max_tones) {
   begin_ =
       static_cast<std::int64_t>(std::floor(static_cast<double>(plan.burst.start_frame) + plan.delay_frames));
   end_ = begin_ + 1 + plan.burst.length_frames;
@@ -209,10 +209,10 @@ IntervalProof::State::State(const IntervalPlan& plan)
   if (!stretches_.empty()) main_ = main_pick_up(stretches_.front().lines, pick_ups());
   add_onset();
   add_offset();
-  products_.resize(pick_ups() * drive::max_tones);
+  products_.resize(pick_ups() * audio::max_tones);
   energy_.resize(pick_ups());
-  phases_.resize(drive::max_tones);
-  increments_.resize(drive::max_tones);
+  phases_.resize(audio::max_tones);
+  increments_.resize(audio::max_tones);
   size_buffers();
 }
 
@@ -229,7 +229,7 @@ void IntervalProof::State::size_buffers() {
 
 // Adds the stretches of the burst, and the glides between them.
 void IntervalProof::State::add_parts() {
-  const drive::PreparedBurst& burst = plan_.burst;
+  const audio::PreparedBurst& burst = plan_.burst;
   const std::int64_t start = burst.start_frame, risen = start + burst.ramp.frames,
                      falls = start + burst.length_frames - burst.ramp.frames;
   for (int c = 0; c <= burst.change_count; ++c) {
@@ -261,7 +261,7 @@ void IntervalProof::State::add_stretch(Stretch plan) {
 // Measures a glide until the plate has settled, if the burst does not change again before. What lies in the
 // ramps of the burst is left out.
 void IntervalProof::State::add_glide(const Glide& glide, std::int64_t end_frame) {
-  const drive::PreparedBurst& burst = plan_.burst;
+  const audio::PreparedBurst& burst = plan_.burst;
   const std::int64_t first = std::max(glide.first_frame, burst.start_frame + burst.ramp.frames);
   const std::int64_t end = std::min(glide.first_frame + glide.frames + frames_of(kSettle_s), end_frame);
   const std::int64_t block = block_at_or_before(first), end_block = block_at_or_after(end);
@@ -484,7 +484,7 @@ void IntervalProof::push(const CaptureBlock& block) {
 
 void IntervalProof::stopped(std::int64_t frame) noexcept { state_->end_at(frame); }
 
-void IntervalProof::changed(const drive::Change& change, const drive::Format& format) {
+void IntervalProof::changed(const audio::Change& change, const audio::Format& format) {
   state_->change(change, format);
 }
 
@@ -495,8 +495,8 @@ const IntervalResult& IntervalProof::result(std::optional<bool> in_contact) {
   return state_->result_;
 }
 
-using terms::Proof;
-using terms::ProofCause;
+using core::Proof;
+using core::ProofCause;
 
 namespace {
 
@@ -624,10 +624,10 @@ std::span<const double> IntervalProof::State::unexplained() {
   const auto& lines = stretches_[window.stretch].lines;
   for (std::size_t l = 0; l < lines.size(); ++l) {
     const auto a = window.amplitude[main_ * lines.size() + l] * lines[l].gain;
-    std::uint64_t phase = window.phase[l] + drive::phase_of_angle(std::arg(a));
+    std::uint64_t phase = window.phase[l] + audio::phase_of_angle(std::arg(a));
     const double size = std::abs(a);
     for (double& sample : rest) {
-      sample -= size * drive::sine_of_phase(phase);
+      sample -= size * audio::sine_of_phase(phase);
       phase += lines[l].increment;
     }
   }
@@ -710,7 +710,7 @@ void IntervalProof::State::judge_tones(const Limits& level) {
     if (tone.ratio_dB > limits.dead_dB)
       findings_.push_back({ProofCause::phase, judged(std::fabs(tone.phase_error_deg), limits.phase_deg)});
   }
-  for (int channel = 0; channel < drive::max_channels; ++channel) {
+  for (int channel = 0; channel < audio::max_channels; ++channel) {
     int tones = 0, halved = 0;
     for (const ToneProof& tone : result_.tones) {
       if (!tone.seen || tone.drive_channel != channel) continue;
@@ -783,7 +783,7 @@ void IntervalProof::State::conclude(std::optional<bool> in_contact) {
 
 // The last stretch was expected to last until the end of the burst. It ends here instead, and a glide and
 // another stretch follow.
-void IntervalProof::State::change(const drive::Change& change, const drive::Format& format) {
+void IntervalProof::State::change(const audio::Change& change, const audio::Format& format) {
   ++live_changes_;
   auto& burst = plan_.burst;
   const std::int64_t frame = burst.start_frame + change.at_frame;
@@ -796,7 +796,7 @@ void IntervalProof::State::change(const drive::Change& change, const drive::Form
   for (Measured& stretch : stretches_)
     if (block_at_or_after(stretch.plan.end_frame) + shape_.window_frames < next_) stretch.sums.reset();
   end_stretch_at(frame);
-  const auto prepared = drive::prepare_change(change, burst, format);
+  const auto prepared = audio::prepare_change(change, burst, format);
   add_glide(tones_.change(prepared), falls);
   const std::int64_t first = std::max(tones_.origin_frame(), burst.start_frame + burst.ramp.frames);
   if (first < falls) add_stretch(tones_.stretch(first, falls));

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "station/drive/prepared_burst.hpp"
+#include "station/audio/prepared_burst.hpp"
 #include "station/sensing/capture_block.hpp"
 #include "station/sensing/interval_result.hpp"
 #include "station/sensing/pick_up.hpp"
@@ -13,7 +13,7 @@ namespace turnpoint::sensing {
 
 /// What was planned for an interval. The measurement (proof) compares the captured samples with it.
 struct IntervalPlan {
-  drive::PreparedBurst burst;  ///< the planned burst; its start is an absolute frame
+  audio::PreparedBurst burst;  ///< the planned burst; its start is an absolute frame
   int rate_Hz = 192000;
   int capture_channels = 6;
   std::vector<PickUp> pick_ups;  ///< the calibrated pick-ups; at least one
@@ -53,7 +53,7 @@ class IntervalProof {
   /// Call this when a change is sent while the burst plays. `format` is that of the output. The proof needs
   /// to know of a change before its captured frames arrive. If it does not, or if a change begins before the
   /// last one has ended, the interval stays unproven.
-  void changed(const drive::Change& change, const drive::Format& format);
+  void changed(const audio::Change& change, const audio::Format& format);
 
   /// True once all needed frames have been received.
   bool complete() const noexcept;

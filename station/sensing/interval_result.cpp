@@ -4,8 +4,8 @@
 
 namespace turnpoint::sensing {
 
-using terms::Proof;
-using terms::ProofCause;
+using core::Proof;
+using core::ProofCause;
 
 namespace {
 

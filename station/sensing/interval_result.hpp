@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "station/core/proof.hpp"
 #include "station/sensing/products.hpp"
-#include "station/terms/proof.hpp"
 
 namespace turnpoint::sensing {
 
@@ -72,8 +72,8 @@ inline constexpr double kNothing_dB = -200;
 /// Vibration between intervals, as measured by a pick-up.
 struct SilenceResult {
   /// `unproven` if the burst has no steady tones to compare with, `lost` if fewer than 50 ms were captured
-  terms::Proof verdict = terms::Proof::unproven;
-  terms::ProofCause cause = terms::ProofCause::none;
+  core::Proof verdict = core::Proof::unproven;
+  core::ProofCause cause = core::ProofCause::none;
   /// The strongest tone of any frequency in the loudest 50 ms, and the rms of everything in them. Both are
   /// relative to the burst, after the high-pass filter. The pick-up's own noise counts only for the rms.
   double level_dB = kNothing_dB, rms_dB = kNothing_dB;
@@ -83,8 +83,8 @@ struct SilenceResult {
 /// What the pick-ups measured of one interval.
 struct IntervalResult {
   /// `unproven` if there is a tone that no pick-up can judge, or if the interval is too short to measure.
-  terms::Proof verdict = terms::Proof::unproven;
-  terms::ProofCause cause = terms::ProofCause::none;
+  core::Proof verdict = core::Proof::unproven;
+  core::ProofCause cause = core::ProofCause::none;
   std::vector<ToneProof> tones;
   std::vector<GlideToneProof> glides;
   int live_changes = 0;  ///< number of changes that were sent while the burst played
@@ -107,15 +107,15 @@ struct IntervalResult {
 
 /// A verdict on one measured quantity, and the cause that the quantity points to.
 struct Finding {
-  terms::ProofCause cause = terms::ProofCause::none;
-  terms::Proof verdict = terms::Proof::ok;
+  core::ProofCause cause = core::ProofCause::none;
+  core::Proof verdict = core::Proof::ok;
 };
 
 /// Returns the verdict on a deviation of this size.
-terms::Proof judged(double value, const Limits& limits);
+core::Proof judged(double value, const Limits& limits);
 
 /// Returns the most severe verdict (from best to worst: ok, flagged, unproven, lost, refused, stopped) and
-/// its cause. If there are several causes, the first in the order of terms::ProofCause is taken, because it
+/// its cause. If there are several causes, the first in the order of core::ProofCause is taken, because it
 /// explains the others. A vibration that begins late, for example, also has wrong phases and a residual.
 Finding concluded(const std::vector<Finding>& findings);
 

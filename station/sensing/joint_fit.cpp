@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "station/drive/sine.hpp"
+#include "station/audio/sine.hpp"
 
 namespace turnpoint::sensing {
 

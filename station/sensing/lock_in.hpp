@@ -51,7 +51,7 @@ struct LockInShape {
 
 /// A lock-in amplifier: computes the complex amplitude of each played tone in each input, z = 2 LPF{ s i
 /// e^(-i phase) }, where s are the samples and LPF is a low-pass filter. A signal A sin(phase + theta) gives
-/// A e^(i theta). The phase is that of the playback (drive::Partial), also while a tone glides.
+/// A e^(i theta). The phase is that of the playback (audio::Partial), also while a tone glides.
 ///
 /// The low-pass filter is a Hann window: linear phase and an odd number of taps (1919 at 192 kHz). A point
 /// belongs to the centre of its window, so the filter causes no delay. A neighbouring tone at a distance of

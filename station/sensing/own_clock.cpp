@@ -68,7 +68,7 @@ double OwnClock::position(std::int64_t time_ns) const {
 }
 
 /// The first point that is not before the oldest of the newest four samples, and was not given out yet.
-std::int64_t OwnClock::first_point(const drive::ClockFit& playback) const {
+std::int64_t OwnClock::first_point(const audio::ClockFit& playback) const {
   if (playback.pairs == 0 || newest_.size() < nodes) return next_point_;
   const std::int64_t frame = playback.frame_at(line_.time_of(number_ - static_cast<std::int64_t>(nodes - 1)));
   const std::int64_t per_point = options_.frames_per_point;
@@ -76,7 +76,7 @@ std::int64_t OwnClock::first_point(const drive::ClockFit& playback) const {
   return std::max(index, next_point_);
 }
 
-bool OwnClock::complete(std::int64_t index, const drive::ClockFit& playback) {
+bool OwnClock::complete(std::int64_t index, const audio::ClockFit& playback) {
   if (playback.pairs == 0 || newest_.size() < nodes) return false;
   const double at = position(playback.time_of(index * options_.frames_per_point));
   if (at > -1) return false;  // a later sample will have this point in the middle of the four

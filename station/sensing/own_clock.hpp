@@ -4,7 +4,7 @@
 #include <deque>
 #include <optional>
 
-#include "station/drive/frame_clock.hpp"
+#include "station/audio/frame_clock.hpp"
 #include "station/sensing/carrier.hpp"
 #include "station/sensing/force_calibration.hpp"
 
@@ -42,7 +42,7 @@ class OwnClock {
   /// Takes the next sample, and calls `take(const BridgePoint&)` for each point that it completes. `playback`
   /// gives the times at which frames leave the converter of the output; without pairs, no point is made.
   template <typename Take>
-  void push(const Sample& sample, const drive::ClockFit& playback, Take&& take) {
+  void push(const Sample& sample, const audio::ClockFit& playback, Take&& take) {
     add(sample);
     for (std::int64_t index = first_point(playback); complete(index, playback); ++index) {
       next_point_ = index + 1;
@@ -60,12 +60,12 @@ class OwnClock {
   void add(const Sample& sample);
   /// Number of the sample, with a fraction, that belongs to this time, counted from the newest one.
   double position(std::int64_t time_ns) const;
-  std::int64_t first_point(const drive::ClockFit& playback) const;
-  bool complete(std::int64_t index, const drive::ClockFit& playback);
+  std::int64_t first_point(const audio::ClockFit& playback) const;
+  bool complete(std::int64_t index, const audio::ClockFit& playback);
 
   Options options_;
-  drive::FrameClock stamps_;
-  drive::ClockFit line_;  ///< fitted to the stamps
+  audio::FrameClock stamps_;
+  audio::ClockFit line_;  ///< fitted to the stamps
   std::int64_t number_ = 0;
   std::deque<Sample> newest_;  ///< up to four samples in a row
   std::int64_t next_point_ = 0;

@@ -162,8 +162,8 @@ double carrier_phase(Complex correlation) {
 
 }  // namespace
 
-drive::Burst pilot_burst(const Pilot& pilot, std::int64_t start_frame) {
-  drive::Burst burst;
+audio::Burst pilot_burst(const Pilot& pilot, std::int64_t start_frame) {
+  audio::Burst burst;
   burst.start_frame = start_frame;
   burst.length_frames = pilot.frames;
   burst.ramp.frames = pilot.frames / 2;

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "station/drive/burst.hpp"
+#include "station/audio/burst.hpp"
 #include "station/sensing/capture_block.hpp"
 
 namespace turnpoint::sensing {
@@ -22,7 +22,7 @@ struct Pilot {
 };
 
 /// Returns the pilot as a burst that any stream can play.
-drive::Burst pilot_burst(const Pilot& pilot, std::int64_t start_frame);
+audio::Burst pilot_burst(const Pilot& pilot, std::int64_t start_frame);
 
 /// A pilot that was found in the captured samples.
 struct PilotEcho {

@@ -6,7 +6,7 @@
 
 namespace turnpoint::sensing {
 
-PlannedTones::Running PlannedTones::running(const drive::PreparedTone& tone) {
+PlannedTones::Running PlannedTones::running(const audio::PreparedTone& tone) {
   Running made;
   made.partial.phase = tone.phase;
   made.partial.increment = tone.increment;
@@ -15,14 +15,14 @@ PlannedTones::Running PlannedTones::running(const drive::PreparedTone& tone) {
   return made;
 }
 
-PlannedTones::PlannedTones(const drive::PreparedBurst& burst, int rate_Hz)
+PlannedTones::PlannedTones(const audio::PreparedBurst& burst, int rate_Hz)
     : start_frame_(burst.start_frame), rate_Hz_(rate_Hz) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(burst.tone_count); ++i)
     tones_.push_back(running(burst.tones[i]));
 }
 
 // Applies a change as the synthesiser does: frequencies glide linearly, and the phase does not jump.
-Glide PlannedTones::change(const drive::PreparedChange& change) {
+Glide PlannedTones::change(const audio::PreparedChange& change) {
   const auto since = static_cast<std::uint64_t>(change.at_frame - origin_);
   const std::int64_t frames = std::max<std::int64_t>(1, change.frames);
   for (std::size_t i = tones_.size(); i < static_cast<std::size_t>(change.count); ++i) {
@@ -33,14 +33,14 @@ Glide PlannedTones::change(const drive::PreparedChange& change) {
   }
   Glide glide{++changes_, start_frame_ + change.at_frame, frames, {}};
   for (std::size_t i = 0; i < tones_.size(); ++i) {
-    drive::Partial partial = drive::advanced(tones_[i].partial, since);
+    audio::Partial partial = audio::advanced(tones_[i].partial, since);
     const auto& to = change.to[i];
     partial.curvature =
         static_cast<std::uint64_t>(static_cast<std::int64_t>(to.increment - partial.increment) / frames);
     partial.amplitude_change = to.amplitude - partial.amplitude;
     if (partial.amplitude != 0 || to.amplitude != 0)
       glide.tones.push_back({static_cast<int>(i), tones_[i].channel, partial});
-    partial = drive::advanced(partial, static_cast<std::uint64_t>(frames));
+    partial = audio::advanced(partial, static_cast<std::uint64_t>(frames));
     tones_[i].partial = {partial.phase, to.increment, 0, to.amplitude, 0};
   }
   origin_ = change.at_frame + frames;
@@ -59,14 +59,14 @@ Stretch PlannedTones::stretch(std::int64_t first_frame, std::int64_t end_frame) 
   return stretch;
 }
 
-std::vector<Stretch> planned_stretches(const drive::PreparedBurst& burst, int rate_Hz) {
+std::vector<Stretch> planned_stretches(const audio::PreparedBurst& burst, int rate_Hz) {
   PlannedTones tones(burst, rate_Hz);
   const std::int64_t start = burst.start_frame, risen = start + burst.ramp.frames,
                      falls = start + burst.length_frames - burst.ramp.frames;
   std::vector<Stretch> stretches;
   for (int c = 0; c <= burst.change_count; ++c) {
     const bool last = c == burst.change_count;
-    const drive::PreparedChange* next = last ? nullptr : &burst.changes[static_cast<std::size_t>(c)];
+    const audio::PreparedChange* next = last ? nullptr : &burst.changes[static_cast<std::size_t>(c)];
     const std::int64_t first = std::max(tones.origin_frame(), risen),
                        end = last ? falls : std::min(start + next->at_frame, falls);
     if (first < end) stretches.push_back(tones.stretch(first, end));

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "station/drive/prepared_burst.hpp"
+#include "station/audio/prepared_burst.hpp"
 #include "station/sensing/pick_up.hpp"
 #include "station/sensing/tone_sums.hpp"
 
@@ -33,7 +33,7 @@ struct Stretch {
 /// One tone of a Glide. Frame 0 of the partial is the glide's first frame.
 struct GlidingTone {
   int index = 0, channel = 0;
-  drive::Partial partial;
+  audio::Partial partial;
 };
 
 /// A glide is a change of a burst, from the tones of one stretch to those of the next.
@@ -47,10 +47,10 @@ struct Glide {
 /// Follows the tones of a burst from change to change, as the synthesiser plays them.
 class PlannedTones {
  public:
-  PlannedTones(const drive::PreparedBurst& burst, int rate_Hz);
+  PlannedTones(const audio::PreparedBurst& burst, int rate_Hz);
 
   /// Applies a change, and returns it as a glide. The changes of a burst must be applied in order.
-  Glide change(const drive::PreparedChange& change);
+  Glide change(const audio::PreparedChange& change);
   /// The stretch from the last change on, limited to these absolute frames.
   Stretch stretch(std::int64_t first_frame, std::int64_t end_frame) const;
   /// The absolute frame at which the last change has ended, or at which the burst begins.
@@ -59,10 +59,10 @@ class PlannedTones {
  private:
   // A tone while the burst plays. Its phase is counted from origin_.
   struct Running {
-    drive::Partial partial;
+    audio::Partial partial;
     int channel = 0;
   };
-  static Running running(const drive::PreparedTone& tone);
+  static Running running(const audio::PreparedTone& tone);
 
   std::vector<Running> tones_;
   std::int64_t start_frame_, origin_ = 0;
@@ -71,7 +71,7 @@ class PlannedTones {
 
 /// Returns the stretches of a burst as the synthesiser plays it. Changes that are sent while the burst plays
 /// are not included.
-std::vector<Stretch> planned_stretches(const drive::PreparedBurst& burst, int rate_Hz);
+std::vector<Stretch> planned_stretches(const audio::PreparedBurst& burst, int rate_Hz);
 
 /// All tones with the same frequency in one steady part of a burst. Only their sum can be measured.
 struct PlannedLine {

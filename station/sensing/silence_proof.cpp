@@ -72,16 +72,16 @@ SilenceResult SilenceProof::result() const {
   SilenceResult result;
   if (!(planned_ > 0)) return result;
   if (!measured_) {
-    result.verdict = terms::Proof::lost;
-    result.cause = terms::ProofCause::gap;
+    result.verdict = core::Proof::lost;
+    result.cause = core::ProofCause::gap;
     return result;
   }
   result.rms_dB = in_dB(std::sqrt(largest_ / planned_));
   const auto tone = strongest_tone(loudest_, rate_Hz_);
   result.level_dB = in_dB(std::sqrt((tone ? tone->power : 0) / planned_));
   result.brief_dB = in_dB(std::sqrt(largest_block_ / planned_));
-  const auto cause = terms::ProofCause::noisy;
-  const Finding all = concluded({{cause, terms::Proof::ok},
+  const auto cause = core::ProofCause::noisy;
+  const Finding all = concluded({{cause, core::Proof::ok},
                                  {cause, judged(result.level_dB, tone_limits_)},
                                  {cause, judged(result.rms_dB, rms_limits_)},
                                  {cause, judged(result.brief_dB, brief_limits_)}});

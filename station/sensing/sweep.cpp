@@ -41,9 +41,9 @@ Amplitude transform(std::span<const double> samples, double frequency_Hz, int ra
 
 }  // namespace
 
-drive::Burst sweep_burst(const Sweep& sweep, std::int64_t start_frame) {
+audio::Burst sweep_burst(const Sweep& sweep, std::int64_t start_frame) {
   constexpr double ramp_s = 0.02;
-  drive::Burst burst;
+  audio::Burst burst;
   burst.start_frame = start_frame;
   burst.length_frames = sweep.frames();
   burst.ramp.frames = std::llround(ramp_s * sweep.rate_Hz);

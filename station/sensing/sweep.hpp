@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "station/drive/burst.hpp"
+#include "station/audio/burst.hpp"
 
 namespace turnpoint::sensing {
 
@@ -26,7 +26,7 @@ struct Sweep {
 };
 
 /// Returns the sweep as a burst that any stream can play.
-drive::Burst sweep_burst(const Sweep& sweep, std::int64_t start_frame);
+audio::Burst sweep_burst(const Sweep& sweep, std::int64_t start_frame);
 
 /// A recording must contain this much silence before and after the sweep.
 inline constexpr double kSweepQuiet_s = 0.3;

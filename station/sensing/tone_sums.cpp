@@ -10,13 +10,13 @@
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
-#include "station/drive/sine.hpp"
+#include "station/audio/sine.hpp"
 
 namespace turnpoint::sensing {
 namespace {
 
 inline std::complex<double> unit(std::uint64_t phase) noexcept {
-  return {drive::sine_of_phase(phase + drive::quarter_cycle), drive::sine_of_phase(phase)};
+  return {audio::sine_of_phase(phase + audio::quarter_cycle), audio::sine_of_phase(phase)};
 }
 
 }  // namespace
@@ -29,13 +29,12 @@ ToneSums::ToneSums(std::vector<FollowedTone> tones, std::size_t inputs, int bloc
       window_frames_(window_frames),
       delay_(static_cast<std::int64_t>(std::floor(delay_frames))),
       delay_fraction_(delay_frames - std::floor(delay_frames)),
-      columns_((tones_.size() + kTones - 1) / kTones * kTones),
+      columns_((tones_.size() + loops::kTones - 1) / loops::kTones * loops::kTones),
       table_(part_count * static_cast<std::size_t>(block_frames) * columns_),
       folded_(inputs * static_cast<std::size_t>(block_frames)),
       sums_(part_count * 2 * inputs * columns_),
       phase_(tones_.size()),
-      turn_(tones_.size()),
-      loops_(&best_loops()) {
+      turn_(tones_.size()) {
   if (block_frames % 2 != 0 || window_frames % block_frames != 0)
     throw std::logic_error("sensing: a lock-in needs blocks of even length and a window of whole blocks");
   for (const FollowedTone& tone : tones_) part_of_frame_.push_back(of_fraction(tone.partial.increment));
@@ -46,9 +45,9 @@ std::uint64_t ToneSums::of_fraction(std::uint64_t increment) const noexcept {
   return static_cast<std::uint64_t>(std::llround(static_cast<double>(increment) * delay_fraction_));
 }
 
-drive::Partial ToneSums::at(std::size_t tone, std::int64_t captured_frame) const noexcept {
+audio::Partial ToneSums::at(std::size_t tone, std::int64_t captured_frame) const noexcept {
   const FollowedTone& followed = tones_[tone];
-  drive::Partial partial = drive::advanced(
+  audio::Partial partial = audio::advanced(
       followed.partial, static_cast<std::uint64_t>(captured_frame - delay_ - followed.origin_frame));
   partial.phase -= partial.curvature == 0 ? part_of_frame_[tone] : of_fraction(partial.increment);
   return partial;
@@ -88,7 +87,7 @@ void ToneSums::fill(std::size_t tone) noexcept {
 void ToneSums::fold(const AlignedBlock& block) noexcept {
   const auto half = static_cast<std::size_t>(block_frames_ / 2);
   for (std::size_t i = 0; i < inputs_; ++i)
-    loops_->fold(block.row[i], half, folded_.data() + i * half, folded_.data() + (inputs_ + i) * half);
+    loops::fold(block.row[i], half, folded_.data() + i * half, folded_.data() + (inputs_ + i) * half);
 }
 
 void ToneSums::compute(const AlignedBlock& block, Parts parts) noexcept {
@@ -97,13 +96,13 @@ void ToneSums::compute(const AlignedBlock& block, Parts parts) noexcept {
   const std::size_t used = parts == Parts::plain ? 1 : part_count;
   for (std::size_t part = 0; part < used; ++part)
     for (std::size_t parity = 0; parity < 2; ++parity)
-      for (std::size_t column = 0; column < columns_; column += kTones)
-        loops_->tones(folded_.data() + parity * inputs_ * half, inputs_, half,
-                      table_.data() + (part * 2 + parity) * half * columns_ + column, columns_,
-                      row(part, parity, 0) + column);
+      for (std::size_t column = 0; column < columns_; column += loops::kTones)
+        loops::tones(folded_.data() + parity * inputs_ * half, inputs_, half,
+                     table_.data() + (part * 2 + parity) * half * columns_ + column, columns_,
+                     row(part, parity, 0) + column);
   const auto to_middle = static_cast<std::uint64_t>(block_frames_ - 1);
   for (std::size_t t = 0; t < tones_.size(); ++t) {
-    const drive::Partial partial = at(t, block.first_frame);
+    const audio::Partial partial = at(t, block.first_frame);
     phase_[t] = partial.phase + partial.increment / 2 * to_middle;
     if (partial.curvature == 0) continue;
     glide(block, t, partial);
@@ -113,11 +112,11 @@ void ToneSums::compute(const AlignedBlock& block, Parts parts) noexcept {
 }
 
 // A gliding tone has no symmetry, so its sums are computed frame by frame.
-void ToneSums::glide(const AlignedBlock& block, std::size_t tone, const drive::Partial& partial) noexcept {
+void ToneSums::glide(const AlignedBlock& block, std::size_t tone, const audio::Partial& partial) noexcept {
   for (std::size_t part = 0; part < part_count; ++part)
     for (std::size_t i = 0; i < inputs_; ++i) row(part, 0, i)[tone] = row(part, 1, i)[tone] = 0;
   for (int n = 0; n < block_frames_; ++n) {
-    const auto e = unit(drive::advanced(partial, static_cast<std::uint64_t>(n)).phase);
+    const auto e = unit(audio::advanced(partial, static_cast<std::uint64_t>(n)).phase);
     for (std::size_t part = 0; part < part_count; ++part) {
       const double f = factor(part, n - (block_frames_ - 1) / 2.0);
       const std::size_t real = part == 2 ? 1 : 0;

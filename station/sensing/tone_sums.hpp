@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "station/drive/oscillator.hpp"
+#include "station/audio/oscillator.hpp"
 #include "station/sensing/aligned_blocks.hpp"
 #include "station/sensing/sample_loops.hpp"
 
@@ -17,7 +17,7 @@ namespace turnpoint::sensing {
 /// partial's amplitude is not used. A gliding partial must begin before the first frame for which sums are
 /// computed.
 struct FollowedTone {
-  drive::Partial partial;
+  audio::Partial partial;
   std::int64_t origin_frame = 0;
 };
 
@@ -56,11 +56,11 @@ class ToneSums {
   std::uint64_t increment(std::size_t tone) const noexcept { return tones_[tone].partial.increment; }
 
  private:
-  drive::Partial at(std::size_t tone, std::int64_t captured_frame) const noexcept;
+  audio::Partial at(std::size_t tone, std::int64_t captured_frame) const noexcept;
   std::uint64_t of_fraction(std::uint64_t increment) const noexcept;
   void fill(std::size_t tone) noexcept;
   void fold(const AlignedBlock& block) noexcept;
-  void glide(const AlignedBlock& block, std::size_t tone, const drive::Partial& partial) noexcept;
+  void glide(const AlignedBlock& block, std::size_t tone, const audio::Partial& partial) noexcept;
   std::complex<double> rotated(std::size_t input, std::size_t tone, std::size_t part) const noexcept;
   double* row(std::size_t part, std::size_t parity, std::size_t input) noexcept;
   double factor(std::size_t part, double from_middle) const noexcept;
@@ -80,7 +80,6 @@ class ToneSums {
   std::vector<std::uint64_t> part_of_frame_;
   std::vector<std::uint64_t> phase_;        ///< phase of each tone in the middle of the block
   std::vector<std::complex<double>> turn_;  ///< e^(i phase) of each tone in the middle of the block
-  const SampleLoops* loops_;
 };
 
 /// A tone that was found in noise.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "station/drive/trigger_code.hpp"
+#include "station/audio/trigger_code.hpp"
 
 namespace turnpoint::sensing {
 
@@ -22,7 +22,7 @@ TriggerDecoder::TriggerDecoder(int channel, std::int64_t bit_frames, double leas
     : channel_(channel),
       half_(bit_frames / 2),
       least_sum_(static_cast<std::int64_t>(least_amplitude * kFull * static_cast<double>(half_) / 2)),
-      sums_(std::bit_ceil(static_cast<std::size_t>((drive::trigger_half_bits + 8) * half_))),
+      sums_(std::bit_ceil(static_cast<std::size_t>((audio::trigger_half_bits + 8) * half_))),
       squares_(sums_.size()) {}
 
 void TriggerDecoder::push(const CaptureBlock& block) {
@@ -43,9 +43,9 @@ void TriggerDecoder::push(std::int64_t value) {
   sum_ += value, square_ += static_cast<std::uint64_t>(value * value);
   // The running sums are known up to frame next_, so this call can find a code whose final silent bit ends at
   // that frame.
-  const auto frame = next_ - (drive::trigger_half_bits + 2 * drive::trigger_quiet_bits) * half_;
+  const auto frame = next_ - (audio::trigger_half_bits + 2 * audio::trigger_quiet_bits) * half_;
   ++next_;
-  if (frame - 2 * drive::trigger_quiet_bits * half_ - 1 < origin_) return;
+  if (frame - 2 * audio::trigger_quiet_bits * half_ - 1 < origin_) return;
   if (best_ && frame > best_->frame + 2 * half_) conclude();
   if (!starts_at(frame)) return;
   if (auto found = candidate(frame); found && (!best_ || found->likeness > best_->likeness))
@@ -70,8 +70,8 @@ bool TriggerDecoder::starts_at(std::int64_t frame) const {
 
 std::int64_t TriggerDecoder::correlation(std::int64_t frame, std::uint32_t pattern) const {
   std::int64_t total = 0;
-  for (int h = 0; h < drive::trigger_half_bits; ++h)
-    total += drive::trigger_wave(pattern, h) * sum(frame + h * half_, frame + (h + 1) * half_);
+  for (int h = 0; h < audio::trigger_half_bits; ++h)
+    total += audio::trigger_wave(pattern, h) * sum(frame + h * half_, frame + (h + 1) * half_);
   return total;
 }
 
@@ -82,16 +82,16 @@ std::optional<TriggerDecoder::Candidate> TriggerDecoder::candidate(std::int64_t 
     code = code << 1 | (sum(begin, begin + half_) > sum(begin + half_, begin + 2 * half_) ? 1u : 0u);
   }
   if (code == 0) return std::nullopt;
-  const auto end = frame + drive::trigger_half_bits * half_;
+  const auto end = frame + audio::trigger_half_bits * half_;
   const auto frames = static_cast<double>(end - frame);
   const double mean = static_cast<double>(sum(frame, end)) / frames;
   const double power = static_cast<double>(energy(frame, end)) / frames - mean * mean;
-  const auto pattern = drive::trigger_pattern(static_cast<std::uint8_t>(code));
+  const auto pattern = audio::trigger_pattern(static_cast<std::uint8_t>(code));
   const auto at = static_cast<double>(correlation(frame, pattern));
   Candidate found;
   found.likeness = at / (frames * std::sqrt(power));
   if (!(found.likeness >= kLikeness)) return std::nullopt;
-  const auto quiet_frames = 2 * drive::trigger_quiet_bits * half_;
+  const auto quiet_frames = 2 * audio::trigger_quiet_bits * half_;
   for (const auto from : {frame - quiet_frames, end}) {
     const auto n = static_cast<double>(quiet_frames);
     const double rest = static_cast<double>(energy(from, from + quiet_frames)) / n -

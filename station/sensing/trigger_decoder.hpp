@@ -14,7 +14,7 @@ struct DecodedTrigger {
   double amplitude = 0;  ///< amplitude of the code; 1 is full scale
 };
 
-/// Finds the codes of drive/trigger_code.hpp on one captured channel. It knows only the form of a code, not
+/// Finds the codes of audio/trigger_code.hpp on one captured channel. It knows only the form of a code, not
 /// which codes were sent or when, so it also finds codes that should not be there. A code is accepted if its
 /// amplitude is at least `least_amplitude`, its correlation with its ideal wave is at least 0.9 (its check
 /// bits are then right), and the bits before and after it are silent. This tolerates high-pass filtering, and

@@ -16,7 +16,7 @@ namespace {
 constexpr int kFewest = 3;
 
 /// Returns the first frame of the last interval, and the frame after its end.
-std::pair<std::int64_t, std::int64_t> last_interval(const records::TrialRow& row) {
+std::pair<std::int64_t, std::int64_t> last_interval(const core::TrialRow& row) {
   int last = 0;
   for (const auto& tone : row.tones) last = std::max(last, tone.interval_index);
   std::pair<std::int64_t, std::int64_t> range{INT64_MAX, 0};
@@ -29,7 +29,7 @@ std::pair<std::int64_t, std::int64_t> last_interval(const records::TrialRow& row
 
 }  // namespace
 
-void AlongStrip::add(const records::TrialRow& row, const records::SignalRow& finger, double frames_per_s) {
+void AlongStrip::add(const core::TrialRow& row, const core::SignalRow& finger, double frames_per_s) {
   if (!row.boundary_mm || finger.channels.size() != 4 || finger.points < 2) return;
   const auto values = store::decode(finger);
   const auto [first, end] = last_interval(row);

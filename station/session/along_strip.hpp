@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "station/records/records.hpp"
+#include "station/core/records.hpp"
 #include "station/sensing/friction_profile.hpp"
 
 namespace turnpoint::session {
@@ -11,7 +11,7 @@ namespace turnpoint::session {
 class AlongStrip {
  public:
   /// Adds the strokes of a trial's last interval. A trial without a boundary adds nothing.
-  void add(const records::TrialRow& row, const records::SignalRow& finger, double frames_per_s);
+  void add(const core::TrialRow& row, const core::SignalRow& finger, double frames_per_s);
 
   /// Means and standard errors over strokes in bins of 2 mm, where there are 3 or more strokes.
   struct Curve {

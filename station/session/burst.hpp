@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "station/drive/burst.hpp"
+#include "station/audio/burst.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/planner.hpp"
@@ -11,14 +11,14 @@
 namespace turnpoint::session {
 
 /// Converts the tones of a plan to the drive's form. Throws std::length_error if there are too many tones.
-drive::ToneSet tones_of(const scene::DrivePlan& plan);
+audio::ToneSet tones_of(const scene::DrivePlan& plan);
 
 /// Converts one interval to a burst of the drive. The burst plays the plans of the interval's scenes one
 /// after the other. The second and later plans begin at `starts_s` from the onset, each with a transition
 /// of one of `transitions_s`, in which tone i of one scene glides to tone i of the next. The burst lasts
 /// `length_s`, including both ramps. Throws std::length_error if a burst cannot hold that many tones or
 /// scenes.
-drive::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::vector<double>& starts_s,
+audio::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::vector<double>& starts_s,
                       const std::vector<double>& transitions_s, double length_s, int rate_Hz);
 
 /// Adds the rig's marker at the onset and at each change of scene. A pulse or tone never lasts longer than
@@ -26,19 +26,19 @@ drive::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::ve
 /// the first `changes` changes; 0 stands for no code. Later changes (to a buzz and back) have no code.
 struct MarkerCodes {
   int onset = 0, change = 0;
-  std::size_t changes = drive::max_changes;
+  std::size_t changes = audio::max_changes;
 };
-void mark(drive::Burst& burst, const rig::Marker& marker, int rate_Hz, const MarkerCodes& codes = {});
+void mark(audio::Burst& burst, const rig::Marker& marker, int rate_Hz, const MarkerCodes& codes = {});
 
 /// Adds the tone on the rig's headphones that asks for an answer, `at_s` after the burst's onset. It lasts
-/// 50 ms (terms::kSignal_s), with ramps of 5 ms.
-void signal(drive::Burst& burst, const rig::MaskingNoise& headphones, double at_s, int rate_Hz);
+/// 50 ms (core::kSignal_s), with ramps of 5 ms.
+void signal(audio::Burst& burst, const rig::MaskingNoise& headphones, double at_s, int rate_Hz);
 
 /// Adds the rig's masking noise. A different `seed` for each interval gives each interval different noise.
-void mask(drive::Burst& burst, const rig::MaskingNoise& noise, std::uint64_t seed);
+void mask(audio::Burst& burst, const rig::MaskingNoise& noise, std::uint64_t seed);
 
 /// Plans one scene on its own, without a trial, a marker or a masking sound. Throws scene::Unreachable.
-drive::Burst scene_burst(const rig::Rig& rig, const protocol::Protocol& protocol, const std::string& scene,
+audio::Burst scene_burst(const rig::Rig& rig, const protocol::Protocol& protocol, const std::string& scene,
                          const protocol::Factors& factors, double length_s);
 
 }  // namespace turnpoint::session

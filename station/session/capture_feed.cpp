@@ -1,5 +1,5 @@
 #include "station/session/capture_feed.hpp"
-#include "station/terms/limits.hpp"
+#include "station/core/limits.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -39,7 +39,7 @@ std::optional<CardCapture> card_capture_of(const rig::Rig& rig) {
   plan.setup.channels = rig.capture->channels;
   plan.setup.pick_ups = calibrated_pick_ups(*rig.capture);
   plan.pilot = pilot_of(rig);
-  if (!rig.capture->bridges.empty()) plan.pilot.carrier_Hz = terms::kForceCarrier_Hz;
+  if (!rig.capture->bridges.empty()) plan.pilot.carrier_Hz = core::kForceCarrier_Hz;
   plan.setup.finger = calibrated_finger(rig);
   plan.cells = cell_plan_of(rig);
   plan.reference = rig.capture->reference;
@@ -47,7 +47,7 @@ std::optional<CardCapture> card_capture_of(const rig::Rig& rig) {
   return plan;
 }
 
-CaptureFeed::CaptureFeed(std::unique_ptr<drive::Capture> capture, const CardCapture& plan)
+CaptureFeed::CaptureFeed(std::unique_ptr<audio::Capture> capture, const CardCapture& plan)
     : capture_(std::move(capture)),
       plan_(plan),
       // The pilot is played up to one buffer length after it was scheduled. It is captured up to one more
@@ -125,7 +125,7 @@ void CaptureFeed::run(const std::stop_token& stop) {
 
 // Passes a captured block to the pilot's listener or, once the delay from playback to capture is known, to
 // the vibration watch. Returns true once enough has been captured to contain the whole pilot.
-bool CaptureFeed::take(const drive::CapturedBlock& captured) {
+bool CaptureFeed::take(const audio::CapturedBlock& captured) {
   const std::lock_guard lock(mutex_);
   sensing::CaptureBlock block{captured.used(), plan_.device.channels, captured.first_frame,
                               plan_.device.rate_Hz};

@@ -5,7 +5,7 @@
 #include <optional>
 #include <thread>
 
-#include "station/drive/alsa_capture.hpp"
+#include "station/audio/alsa_capture.hpp"
 #include "station/rig/rig.hpp"
 #include "station/sensing/pilot.hpp"
 #include "station/sensing/stillness_watch.hpp"
@@ -17,7 +17,7 @@ namespace turnpoint::session {
 
 /// What a rig captures with the same sound card that plays, and how captured and played frames are aligned.
 struct CardCapture {
-  drive::OutputConfig device;
+  audio::OutputConfig device;
   CaptureSetup setup;
   sensing::Pilot pilot;
   int reference = 0;  ///< captured channel on which the pilot is recorded
@@ -34,7 +34,7 @@ std::optional<CardCapture> card_capture_of(const rig::Rig& rig);
 /// ordinary thread.
 class CaptureFeed {
  public:
-  CaptureFeed(std::unique_ptr<drive::Capture> capture, const CardCapture& plan);
+  CaptureFeed(std::unique_ptr<audio::Capture> capture, const CardCapture& plan);
 
   VibrationWatch& watch() { return watch_; }
   const VibrationWatch& watch() const { return watch_; }
@@ -60,15 +60,15 @@ class CaptureFeed {
   Pilot pilot() const;
   double longest_wait_s() const { return longest_wait_s_; }
 
-  drive::CaptureCounters counters() const { return capture_->counters(); }
+  audio::CaptureCounters counters() const { return capture_->counters(); }
   system::Rights rights() const { return capture_->rights(); }
 
  private:
   void run(const std::stop_token& stop);
-  bool take(const drive::CapturedBlock& block);
+  bool take(const audio::CapturedBlock& block);
   void conclude();
 
-  std::unique_ptr<drive::Capture> capture_;
+  std::unique_ptr<audio::Capture> capture_;
   const CardCapture plan_;
   const double longest_wait_s_;
   VibrationWatch watch_;

@@ -18,8 +18,8 @@ constexpr double kLongestQueue_s = 60;  // while nobody follows, older samples a
 
 }  // namespace
 
-iio::Config converter_of(const rig::CellConverter& converter) {
-  iio::Config config;
+io::Config converter_of(const rig::CellConverter& converter) {
+  io::Config config;
   config.device = converter.uri.substr(converter.uri.find(':') + 1);
   config.channels = converter.channels;
   config.rate_Hz = converter.rate_Hz;
@@ -41,11 +41,11 @@ std::optional<CellPlan> cell_plan_of(const rig::Rig& rig) {
   return plan;
 }
 
-std::optional<texts::Phrase> wrong_rate(const std::string& device, double measured_Hz, double stated_Hz) {
+std::optional<core::Phrase> wrong_rate(const std::string& device, double measured_Hz, double stated_Hz) {
   if (std::abs(measured_Hz / stated_Hz - 1) <= kRateTolerance) return std::nullopt;
-  return texts::phrase("doctor.wrong_rate",
-                       {texts::plain("iio:" + device), texts::plain(fmt::format("{:.1f}", measured_Hz)),
-                        texts::plain(fmt::format("{}", stated_Hz))});
+  return core::phrase("doctor.wrong_rate",
+                      {core::plain("iio:" + device), core::plain(fmt::format("{:.1f}", measured_Hz)),
+                       core::plain(fmt::format("{}", stated_Hz))});
 }
 
 CellFeed::CellFeed(const CellPlan& plan, Open open)
@@ -74,8 +74,8 @@ void CellFeed::run(const std::stop_token& stop) {
   }
 }
 
-void CellFeed::follow(const drive::ClockFit& playback, VibrationWatch& watch) {
-  std::vector<iio::Sample> samples;
+void CellFeed::follow(const audio::ClockFit& playback, VibrationWatch& watch) {
+  std::vector<io::Sample> samples;
   {
     const std::lock_guard lock(mutex_);
     samples.swap(read_);
@@ -95,7 +95,7 @@ std::string CellFeed::problem() const {
   }
   const auto rate_Hz = clock_.rate_Hz();
   const auto wrong = rate_Hz ? wrong_rate(plan_.device.device, *rate_Hz, plan_.device.rate_Hz) : std::nullopt;
-  return wrong ? texts::say(*wrong, "en") : "";
+  return wrong ? core::say(*wrong, "en") : "";
 }
 
 std::vector<std::string> CellFeed::news() {

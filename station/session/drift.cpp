@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "physics/centre_line.hpp"
+#include "station/core/number.hpp"
 #include "station/session/capture_feed.hpp"
 #include "station/system/thermometer.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::session {
 
@@ -44,7 +44,7 @@ void Drift::log_temperature(int trial_index) {
   const auto plate = system::read_thermometer_C(thermometers_[0]);
   const auto frame = system::read_thermometer_C(thermometers_[1]);
   const auto shown = [](const std::optional<double>& value) {
-    return value ? text::number(*value, 4) : std::string("unknown");
+    return value ? core::number(*value, 4) : std::string("unknown");
   };
   log_.event({stage_.now_ns(), "temperature", "plate " + shown(plate) + " C, frame " + shown(frame) + " C",
               trial_index});
@@ -57,13 +57,13 @@ void Drift::log_temperature(int trial_index) {
     warm_[k] = true;
     log_.event({stage_.now_ns(), "temperature_flag",
                 fmt::format("the {} changed by {} K since the session began", k == 0 ? "plate" : "frame",
-                            text::number(change_K, 3)),
+                            core::number(change_K, 3)),
                 trial_index});
   }
 }
 
 void Drift::follow(const sensing::IntervalResult& measured) {
-  using terms::Proof;
+  using core::Proof;
   if (!tracker_ || (measured.verdict != Proof::ok && measured.verdict != Proof::flagged)) return;
   if (const auto found = tracker_->take(measured.tones, applied_)) newest_ = found;
 }
@@ -86,7 +86,7 @@ std::optional<double> Drift::correction(int trial_index) {
       {stage_.now_ns(), "drift",
        fmt::format("the resonances moved by {} % since the calibration, boundaries by up to {} mm since "
                    "the last correction; frequencies are corrected",
-                   text::number(100 * drift.share, 3), text::number(1e3 * largest_m, 3)),
+                   core::number(100 * drift.share, 3), core::number(1e3 * largest_m, 3)),
        trial_index});
   return applied_;
 }

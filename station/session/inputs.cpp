@@ -32,7 +32,7 @@ std::optional<trial::Event> event_of(const Input& input) {
     case InputKind::heard:
       return trial::Event{input.time_ns, EventKind::heard, input.value};
     case InputKind::measured:
-      if (!input.measured || input.measured->verdict < terms::Proof::refused) break;
+      if (!input.measured || input.measured->verdict < core::Proof::refused) break;
       return trial::Event{input.time_ns, EventKind::refuted, input.value};
     case InputKind::fault:
       return trial::Event{input.time_ns, EventKind::fault, 0};

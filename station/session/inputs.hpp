@@ -8,15 +8,15 @@
 #include <optional>
 #include <string>
 
+#include "station/core/fault.hpp"
 #include "station/sensing/interval_result.hpp"
 #include "station/sensing/trial_finger.hpp"
-#include "station/terms/fault.hpp"
 #include "station/trial/machine.hpp"
 
 namespace turnpoint::session {
 
-using terms::Fault;
-using terms::FaultKind;
+using core::Fault;
+using core::FaultKind;
 
 enum class InputKind {
   answer,      ///< value = index of the chosen answer

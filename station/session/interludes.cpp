@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "station/random/draws.hpp"
+#include "station/core/draws.hpp"
+#include "station/core/number.hpp"
 #include "station/session/planned_session.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::session {
 
@@ -16,7 +16,7 @@ constexpr std::int64_t kReads_ns = 1'500'000'000;
 
 /// Returns the answer to store for an item when this input was given.
 std::string answer_of(const protocol::Item& item, const Input& input) {
-  if (input.kind == InputKind::value) return text::exact(input.number);
+  if (input.kind == InputKind::value) return core::exact(input.number);
   return item.choices.at(static_cast<std::size_t>(input.value)).id;
 }
 
@@ -31,32 +31,32 @@ bool answers_item(const protocol::Item& item, const Input& input) {
 }  // namespace
 
 Interludes::Interludes(const Setup& setup, const Pages& pages, const trial::Director& director,
-                       OperatorGate& gate, Stage& stage, store::SessionLog& log, Player player)
+                       OperatorGate& gate, Stage& stage, SimulatedParticipant* participant,
+                       store::SessionLog& log, Player player)
     : setup_(setup),
       pages_(pages),
       director_(director),
       gate_(gate),
       stage_(stage),
+      participant_(participant),
       log_(log),
       player_(std::move(player)),
       visit_(visit_of(log.session())),
       blocks_(protocol::block_order(setup.protocol, visit_)) {}
 
 void Interludes::restore(const Earlier& earlier) {
-  for (const auto* event : records::standing_answers(earlier.events))
+  for (const auto* event : core::standing_answers(earlier.events))
     standing_.insert(standing_.end(), event->answers.begin(), event->answers.end());
   for (const auto& event : earlier.events)
-    if (event.kind == records::kDoneEvent) done_.insert(event.value);
+    if (event.kind == core::kDoneEvent) done_.insert(event.value);
   for (const auto& block : earlier.blocks)
     for (const auto& trial : block.trials)
       score(block.start.block_index, block.start.attempt, block.start.name, trial);
 }
 
-void Interludes::score(int block_index, int attempt, const std::string& block,
-                       const records::TrialRow& trial) {
-  const bool missed =
-      trial.outcome == terms::Outcome::timeout || trial.outcome == terms::Outcome::anticipation;
-  if (trial.type == terms::TrialType::warmup ||
+void Interludes::score(int block_index, int attempt, const std::string& block, const core::TrialRow& trial) {
+  const bool missed = trial.outcome == core::Outcome::timeout || trial.outcome == core::Outcome::anticipation;
+  if (trial.type == core::TrialType::warmup ||
       !(missed ? trial.correct_response.has_value() : trial.correct.has_value()))
     return;
   auto& score = scores_[block_index];
@@ -88,10 +88,10 @@ Flow Interludes::before(int block_index) {
   occasion_ = block_index;
   for (const auto* interlude :
        protocol::interludes_before(setup_.protocol, blocks_, static_cast<std::size_t>(block_index), visit_)) {
-    const auto place = records::place_name(interlude->name, occasion_);
+    const auto place = core::place_name(interlude->name, occasion_);
     if (done_.count(place) > 0) continue;
     if (run(*interlude) == Flow::stop) return Flow::stop;
-    log_.event({stage_.now_ns(), records::kDoneEvent, place, std::nullopt});
+    log_.event({stage_.now_ns(), core::kDoneEvent, place, std::nullopt});
     gate_.keep([&] { log_.keep_events(); });
     done_.insert(place);
   }
@@ -134,7 +134,7 @@ void Interludes::simulate(InputKind kind, int value, double number) {
   input.kind = kind;
   input.value = value;
   input.number = number;
-  stage_.simulate(std::move(input));
+  participant_->will(std::move(input), stage_.now_ns());
 }
 
 /// Gives the answer that the protocol states for a simulated participant, or a random answer if it states
@@ -143,7 +143,7 @@ void Interludes::simulate_answer(const protocol::Interlude& interlude, std::size
   const auto& item = interlude.items[index];
   const auto* first = setup_.protocol.interludes.data();
   const auto number = static_cast<int>(&interlude - first) * 1000 + static_cast<int>(index);
-  random::Draws draws({log_.session().start.seed, random::Stream::questionnaire, occasion_, 0, number});
+  core::Draws draws({log_.session().start.seed, core::Stream::questionnaire, occasion_, 0, number});
   if (item.value) {
     const double steps = std::pow(10.0, item.value->decimals);
     const auto low = std::ceil(item.value->low * steps - 1e-9),
@@ -159,9 +159,9 @@ void Interludes::simulate_answer(const protocol::Interlude& interlude, std::size
 
 void Interludes::keep_answer(const protocol::Interlude& interlude, const std::string& item,
                              const std::string& answer, double response_time_s) {
-  const records::AnswerRow row{interlude.name, item, occasion_, answer, response_time_s};
-  records::EventRow event{stage_.now_ns(), records::kAnswerEvent,
-                          interlude.name + "." + item + " = " + answer, std::nullopt};
+  const core::AnswerRow row{interlude.name, item, occasion_, answer, response_time_s};
+  core::EventRow event{stage_.now_ns(), core::kAnswerEvent, interlude.name + "." + item + " = " + answer,
+                       std::nullopt};
   event.answers = {row};
   log_.event(std::move(event));
   gate_.keep([&] { log_.keep_events(); });
@@ -181,7 +181,7 @@ std::optional<Interludes::Reply> Interludes::ask(const protocol::Interlude& inte
   const auto& item = interlude.items[index];
   auto page = pages_.question(item, director_);
   page.back = back;
-  if (!setup_.observer.empty()) simulate_answer(interlude, index);
+  if (participant_) simulate_answer(interlude, index);
   const auto shown_ns = stage_.now_ns();
   const auto input = reply(page, [&](const Input& one) {
     return answers_item(item, one) || (back && one.kind == InputKind::back);
@@ -209,9 +209,9 @@ Flow Interludes::ask_items(const protocol::Interlude& interlude) {
     if (!asked) return Flow::stop;
     if (*asked) continue;
     log_.event(
-        {stage_.now_ns(), records::kBackEvent, records::place_name(interlude.name, occasion_), std::nullopt});
+        {stage_.now_ns(), core::kBackEvent, core::place_name(interlude.name, occasion_), std::nullopt});
     gate_.keep([&] { log_.keep_events(); });
-    const auto mine = [&](const records::AnswerRow& row) {
+    const auto mine = [&](const core::AnswerRow& row) {
       return row.questionnaire == interlude.name && row.occasion == occasion_;
     };
     standing_.erase(std::next(std::find_if(standing_.rbegin(), standing_.rend(), mine)).base());
@@ -231,7 +231,7 @@ Flow Interludes::explain(const protocol::Interlude& interlude) {
     auto page = pages_.explanation(explanation, director_);
     page.back = at > 0;
     // a simulated participant feels each example once
-    if (!setup_.observer.empty() && played < explanation.examples.size())
+    if (participant_ && played < explanation.examples.size())
       simulate(InputKind::answer, static_cast<int>(played++));
     const auto input = reply(page, [&](const Input& one) {
       return one.kind == InputKind::next || (page.back && one.kind == InputKind::back) ||

@@ -17,8 +17,8 @@ namespace turnpoint::session {
 
 /// What the log of a resumed session contains about interludes and scores.
 struct Earlier {
-  std::vector<records::EventRow> events;
-  std::vector<records::BlockRecord> blocks;
+  std::vector<core::EventRow> events;
+  std::vector<core::BlockRecord> blocks;
 };
 
 /// Runs the interludes before, between and after the blocks: consents, questionnaires, explanations,
@@ -29,9 +29,9 @@ class Interludes {
   /// Presents an example while `page` is shown.
   using Player = std::function<Flow(const protocol::Example&, Page page)>;
 
-  /// All references must outlive this object.
+  /// All references must outlive this object. `participant` is null if a person takes part.
   Interludes(const Setup& setup, const Pages& pages, const trial::Director& director, OperatorGate& gate,
-             Stage& stage, store::SessionLog& log, Player player);
+             Stage& stage, SimulatedParticipant* participant, store::SessionLog& log, Player player);
 
   /// Restores what was answered and scored before the session was resumed.
   void restore(const Earlier& earlier);
@@ -42,7 +42,7 @@ class Interludes {
 
   /// Adds a trial to the score of its block, as the pass mark of practice counts it: a trial that was not
   /// answered in time is wrong. Void, warm-up and unscored trials are left out.
-  void score(int block_index, int attempt, const std::string& block, const records::TrialRow& trial);
+  void score(int block_index, int attempt, const std::string& block, const core::TrialRow& trial);
 
   /// Why the session ends before its blocks are done; "" if it does not.
   const std::string& ended_because() const { return ended_because_; }
@@ -77,13 +77,14 @@ class Interludes {
   const trial::Director& director_;
   OperatorGate& gate_;
   Stage& stage_;
+  SimulatedParticipant* participant_;
   store::SessionLog& log_;
   Player player_;
   const protocol::Visit visit_;
   const std::vector<protocol::Block> blocks_;
-  std::vector<records::AnswerRow> standing_;
+  std::vector<core::AnswerRow> standing_;
   std::map<int, Score> scores_;  ///< scores of the newest attempt at each block, by the block's index
-  std::set<std::string> done_;   ///< the interludes that are done, named by records::place_name()
+  std::set<std::string> done_;   ///< the interludes that are done, named by core::place_name()
   int occasion_ = 0;
   std::string ended_because_;
 };

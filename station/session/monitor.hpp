@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
+#include "station/core/records.hpp"
 #include "station/protocol/protocol.hpp"
-#include "station/records/records.hpp"
 #include "station/session/plan_ahead.hpp"
 #include "station/trial/director.hpp"
 
@@ -40,7 +40,7 @@ class Monitor {
   virtual void finger_moved(const std::optional<FingerSeen>& /*finger*/) {}
 
   /// A trial has ended and is stored.
-  virtual void trial_ended(const trial::TrialSpec& spec, const records::TrialRow& row) = 0;
+  virtual void trial_ended(const trial::TrialSpec& spec, const core::TrialRow& row) = 0;
 };
 
 }  // namespace turnpoint::session

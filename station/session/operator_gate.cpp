@@ -38,7 +38,7 @@ Input OperatorGate::received(Input input) {
   if (input.kind == InputKind::arm) {
     auto refusal = stage_.clear();
     if (!refusal) refusal = stage_.arm();
-    input.text = refusal ? "refused: " + terms::describe(*refusal) : "armed";
+    input.text = refusal ? "refused: " + core::describe(*refusal) : "armed";
   }
   if (input.kind == InputKind::disarm) {
     stage_.disarm();
@@ -62,7 +62,7 @@ void OperatorGate::note(const Input& input) {
     case InputKind::stop:
       stop_asked_ = true;
       quitting_ = quitting_ || !input.text.empty();
-      stop_reason_ = input.text.empty() ? records::kStoppedReason : input.text;
+      stop_reason_ = input.text.empty() ? core::kStoppedReason : input.text;
       break;
     case InputKind::failure:
       stop_asked_ = true;
@@ -117,13 +117,13 @@ bool OperatorGate::space_again(const std::string& detail) {
 
 bool OperatorGate::armed() const {
   const auto state = stage_.amplifier();
-  return state == drive::AmplifierState::armed || state == drive::AmplifierState::enabled;
+  return state == audio::AmplifierState::armed || state == audio::AmplifierState::enabled;
 }
 
 Flow OperatorGate::until_armed(const Fault& why) {
   auto page = pages_.fault(why.kind, why.detail, director_);
   while (!armed()) {
-    page.amplifier = drive::name(stage_.amplifier());
+    page.amplifier = audio::name(stage_.amplifier());
     show(page);
     auto waited = stage_.wait_until(kForever);
     if (!waited) continue;

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "station/terms/fault.hpp"
-#include "station/texts/texts.hpp"
+#include "station/core/fault.hpp"
+#include "station/core/texts.hpp"
 
 namespace turnpoint::session {
 
@@ -20,7 +20,7 @@ struct EarlySession {
   int min_days = 0;  ///< the protocol's minimum number of days between sessions
 };
 
-using terms::FaultKind;
+using core::FaultKind;
 
 /// The content of the participant's screen. The session decides what it contains; a display only draws it.
 enum class PageKind {
@@ -85,7 +85,7 @@ struct Guidance {
 
 /// A line of the operator's summary at the end of a session, whose label is said in the operator's language.
 struct SummaryLine {
-  texts::Phrase label;
+  core::Phrase label;
   std::string value;
 };
 

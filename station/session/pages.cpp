@@ -2,21 +2,21 @@
 
 #include <map>
 
+#include "station/core/number.hpp"
+#include "station/core/texts.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/interludes.hpp"
 #include "station/scene/planner.hpp"
-#include "station/text/number.hpp"
-#include "station/texts/texts.hpp"
 
 namespace turnpoint::session {
 
-texts::Phrase parameter_name(const std::string& parameter) {
+core::Phrase parameter_name(const std::string& parameter) {
   static const std::map<std::string, const char*> known{
       {"threshold", "report.threshold"}, {"pse", "report.pse"},     {"slope", "report.slope"},
       {"spread", "report.spread"},       {"lapse", "report.lapse"}, {"criterion", "report.criterion"},
       {"gradient", "report.gradient"},   {"floor", "report.floor"}};
   const auto found = known.find(parameter);
-  return found == known.end() ? texts::plain(parameter) : texts::Phrase{found->second, "", {}};
+  return found == known.end() ? core::plain(parameter) : core::Phrase{found->second, "", {}};
 }
 
 namespace {
@@ -97,13 +97,13 @@ Page Pages::blank(PageKind kind, const protocol::Block* block, const trial::Dire
 
 Page Pages::instructions(const protocol::Block& block, const trial::Director& director) const {
   auto page = blank(PageKind::instructions, &block, &director);
-  page.title = texts::text(block.practice ? "practice" : "get_ready", setup_.language);
+  page.title = core::text(block.practice ? "practice" : "get_ready", setup_.language);
   const auto found = setup_.protocol.instructions.find(page.instruction);
   if (found != setup_.protocol.instructions.end()) page.text = text(found->second.text);
   if (block.kind != protocol::BlockKind::trials) {
     const bool training = block.kind == protocol::BlockKind::training;
-    page.title = texts::text(training ? "training" : "measuring", setup_.language);
-    page.text = texts::text(training ? "training_text" : "measuring_text", setup_.language);
+    page.title = core::text(training ? "training" : "measuring", setup_.language);
+    page.text = core::text(training ? "training_text" : "measuring_text", setup_.language);
     return page;
   }
   const auto question = text(setup_.protocol.task.question);
@@ -120,7 +120,7 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
   const bool explored = task.kind == protocol::TaskKind::single_interval && protocol::explored(task);
   if (spec.strokes) {
     const bool hush = phase == Phase::interval;
-    page.text = hush ? "" : texts::text("stroke_now", setup_.language);
+    page.text = hush ? "" : core::text("stroke_now", setup_.language);
     page.correct = result.correct;
     return page;
   }
@@ -136,8 +136,8 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
     page.answers.at(static_cast<std::size_t>(anchor.at) - 1).caption = text(anchor.text);
   if (task.value && page.answers_open) add_value(page, *task.value);
   if (task.value && page.answers_open && task.modulus) {
-    page.value.first = texts::text("first_is", setup_.language);
-    page.value.first.replace(page.value.first.find("%1"), 2, turnpoint::text::number(*task.modulus));
+    page.value.first = core::text("first_is", setup_.language);
+    page.value.first.replace(page.value.first.find("%1"), 2, turnpoint::core::number(*task.modulus));
   }
   if (phase == Phase::confidence) {
     page.text = text(task.confidence->question);
@@ -148,11 +148,11 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
   }
   if (phase == Phase::feedback) {
     page.correct = result.correct;
-    page.text = result.correct ? texts::text(*result.correct ? "right" : "wrong", setup_.language) : "";
+    page.text = result.correct ? core::text(*result.correct ? "right" : "wrong", setup_.language) : "";
   }
   if (phase == Phase::late) {
-    const bool early = result.outcome == terms::Outcome::anticipation;
-    page.text = texts::text(early ? "too_early" : "too_late", setup_.language);
+    const bool early = result.outcome == core::Outcome::anticipation;
+    page.text = core::text(early ? "too_early" : "too_late", setup_.language);
     const auto found = setup_.protocol.instructions.find(page.instruction);
     if (!early && found != setup_.protocol.instructions.end() && !found->second.late_message.empty())
       page.text = text(found->second.late_message);
@@ -164,7 +164,7 @@ std::string Pages::movement(const std::string& word) const {
   static const std::map<std::string, const char*> keys{
       {"ok", "movement_ok"},     {"strokes", "movement_strokes"}, {"light", "movement_light"},
       {"hard", "movement_hard"}, {"slow", "movement_slow"},       {"fast", "movement_fast"}};
-  return texts::text(keys.at(word), setup_.language);
+  return core::text(keys.at(word), setup_.language);
 }
 
 void Pages::add_value(Page& page, const protocol::ValueAnswer& value) const {
@@ -219,22 +219,22 @@ Page Pages::between_trials(const protocol::Block* block, const trial::Director& 
 
 Page Pages::rest(const protocol::Block& block, double min_s, const trial::Director& director) const {
   auto page = blank(PageKind::rest, &block, &director);
-  page.title = texts::text("rest", setup_.language);
-  page.text = texts::text("rest_text", setup_.language);
+  page.title = core::text("rest", setup_.language);
+  page.text = core::text("rest_text", setup_.language);
   page.remaining_s = min_s;
   return page;
 }
 
 Page Pages::practice_again(const protocol::Block& block, const trial::Director& director) const {
   auto page = instructions(block, director);
-  page.title = texts::text("practice_again", setup_.language);
+  page.title = core::text("practice_again", setup_.language);
   return page;
 }
 
 Page Pages::fault(FaultKind kind, const std::string& detail, const trial::Director& director) const {
   auto page = blank(PageKind::fault, nullptr, &director);
-  const auto text = texts::fault_text(kind, setup_.language);
-  page.title = texts::text("please_wait", setup_.language);
+  const auto text = core::fault_text(kind, setup_.language);
+  page.title = core::text("please_wait", setup_.language);
   page.fault = kind;
   page.text = text.happened;
   page.safe = text.safe;
@@ -245,15 +245,15 @@ Page Pages::fault(FaultKind kind, const std::string& detail, const trial::Direct
 
 Page Pages::paused(const trial::Director& director) const {
   auto page = blank(PageKind::paused, nullptr, &director);
-  page.title = texts::text("paused", setup_.language);
+  page.title = core::text("paused", setup_.language);
   return page;
 }
 
 Page Pages::end(const Summary& summary, const trial::Director& director) const {
   auto page = blank(PageKind::end, nullptr, &director);
-  const bool whole = summary.status == records::SessionStatus::completed;
-  page.title = texts::text(whole ? "thanks" : "thanks_early", setup_.language);
-  page.resumable = summary.status == records::SessionStatus::interrupted;
+  const bool whole = summary.status == core::SessionStatus::completed;
+  page.title = core::text(whole ? "thanks" : "thanks_early", setup_.language);
+  page.resumable = summary.status == core::SessionStatus::interrupted;
   // at the end the exact total is known; with adaptive procedures it was an estimate before
   if (whole) page.trials_total = page.trials_done;
   const auto add = [&page](const char* key, const std::string& value) {
@@ -263,10 +263,10 @@ Page Pages::end(const Summary& summary, const trial::Director& director) const {
   add("report.too_late", std::to_string(summary.timeouts));
   add("report.too_early", std::to_string(summary.anticipations));
   add("report.void", std::to_string(summary.voided));
-  if (summary.accuracy) add("report.right", text::number(100 * *summary.accuracy, 3) + " %");
+  if (summary.accuracy) add("report.right", core::number(100 * *summary.accuracy, 3) + " %");
   for (const auto& e : summary.estimates)
     page.summary.push_back({{"", e.procedure + ", ", {parameter_name(e.parameter)}}, in_words(e)});
-  for (const auto& end : summary.early_ends) add("report.ended_early", texts::say(end, setup_.language));
+  for (const auto& end : summary.early_ends) add("report.ended_early", core::say(end, setup_.language));
   return page;
 }
 

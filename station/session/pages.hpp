@@ -1,10 +1,10 @@
 #pragma once
 #include <string>
 
+#include "station/core/texts.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/session/page.hpp"
 #include "station/session/session.hpp"
-#include "station/texts/texts.hpp"
 #include "station/trial/director.hpp"
 #include "station/trial/machine.hpp"
 
@@ -12,7 +12,7 @@ namespace turnpoint::session {
 
 /// How pages call an estimated parameter, such as "threshold". A parameter of a separate program keeps the
 /// name that the program gives it.
-texts::Phrase parameter_name(const std::string& parameter);
+core::Phrase parameter_name(const std::string& parameter);
 
 /// Makes the pages of one session. They contain texts in the session's language, the size of the surface for
 /// its drawing, and the progress.

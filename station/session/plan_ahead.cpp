@@ -5,14 +5,14 @@
 #include <cmath>
 #include <utility>
 
+#include "station/core/draws.hpp"
+#include "station/core/number.hpp"
 #include "station/protocol/resolve.hpp"
 #include "station/protocol/triggers.hpp"
-#include "station/random/draws.hpp"
 #include "station/scene/measures.hpp"
 #include "station/scene/scaled.hpp"
 #include "station/session/burst.hpp"
 #include "station/session/stage.hpp"
-#include "station/text/number.hpp"
 #include "station/trial/timing.hpp"
 
 namespace turnpoint::session {
@@ -22,17 +22,17 @@ namespace {
 /// Returns a text that is the same for two trials if and only if their stimuli are the same.
 std::string key_of(const trial::TrialSpec& trial, double drift) {
   std::string key =
-      fmt::format("{}/{}/{}/{}", trial.block_index, trial.attempt, trial.trial_in_block, text::exact(drift));
+      fmt::format("{}/{}/{}/{}", trial.block_index, trial.attempt, trial.trial_in_block, core::exact(drift));
   for (const auto& [name, value] : trial.factors) {
     key += "|" + name + "=";
     if (const auto* number = std::get_if<double>(&value))
-      key += text::exact(*number);
+      key += core::exact(*number);
     else
       key += std::get<std::string>(value);
   }
-  if (trial.strokes) key += "|strokes " + text::exact(trial.level.value_or(0));
+  if (trial.strokes) key += "|strokes " + core::exact(trial.level.value_or(0));
   for (std::size_t i = 0; i < trial.intervals.size(); ++i) {
-    key += "|" + text::exact(trial.rove_dB[i]);
+    key += "|" + core::exact(trial.rove_dB[i]);
     for (const auto& scene : trial.intervals[i]) key += ":" + scene;
   }
   return key;
@@ -152,17 +152,17 @@ scene::DrivePlan PlanAhead::plan_strokes(const trial::TrialSpec& trial) {
   return made;
 }
 
-std::vector<drive::PreparedBurst> PlanAhead::bursts_of(const trial::TrialSpec& trial,
+std::vector<audio::PreparedBurst> PlanAhead::bursts_of(const trial::TrialSpec& trial,
                                                        const Plans& plans) const {
   const auto stream = stream_of(rig_);
   const int rate_Hz = stream.output.rate_Hz;
   const auto times = trial::interval_times(protocol_, trial);
   const auto& task = protocol_.task;
-  random::Draws noise(
-      {seed_, random::Stream::masking_noise, trial.block_index, trial.attempt, trial.trial_in_block});
+  core::Draws noise(
+      {seed_, core::Stream::masking_noise, trial.block_index, trial.attempt, trial.trial_in_block});
   MarkerCodes codes{protocol::trigger_code(protocol_, protocol::TriggerEvent::onset, trial.factors),
                     protocol::trigger_code(protocol_, protocol::TriggerEvent::change, trial.factors)};
-  std::vector<drive::PreparedBurst> bursts;
+  std::vector<audio::PreparedBurst> bursts;
   std::int64_t start_frame = 0;
   for (std::size_t i = 0; i < plans.size(); ++i) {
     auto burst = burst_of(plans[i], times[i].starts_s, times[i].transitions_s, times[i].length_s, rate_Hz);
@@ -176,7 +176,7 @@ std::vector<drive::PreparedBurst> PlanAhead::bursts_of(const trial::TrialSpec& t
       signal(burst, *rig_.noise, *at_s, rate_Hz);
     burst.start_frame = start_frame;
     start_frame += burst.length_frames + std::llround(task.gap_s.value_or(0) * rate_Hz);
-    bursts.push_back(drive::prepare(burst, drive::format_of(stream.output), stream.limits));
+    bursts.push_back(audio::prepare(burst, audio::format_of(stream.output), stream.limits));
   }
   return bursts;
 }

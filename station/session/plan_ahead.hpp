@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "station/drive/prepared_burst.hpp"
+#include "station/audio/prepared_burst.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/planner.hpp"
@@ -27,7 +27,7 @@ class PlanAhead {
   using Plans = std::vector<std::vector<scene::DrivePlan>>;
   struct Planned {
     Plans plans;
-    std::vector<drive::PreparedBurst> bursts;
+    std::vector<audio::PreparedBurst> bursts;
   };
 
   /// The protocol must outlive this object. `seed` is the seed of the session. Throws the errors
@@ -56,7 +56,7 @@ class PlanAhead {
   void run(const std::stop_token& stop);
   Planned plan(const trial::TrialSpec& trial, double drift);
   scene::DrivePlan plan_strokes(const trial::TrialSpec& trial);
-  std::vector<drive::PreparedBurst> bursts_of(const trial::TrialSpec& trial,
+  std::vector<audio::PreparedBurst> bursts_of(const trial::TrialSpec& trial,
                                               const std::vector<std::vector<scene::DrivePlan>>& plans) const;
 
   rig::Rig rig_;

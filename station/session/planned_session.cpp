@@ -12,12 +12,12 @@
 #include <set>
 #include <utility>
 
+#include "station/core/texts.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/store/open.hpp"
 #include "station/store/people.hpp"
 #include "station/store/read.hpp"
 #include "station/store/station.hpp"
-#include "station/texts/texts.hpp"
 
 namespace turnpoint::session {
 
@@ -31,8 +31,8 @@ std::string describe(const EarlySession& early) {
 
 namespace {
 
+using core::phrase, core::plain;
 using std::chrono::sys_days;
-using texts::phrase, texts::plain;
 
 /// Returns the day of an ISO 8601 date or date and time; empty if the text does not begin with one.
 std::optional<sys_days> day_of(const std::string& date) {
@@ -57,11 +57,11 @@ std::string text_of(const sys_days& day) {
 }
 
 /// True if this session counts as done.
-bool counts(const store::SessionRecord& session, const protocol::Protocol& protocol, terms::RunMode mode) {
+bool counts(const store::SessionRecord& session, const protocol::Protocol& protocol, core::RunMode mode) {
   if (session.start.run_mode != mode || !session.start.planned_session) return false;
-  if (session.status == records::SessionStatus::completed) return true;
+  if (session.status == core::SessionStatus::completed) return true;
   return protocol.sessions->incomplete == protocol::Unfinished::count && session.trials > 0 &&
-         session.status != records::SessionStatus::running;
+         session.status != core::SessionStatus::running;
 }
 
 /// The sessions that a person has had with a protocol.
@@ -83,7 +83,7 @@ void check_days(const Setup& setup, const std::vector<const store::SessionRecord
                 const std::string& today, NextSession& next) {
   const int min_days = setup.protocol.sessions->min_days;
   const auto now = day_of(today);
-  if (min_days == 0 || !now || setup.run_mode == terms::RunMode::simulated) return;
+  if (min_days == 0 || !now || setup.run_mode == core::RunMode::simulated) return;
   const store::SessionRecord* last = nullptr;
   for (const auto* session : done)
     if (!last || day_of(session->start.started_local) >= day_of(last->start.started_local)) last = session;
@@ -169,9 +169,9 @@ procedure::EarlierTrials earlier_trials(const std::string& database_path, const 
   }
   for (const auto& [number, other] : before) {
     if (other->start.protocol_version != protocol.version)
-      throw texts::Refusal(phrase("refusal.other_version", {plain(start.participant), plain(number),
-                                                            plain(other->start.protocol_version),
-                                                            plain(protocol.id), plain(protocol.version)}));
+      throw core::Refusal(phrase("refusal.other_version", {plain(start.participant), plain(number),
+                                                           plain(other->start.protocol_version),
+                                                           plain(protocol.id), plain(protocol.version)}));
     trial::add_earlier_trials(protocol, store::read_session(database, *other).blocks, earlier);
   }
   for (const auto& [name, trials] : earlier) {

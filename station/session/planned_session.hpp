@@ -4,11 +4,11 @@
 #include <utility>
 #include <vector>
 
+#include "station/core/problem.hpp"
+#include "station/core/texts.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/session/session.hpp"
 #include "station/store/session_log.hpp"
-#include "station/text/problem.hpp"
-#include "station/texts/texts.hpp"
 #include "station/trial/earlier_trials.hpp"
 
 namespace turnpoint::session {
@@ -17,9 +17,9 @@ namespace turnpoint::session {
 std::string describe(const EarlySession& early);
 
 /// A session that is possible, except that it would begin too early.
-class TooEarly : public text::BadInput {
+class TooEarly : public core::BadInput {
  public:
-  TooEarly(text::Problem problem, EarlySession early)
+  TooEarly(core::Problem problem, EarlySession early)
       : BadInput({std::move(problem)}), early_(std::move(early)) {}
   const EarlySession& early() const { return early_; }
 
@@ -34,8 +34,8 @@ protocol::Visit visit_of(const store::SessionRecord& session);
 /// The planned session that a participant does next, or the reason why it cannot begin now.
 struct NextSession {
   std::optional<int> number;  ///< empty if the protocol plans no sessions
-  texts::Phrase problem;      ///< why the session cannot begin; empty if it can
-  texts::Phrase allowed;      ///< what is possible instead
+  core::Phrase problem;       ///< why the session cannot begin; empty if it can
+  core::Phrase allowed;       ///< what is possible instead
   /// set if the problem is only that too few days have passed, so that a reason overrules it
   std::optional<EarlySession> too_early;
   /// why it would be refused if the operator had not given a reason
@@ -50,7 +50,7 @@ NextSession next_session(const Setup& setup, const std::vector<store::SessionRec
 
 /// Returns the trials of the participant's earlier planned sessions, for procedures of the protocol that
 /// continue. `session` is the session that is about to begin or was begun: its participant, station, run
-/// mode, planned session and session_index count. Throws terms::UsageError if an earlier session was made
+/// mode, planned session and session_index count. Throws core::UsageError if an earlier session was made
 /// with another version of the protocol, and std::runtime_error if a procedure could not have presented its
 /// trials.
 procedure::EarlierTrials earlier_trials(const std::string& database, const protocol::Protocol& protocol,

@@ -9,14 +9,14 @@
 
 namespace turnpoint::session {
 
-// Functions that the real and the virtual stage share. They use an audio stream (drive::Stream).
+// Functions that the real and the virtual stage share. They use an audio stream (audio::Stream).
 
 /// The burst of one interval of the current trial. It is kept because the drive's reports give only the
 /// burst's number, not the interval.
 struct Presented {
   std::uint32_t burst = 0;
   std::int64_t start_frame = 0, end_frame = 0;
-  drive::Ramp ramp;
+  audio::Ramp ramp;
 };
 
 /// Returns the interval to which a burst belongs; empty if the burst belongs to an earlier trial.
@@ -28,11 +28,11 @@ inline std::optional<int> interval_of(const std::vector<Presented>& presented, s
 
 /// Schedules the intervals of a trial. Returns nothing if the stream does not know yet at which time it plays
 /// which frame.
-inline std::vector<Onset> schedule(drive::Stream& stream, std::span<const drive::PreparedBurst> intervals,
+inline std::vector<Onset> schedule(audio::Stream& stream, std::span<const audio::PreparedBurst> intervals,
                                    std::int64_t earliest_ns, std::vector<Presented>& presented) {
   const auto earliest = stream.frame_at(earliest_ns);
   if (!earliest) return {};
-  std::vector<drive::PreparedBurst> bursts(intervals.begin(), intervals.end());
+  std::vector<audio::PreparedBurst> bursts(intervals.begin(), intervals.end());
   const auto later = std::max<std::int64_t>(0, *earliest) - bursts.front().start_frame;
   for (auto& burst : bursts) burst.start_frame += later;
   const auto scheduled = stream.schedule_together(bursts);
@@ -44,43 +44,43 @@ inline std::vector<Onset> schedule(drive::Stream& stream, std::span<const drive:
     if (const auto time_ns = stream.time_of(start)) onsets.push_back({start, *time_ns});
   }
   if (onsets.size() == bursts.size()) return onsets;
-  stream.stop(0, drive::Ramp{});  // the stream's clock became unknown after some intervals had been scheduled
+  stream.stop(0, audio::Ramp{});  // the stream's clock became unknown after some intervals had been scheduled
   return {};
 }
 
 /// Returns the bursts of the intervals, with the start frames at which they were scheduled.
-inline std::vector<drive::PreparedBurst> scheduled(std::span<const drive::PreparedBurst> intervals,
+inline std::vector<audio::PreparedBurst> scheduled(std::span<const audio::PreparedBurst> intervals,
                                                    const std::vector<Presented>& presented) {
-  std::vector<drive::PreparedBurst> bursts(intervals.begin(), intervals.end());
+  std::vector<audio::PreparedBurst> bursts(intervals.begin(), intervals.end());
   for (std::size_t i = 0; i < bursts.size(); ++i) bursts[i].start_frame = presented[i].start_frame;
   return bursts;
 }
 
 /// Makes the last interval glide to other tones. Returns the change that was sent; empty if it is too late
 /// for one.
-inline std::optional<drive::Change> glide_to(drive::Stream& stream, const std::vector<Presented>& presented,
-                                             const drive::ToneSet& to, double seconds) {
+inline std::optional<audio::Change> glide_to(audio::Stream& stream, const std::vector<Presented>& presented,
+                                             const audio::ToneSet& to, double seconds) {
   if (presented.empty()) return std::nullopt;
   const auto& sounding = presented.back();
   const auto frames = static_cast<std::int64_t>(seconds * stream.config().output.rate_Hz);
   const auto at = std::max(stream.earliest_frame(), sounding.start_frame);
   // A burst that has begun its final ramp can no longer change to other tones.
   if (at + frames + sounding.ramp.frames >= sounding.end_frame) return std::nullopt;
-  const drive::Change change{at - sounding.start_frame, frames, to};
+  const audio::Change change{at - sounding.start_frame, frames, to};
   stream.change(sounding.burst, change);
   return change;
 }
 
-inline std::optional<ClockFit> fit_of(drive::Stream& stream) {
+inline std::optional<ClockFit> fit_of(audio::Stream& stream) {
   const auto fit = stream.clock();
   return fit.pairs > 0 ? std::optional(ClockFit{fit.ns_per_frame, fit.residual_ns}) : std::nullopt;
 }
 
 /// Ramps all bursts down. Returns the time at which the last ramp ends, or a later time if that is not known
 /// exactly.
-inline std::int64_t ramp_down(drive::Stream& stream, const std::vector<Presented>& presented,
+inline std::int64_t ramp_down(audio::Stream& stream, const std::vector<Presented>& presented,
                               std::int64_t now_ns) {
-  const auto ramp = presented.empty() ? drive::Ramp{} : presented.back().ramp;
+  const auto ramp = presented.empty() ? audio::Ramp{} : presented.back().ramp;
   stream.stop(0, ramp);
   if (const auto silent_ns = stream.time_of(stream.earliest_frame() + ramp.frames)) return *silent_ns;
   const auto& output = stream.config().output;

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <utility>
 
-#include "station/drive/recovery.hpp"
+#include "station/audio/recovery.hpp"
 #include "station/session/presented.hpp"
 #include "station/session/trial_capture.hpp"
 #include "station/system/clocks.hpp"
@@ -29,7 +29,7 @@ constexpr std::int64_t kTail_ns = 20'000'000;
 
 class RealStage : public Stage {
  public:
-  RealStage(drive::StreamConfig config, Devices devices, Inputs& inputs,
+  RealStage(audio::StreamConfig config, Devices devices, Inputs& inputs,
             const std::optional<CardCapture>& capture, const TriggerSetup& triggers)
       : devices_(std::move(devices)), inputs_(inputs), clocks_(devices_.clocks()) {
     config.amplifier = devices_.amplifier.get();
@@ -72,7 +72,7 @@ class RealStage : public Stage {
     }
   }
 
-  std::vector<Onset> present(std::span<const drive::PreparedBurst> intervals,
+  std::vector<Onset> present(std::span<const audio::PreparedBurst> intervals,
                              std::int64_t earliest_ns) override {
     // The bursts of an aborted trial may still be ramping down. They occupy the drive until they are silent.
     wait_for([&] { return now_ns() >= quiet_ns_; });
@@ -96,12 +96,12 @@ class RealStage : public Stage {
     return onsets;
   }
 
-  std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) override {
+  std::optional<std::int64_t> glide(const audio::ToneSet& to, double seconds) override {
     const auto change = glide_to(*stream_, presented_, to, seconds);
     if (!change) return std::nullopt;
     if (capture_)
       capture_->feed().watch().changed(presented_.size() - 1, *change,
-                                       drive::format_of(stream_->config().output));
+                                       audio::format_of(stream_->config().output));
     return presented_.back().start_frame + change->at_frame;
   }
 
@@ -138,13 +138,13 @@ class RealStage : public Stage {
     if (!refusal) fault_told_ = false;
     return refusal;
   }
-  drive::AmplifierState amplifier() const override { return devices_.amplifier->state(); }
+  audio::AmplifierState amplifier() const override { return devices_.amplifier->state(); }
 
   Refusal open_amplifier() override {
     if (const auto refusal = align()) return refusal;
     if (const auto refusal = await_cells()) return refusal;
     closing_ = false;
-    if (amplifier() == drive::AmplifierState::enabled) return std::nullopt;
+    if (amplifier() == audio::AmplifierState::enabled) return std::nullopt;
     if (capture_ && std::exchange(off_, false)) capture_->feed().amplifier_goes_on();
     opened_ns_ = now_ns();
     show_life();
@@ -161,11 +161,7 @@ class RealStage : public Stage {
     return devices_.buttons ? devices_.buttons->names() : no_buttons_;
   }
   std::string missing() const override { return devices_.buttons ? devices_.buttons->missing() : ""; }
-  void question(const observer::Question&, const trial::SimulatedTimes&) override {}
-  void adjustment(const observer::Adjustment&, const trial::TrialSpec&,
-                  const trial::SimulatedTimes&) override {}
-  void simulate(Input) override {}
-  drive::Amplifier* guarded_amplifier() override { return devices_.amplifier.get(); }
+  audio::Amplifier* guarded_amplifier() override { return devices_.amplifier.get(); }
   void set_drift(double share) override {
     if (capture_) capture_->feed().watch().set_drift(share);
   }
@@ -183,18 +179,18 @@ class RealStage : public Stage {
 
   void finish() override {
     closing_ = true;
-    wait_for([this] { return amplifier() != drive::AmplifierState::enabled; });
+    wait_for([this] { return amplifier() != audio::AmplifierState::enabled; });
     amplifier_().disarm();
   }
 
  private:
-  drive::Amplifier& amplifier_() { return *devices_.amplifier; }
+  audio::Amplifier& amplifier_() { return *devices_.amplifier; }
 
   /// Measures the delay from playback to capture if it is not known. The amplifier is off meanwhile.
   Refusal align() {
     if (!capture_ || capture_->aligned()) return std::nullopt;
     closing_ = true;
-    wait_for([this] { return amplifier() != drive::AmplifierState::enabled; });
+    wait_for([this] { return amplifier() != audio::AmplifierState::enabled; });
     return capture_->align();
   }
 
@@ -233,7 +229,7 @@ class RealStage : public Stage {
       inputs_.push_fault(now, FaultKind::stimulus_missed,
                          "the converter does not report whether a stimulus was played");
     }
-    if (amplifier() == drive::AmplifierState::faulted && !std::exchange(fault_told_, true))
+    if (amplifier() == audio::AmplifierState::faulted && !std::exchange(fault_told_, true))
       tell_amplifier_fault();
     if (now >= clocks_due_ns_) look_at_clocks(now);
   }
@@ -270,7 +266,7 @@ class RealStage : public Stage {
   /// obey, or something else drives the surface.
   void listen_while_off() {
     auto& feed = capture_->feed();
-    const bool off = amplifier() != drive::AmplifierState::enabled;
+    const bool off = amplifier() != audio::AmplifierState::enabled;
     if (off && !off_) feed.amplifier_is_off();
     if (!off && off_) feed.amplifier_goes_on();
     off_ = off;
@@ -292,10 +288,10 @@ class RealStage : public Stage {
     return onset.time_ns + frames * 1'000'000'000 / stream_->config().output.rate_Hz;
   }
 
-  void hear(const drive::Event& event, std::int64_t now) {
+  void hear(const audio::Event& event, std::int64_t now) {
     const auto interval = interval_of(presented_, event.burst);
     switch (event.kind) {
-      case drive::EventKind::underrun:
+      case audio::EventKind::underrun:
         if (capture_ && event.retimed) capture_->feed().misalign();
         inputs_.push(InputKind::xrun, now,
                      fmt::format("{} frames lost from frame {}", event.frames, event.frame),
@@ -305,28 +301,28 @@ class RealStage : public Stage {
               InputKind::failure, now,
               "more than three underruns within a minute; run `turnpoint doctor`, then resume the session");
         return;
-      case drive::EventKind::burst_missed:
+      case audio::EventKind::burst_missed:
         if (triggers_->owns(event.burst)) return triggers_->missed(event.burst);
         return inputs_.push_fault(now, FaultKind::stimulus_missed, "a stimulus came too late to be played");
-      case drive::EventKind::device_lost:
+      case audio::EventKind::device_lost:
         if (capture_) capture_->feed().misalign();
         unheard_ = 0;  // the trial is void, so do not wait for reports about its intervals
         if (!presented_.empty()) lost_ns_ = later(first_onset_, event.frame - first_onset_.frame);
         amplifier_().trip(FaultKind::converter_gone,
                           event.error == 0 ? "" : std::strerror(std::abs(event.error)));
         return;  // attend() will report the fault that the amplifier has latched
-      case drive::EventKind::device_back:
+      case audio::EventKind::device_back:
         wrong_rate_.reset();  // this may be another device, with the right rate
         return inputs_.push(InputKind::notice, now, "the sound device is back");
-      case drive::EventKind::rate_wrong:
+      case audio::EventKind::rate_wrong:
         wrong_rate_ = Fault{FaultKind::converter_rate, fmt::format("{:.1f} Hz instead of {} Hz",
                                                                    1e-3 * static_cast<double>(event.frames),
                                                                    stream_->config().output.rate_Hz)};
         return amplifier_().trip(wrong_rate_->kind, wrong_rate_->detail);
-      case drive::EventKind::burst_started:
-      case drive::EventKind::burst_ended:
+      case audio::EventKind::burst_started:
+      case audio::EventKind::burst_ended:
         return;
-      case drive::EventKind::burst_heard:
+      case audio::EventKind::burst_heard:
         if (!interval) return;
         if (unheard_ > 0) --unheard_;
         if (!capture_) return inputs_.push(InputKind::heard, now, "", *interval);
@@ -350,7 +346,7 @@ class RealStage : public Stage {
   // amplifier is switched off.
   Devices devices_;
   Inputs& inputs_;
-  std::unique_ptr<drive::Stream> stream_;
+  std::unique_ptr<audio::Stream> stream_;
   std::optional<Triggers> triggers_;
   std::unique_ptr<TrialCapture> capture_;  ///< null if nothing is captured
   std::vector<Presented> presented_;
@@ -358,7 +354,7 @@ class RealStage : public Stage {
   std::size_t unheard_ = 0;  ///< number of intervals not yet reported as played
   /// time at which the converter was lost during a trial; the surface has been silent since then
   std::optional<std::int64_t> lost_ns_;
-  drive::UnderrunLimit underruns_;
+  audio::UnderrunLimit underruns_;
   system::ClockWatch clocks_;
   std::int64_t clocks_due_ns_ = 0;
   std::int64_t quiet_ns_ = 0;   ///< time from which the surface no longer vibrates
@@ -379,7 +375,7 @@ std::string describe(const system::Rights& rights) {
                      rights.note);
 }
 
-std::unique_ptr<Stage> real_stage(const drive::StreamConfig& stream, Devices devices, Inputs& inputs,
+std::unique_ptr<Stage> real_stage(const audio::StreamConfig& stream, Devices devices, Inputs& inputs,
                                   const std::optional<CardCapture>& capture, const TriggerSetup& triggers) {
   return std::make_unique<RealStage>(stream, std::move(devices), inputs, capture, triggers);
 }

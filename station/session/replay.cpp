@@ -4,26 +4,26 @@
 #include <optional>
 #include <string>
 
+#include "station/core/number.hpp"
+#include "station/core/texts.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/session/planned_session.hpp"
-#include "station/text/number.hpp"
-#include "station/texts/texts.hpp"
 #include "station/trial/question.hpp"
 #include "station/trial/rows.hpp"
 
 namespace turnpoint::session {
 
-using texts::Failure, texts::phrase, texts::plain;
+using core::Failure, core::phrase, core::plain;
 
 namespace {
 
-texts::Phrase stored_level(const std::optional<double>& level) {
-  return plain(text::exact(level.value_or(0)));
+core::Phrase stored_level(const std::optional<double>& level) {
+  return plain(core::exact(level.value_or(0)));
 }
 
 /// Advances the director to a block that the log contains. For this, finishes the director's current block,
 /// or repeats a restart of the block or session that is in the log.
-void enter_stored(trial::Director& director, const records::BlockStart& block) {
+void enter_stored(trial::Director& director, const core::BlockStart& block) {
   const auto here = [&] {
     return director.block_index() == block.block_index && director.attempt() == block.attempt;
   };
@@ -35,9 +35,8 @@ void enter_stored(trial::Director& director, const records::BlockStart& block) {
 }
 
 /// Refuses a session because the separate program of a procedure would not present the stored level.
-[[noreturn]] void refuse_program(const std::string& procedure, const records::TrialRow& trial,
-                                 texts::Phrase now, const store::StoredSession& stored,
-                                 const programs::Programs& programs) {
+[[noreturn]] void refuse_program(const std::string& procedure, const core::TrialRow& trial, core::Phrase now,
+                                 const store::StoredSession& stored, const Programs& programs) {
   std::string path = procedure;
   auto change = phrase("resume.program_differs");
   for (const auto& program : programs.started()) {
@@ -52,12 +51,12 @@ void enter_stored(trial::Director& director, const records::BlockStart& block) {
                                           stored_level(trial.level), std::move(change)}));
 }
 
-/// Lets the director process a stored trial again. Throws texts::Failure if the director would have
+/// Lets the director process a stored trial again. Throws core::Failure if the director would have
 /// presented another level or has another state afterwards. In that case the log comes from a different
 /// program or protocol.
-void replay(trial::Director& director, const records::TrialRow& trial, const protocol::Protocol& protocol,
-            const store::StoredSession& stored, const programs::Programs& programs) {
-  const auto mismatch = [&trial](const char* what, std::vector<texts::Phrase> values = {}) {
+void replay(trial::Director& director, const core::TrialRow& trial, const protocol::Protocol& protocol,
+            const store::StoredSession& stored, const Programs& programs) {
+  const auto mismatch = [&trial](const char* what, std::vector<core::Phrase> values = {}) {
     throw Failure(phrase("resume.mismatch", {plain(trial.trial_index), phrase(what, std::move(values))}));
   };
   const auto spec = director.next();
@@ -81,7 +80,7 @@ void replay(trial::Director& director, const records::TrialRow& trial, const pro
     for (std::size_t i = 0; i < protocol.task.choices.size(); ++i)
       if (protocol.task.choices[i].id == *trial.response) end.response = static_cast<int>(i);
   if ((spec->slider || protocol.task.value) && trial.response) {
-    const auto value = text::read_number(*trial.response);
+    const auto value = core::read_number(*trial.response);
     if (!value) mismatch("resume.no_number", {plain(*trial.response)});
     end.response = 0;
     if (spec->slider) end.setting = value;
@@ -93,15 +92,15 @@ void replay(trial::Director& director, const records::TrialRow& trial, const pro
 /// Checks that the simulated observer gives the stored answer, because a session must not mix
 /// the answers of two different observers. Adjustments are not checked, because their rows contain no answer
 /// of the observer.
-void check_observer(const Setup& setup, const observer::Respondent& observer,
+void check_observer(const Setup& setup, const simulation::Respondent& observer,
                     const store::StoredSession& stored, const trial::TrialSpec& spec,
-                    const records::TrialRow& trial) {
+                    const core::TrialRow& trial) {
   constexpr double tolerance_s = 1e-3;
-  if (trial.outcome != terms::Outcome::answered || !trial.response_time_s || spec.slider || spec.strokes)
+  if (trial.outcome != core::Outcome::answered || !trial.response_time_s || spec.slider || spec.strokes)
     return;
   const auto reply = observer.answer(trial::question_of(spec, setup.protocol, stored.session.start.seed));
   const auto& choices = setup.protocol.task.choices;
-  const auto answer = reply.value    ? std::optional(text::exact(*reply.value))
+  const auto answer = reply.value    ? std::optional(core::exact(*reply.value))
                       : reply.choice ? std::optional(choices[static_cast<std::size_t>(*reply.choice)].id)
                                      : std::nullopt;
   if (answer == trial.response && reply.confidence == trial.confidence &&
@@ -112,17 +111,16 @@ void check_observer(const Setup& setup, const observer::Respondent& observer,
 
 }  // namespace
 
-const records::ProgramRow* as_recorded(const records::ProgramRow& program,
-                                       const std::vector<records::EventRow>& events) {
-  const records::ProgramRow* last = nullptr;
+const core::ProgramRow* as_recorded(const core::ProgramRow& program,
+                                    const std::vector<core::EventRow>& events) {
+  const core::ProgramRow* last = nullptr;
   for (const auto& event : events)
     for (const auto& stored : event.programs)
       if (stored.role == program.role && stored.procedure == program.procedure) last = &stored;
   return last;
 }
 
-trial::Director replayed(const Setup& setup, const store::StoredSession& stored,
-                         programs::Programs& programs) {
+trial::Director replayed(const Setup& setup, const store::StoredSession& stored, Programs& programs) {
   trial::Director director(setup.protocol, visit_of(stored.session), stored.session.start.seed, &programs,
                            earlier_trials(setup.database, setup.protocol, stored.session));
   const auto observer =
@@ -130,7 +128,7 @@ trial::Director replayed(const Setup& setup, const store::StoredSession& stored,
   for (const auto& block : stored.blocks) {
     enter_stored(director, block.start);
     for (const auto& trial : block.trials)
-      if (trial.type != terms::TrialType::warmup) {
+      if (trial.type != core::TrialType::warmup) {
         const auto spec = director.next();
         replay(director, trial, setup.protocol, stored, programs);
         if (spec && observer) check_observer(setup, *observer, stored, *spec, trial);

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <tuple>
 
+#include "station/core/limits.hpp"
+#include "station/core/number.hpp"
 #include "station/sensing/felt_step.hpp"
 #include "station/store/signal_code.hpp"
-#include "station/terms/limits.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::session {
 
@@ -40,7 +40,7 @@ const char* kind_of(const Input& input) {
     case InputKind::frames_lost:
       return "frames_lost";
     case InputKind::signal_shown:
-      return input.number > terms::kSignalLate_s ? records::kSignalLateEvent : records::kSignalShownEvent;
+      return input.number > core::kSignalLate_s ? core::kSignalLateEvent : core::kSignalShownEvent;
     case InputKind::xrun:
       return "xrun";
     case InputKind::heard:
@@ -71,8 +71,8 @@ const char* kind_of(const Input& input) {
 
 /// What is known of the silence before an interval.
 std::string silence_before(const sensing::IntervalResult& measured) {
-  if (!measured.silence || measured.silence->verdict == terms::Proof::unproven) return "";
-  if (measured.silence->verdict == terms::Proof::lost) return "; silence before it not measured";
+  if (!measured.silence || measured.silence->verdict == core::Proof::unproven) return "";
+  if (measured.silence->verdict == core::Proof::lost) return "; silence before it not measured";
   return fmt::format("; silence before it: tone {:.0f} dB, all {:.0f} dB", measured.silence->level_dB,
                      measured.silence->rms_dB);
 }
@@ -84,10 +84,10 @@ std::string value_of(const Input& input) {
     return fmt::format("{} {} {}{}", input.value, name(input.measured->verdict), name(input.measured->cause),
                        silence_before(*input.measured));
   if (!input.text.empty()) return input.text;
-  if (input.kind == InputKind::signal_shown) return text::number(input.number, 4);
-  if (input.kind == InputKind::slider || input.kind == InputKind::value) return text::exact(input.number);
+  if (input.kind == InputKind::signal_shown) return core::number(input.number, 4);
+  if (input.kind == InputKind::slider || input.kind == InputKind::value) return core::exact(input.number);
   if (input.kind == InputKind::contact && input.number >= 0)
-    return fmt::format("{} {}", input.value, text::number(input.number, 4));
+    return fmt::format("{} {}", input.value, core::number(input.number, 4));
   return std::to_string(input.value);
 }
 
@@ -97,9 +97,9 @@ struct Placed {
   std::int64_t onset_frame = 0, length_frames = 0;
 };
 
-void add_scene(records::TrialRow& row, const scene::DrivePlan& plan, const Placed& placed) {
+void add_scene(core::TrialRow& row, const scene::DrivePlan& plan, const Placed& placed) {
   for (std::size_t t = 0; t < plan.tones.size(); ++t) {
-    records::ToneRow tone;
+    core::ToneRow tone;
     tone.interval_index = placed.interval;
     tone.scene_index = placed.scene;
     tone.tone_index = static_cast<int>(t);
@@ -120,7 +120,7 @@ void add_scene(records::TrialRow& row, const scene::DrivePlan& plan, const Place
   }
 }
 
-void take_last(records::TrialRow& row, const scene::DrivePlan& last) {
+void take_last(core::TrialRow& row, const scene::DrivePlan& last) {
   row.boundary_mm = last.boundary_m ? std::optional(1e3 * *last.boundary_m) : std::nullopt;
   if (last.tones.empty()) return;
   row.frequency_Hz = last.tones.front().frequency_Hz;
@@ -129,8 +129,8 @@ void take_last(records::TrialRow& row, const scene::DrivePlan& last) {
 
 }  // namespace
 
-void add_tones(records::TrialRow& row, const std::vector<scene::DrivePlan>& scenes, int interval,
-               std::int64_t onset_frame, const drive::PreparedBurst& burst) {
+void add_tones(core::TrialRow& row, const std::vector<scene::DrivePlan>& scenes, int interval,
+               std::int64_t onset_frame, const audio::PreparedBurst& burst) {
   for (std::size_t s = 0; s < scenes.size(); ++s) {
     const auto start = s == 0 ? 0 : burst.changes[s - 1].at_frame;
     const auto end = s + 1 < scenes.size() ? burst.changes[s].at_frame : burst.length_frames;
@@ -139,7 +139,7 @@ void add_tones(records::TrialRow& row, const std::vector<scene::DrivePlan>& scen
   take_last(row, scenes.back());
 }
 
-void set_scene(records::TrialRow& row, const scene::DrivePlan& scene, std::int64_t frame) {
+void set_scene(core::TrialRow& row, const scene::DrivePlan& scene, std::int64_t frame) {
   std::int64_t end = 0;
   for (const auto& tone : row.tones) end = std::max(end, tone.onset_frame + tone.length_frames);
   std::erase_if(row.tones, [](const auto& tone) { return tone.scene_index == 1; });
@@ -159,7 +159,7 @@ int scene_of(const sensing::IntervalResult& measured, int stretch) {
 
 }  // namespace
 
-void add_measured(records::TrialRow& row, const sensing::IntervalResult& measured, int interval, bool first) {
+void add_measured(core::TrialRow& row, const sensing::IntervalResult& measured, int interval, bool first) {
   for (const auto& tone : measured.tones)
     for (auto& planned : row.tones) {
       if (!tone.seen || planned.interval_index != interval ||
@@ -207,7 +207,7 @@ sensing::StripPart part_of(const trial::TrialSpec& spec) {
   return {spec.strokes->from_mm, spec.strokes->to_mm};
 }
 
-void add_forces(records::TrialRow& row, const sensing::TrialForces& forces, const Asked& asked, int rate_Hz,
+void add_forces(core::TrialRow& row, const sensing::TrialForces& forces, const Asked& asked, int rate_Hz,
                 const FrameTime& at) {
   const auto known = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
   auto& finger = row.finger;
@@ -233,7 +233,7 @@ void add_forces(records::TrialRow& row, const sensing::TrialForces& forces, cons
   }
   finger.tare_mN = 1e3 * forces.tare_moved_N;
   if (forces.track.empty()) return;
-  records::SignalRow signal;
+  core::SignalRow signal;
   signal.stream = "finger";
   signal.start_frame = forces.track.front().index * forces.frames_per_point;
   signal.start_s = at.time_s + static_cast<double>(signal.start_frame - at.frame) / rate_Hz;
@@ -251,16 +251,16 @@ void add_forces(records::TrialRow& row, const sensing::TrialForces& forces, cons
   row.signal_rows.push_back(std::move(signal));
 }
 
-std::string describe_proof(const records::TrialRow& row) {
-  std::string text = terms::describe(row.proof_cause);
+std::string describe_proof(const core::TrialRow& row) {
+  std::string text = core::describe(row.proof_cause);
   if (row.drive_ratio_dB) text += fmt::format("; level {:+.1f} dB", *row.drive_ratio_dB);
   if (row.drive_residual_dB) text += fmt::format("; residual {:.0f} dB", *row.drive_residual_dB);
   if (row.onset_error_us) text += fmt::format("; onset {:+.0f} us", *row.onset_error_us);
   return text;
 }
 
-records::EventRow event_row(const Input& input, int trial_index) {
-  records::EventRow row;
+core::EventRow event_row(const Input& input, int trial_index) {
+  core::EventRow row;
   row.time_ns = input.time_ns;
   row.kind = kind_of(input);
   row.trial_index = trial_index;

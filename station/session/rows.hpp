@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "station/drive/prepared_burst.hpp"
-#include "station/observer/observer.hpp"
+#include "station/audio/prepared_burst.hpp"
+#include "station/core/records.hpp"
 #include "station/protocol/protocol.hpp"
-#include "station/records/records.hpp"
 #include "station/scene/planner.hpp"
 #include "station/session/inputs.hpp"
+#include "station/simulation/observer.hpp"
 #include "station/trial/director.hpp"
 #include "station/trial/machine.hpp"
 
@@ -17,18 +17,18 @@ namespace turnpoint::session {
 
 /// Appends the tones of an interval to a trial's row. The trial's boundary, frequency and amplitude become
 /// those of the interval's last scene.
-void add_tones(records::TrialRow& row, const std::vector<scene::DrivePlan>& scenes, int interval,
-               std::int64_t onset_frame, const drive::PreparedBurst& burst);
+void add_tones(core::TrialRow& row, const std::vector<scene::DrivePlan>& scenes, int interval,
+               std::int64_t onset_frame, const audio::PreparedBurst& burst);
 
 /// Records that the surface begins to follow the slider of an adjustment at `frame`. In the row, scene 0
 /// remains the scene at the start of the trial, and `scene` becomes scene 1. The boundary, frequency and
 /// amplitude of the trial become those of scene 1.
-void set_scene(records::TrialRow& row, const scene::DrivePlan& scene, std::int64_t frame);
+void set_scene(core::TrialRow& row, const scene::DrivePlan& scene, std::int64_t frame);
 
 /// Adds the measurements of an interval to the row: to the tones of the interval, and to the verdict on the
 /// trial, which is that of the worst interval. `first` means that no interval of this trial has been added
 /// yet.
-void add_measured(records::TrialRow& row, const sensing::IntervalResult& measured, int interval, bool first);
+void add_measured(core::TrialRow& row, const sensing::IntervalResult& measured, int interval, bool first);
 
 /// A playback frame, and its time since the start of the segment (the run of the program).
 struct FrameTime {
@@ -53,12 +53,12 @@ struct Asked {
 sensing::StripPart part_of(const trial::TrialSpec& spec);
 /// Adds what the force cells measured in a trial: the summary, the felt boundary, friction, and the signal of
 /// the finger.
-void add_forces(records::TrialRow& row, const sensing::TrialForces& forces, const Asked& asked, int rate_Hz,
+void add_forces(core::TrialRow& row, const sensing::TrialForces& forces, const Asked& asked, int rate_Hz,
                 const FrameTime& at);
 
 /// Says what a pick-up found wrong with a trial, with figures: "the surface does not move (-62.1 dB)".
-std::string describe_proof(const records::TrialRow& row);
+std::string describe_proof(const core::TrialRow& row);
 
-records::EventRow event_row(const Input& input, int trial_index);
+core::EventRow event_row(const Input& input, int trial_index);
 
 }  // namespace turnpoint::session

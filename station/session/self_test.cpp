@@ -8,13 +8,13 @@
 #include <functional>
 #include <utility>
 
-#include "station/drive/alsa_device.hpp"
-#include "station/lines/probe.hpp"
+#include "station/audio/alsa_device.hpp"
+#include "station/io/probe.hpp"
 
 namespace turnpoint::session {
 namespace {
 
-using texts::Phrase, texts::phrase, texts::plain;
+using core::Phrase, core::phrase, core::plain;
 
 /// Rounds to this number of decimals; a value that becomes 0 has no minus sign.
 double rounded(double value, int decimals) {
@@ -28,7 +28,7 @@ Check not_possible(Phrase name, Phrase why) {
 
 Verdict verdict(bool good) { return good ? Verdict::passed : Verdict::failed; }
 
-bool is_good(terms::Proof proof) { return proof == terms::Proof::ok || proof == terms::Proof::flagged; }
+bool is_good(core::Proof proof) { return proof == core::Proof::ok || proof == core::Proof::flagged; }
 
 Phrase decibels(double value_dB) { return plain(fmt::format("{:.2f}", value_dB)); }
 
@@ -39,18 +39,18 @@ void run(const Phrase& name, std::vector<Check>& checks, const std::function<voi
   } catch (const PartFailed& failed) {
     checks.push_back({name, Verdict::failed, {}, {}, "", failed.why()});
   } catch (const std::exception& error) {
-    checks.push_back({name, Verdict::failed, {}, {}, "", lines::reported(error)});
+    checks.push_back({name, Verdict::failed, {}, {}, "", io::reported(error)});
   }
 }
 
 }  // namespace
 
 CheckRow row_of(const Check& check) {
-  return {texts::say(check.name, "en"), check.verdict, check.value, check.limit, check.unit,
-          texts::say(check.what, "en")};
+  return {core::say(check.name, "en"), check.verdict, check.value, check.limit, check.unit,
+          core::say(check.what, "en")};
 }
 
-PartFailed::PartFailed(Phrase why) : std::runtime_error(texts::say(why, "en")), why_(std::move(why)) {}
+PartFailed::PartFailed(Phrase why) : std::runtime_error(core::say(why, "en")), why_(std::move(why)) {}
 
 Check judged(const GateReading& reading) {
   Check check{phrase("self_test.gate"), Verdict::failed, {}, 1e3 * kGateLimit_s, "ms", {}};
@@ -83,19 +83,19 @@ Check judged(const ToneReading& reading) {
   const auto name = reading.transducer.empty() ? phrase("self_test.tone")
                                                : phrase("self_test.tone_of", {plain(reading.transducer)});
   if (reading.missing) return not_possible(name, *reading.missing);
-  if (reading.proof == terms::Proof::unproven) return not_possible(name, phrase("self_test.tone_unproven"));
+  if (reading.proof == core::Proof::unproven) return not_possible(name, phrase("self_test.tone_unproven"));
   const bool good = is_good(reading.proof);
   auto what =
       phrase("self_test.tone_measured", {plain(fmt::format("{:.1f}", 1e-3 * reading.frequency_Hz)),
                                          plain(fmt::format("{:+.2f}", rounded(reading.ratio_dB, 2)))});
-  if (reading.cause != terms::ProofCause::none)
-    what = {"", "", {what, plain(": "), texts::phrase_of(reading.cause)}};
+  if (reading.cause != core::ProofCause::none)
+    what = {"", "", {what, plain(": "), core::phrase_of(reading.cause)}};
   return {name, verdict(good), reading.ratio_dB, kToneLimit_dB, "dB", what};
 }
 
 std::optional<Check> judged_linearity(const ToneReading& reading) {
   // without a vibration there are no levels to compare
-  const bool vibrates = is_good(reading.proof) || reading.proof == terms::Proof::refused;
+  const bool vibrates = is_good(reading.proof) || reading.proof == core::Proof::refused;
   if (!reading.nonlinearity_dB || !vibrates) return std::nullopt;
   const double off_dB = *reading.nonlinearity_dB;
   const auto what = off_dB >= kLinearityLimit_dB  ? phrase("self_test.linearity_bad", {decibels(off_dB)})
@@ -124,9 +124,9 @@ std::vector<Check> judged(const CellReading& reading) {
 }
 
 std::map<std::string, std::string> mixer_levels(const rig::Rig& rig) {
-  auto levels = drive::mixer_levels(rig.output.uri).value_or(std::map<std::string, std::string>{});
-  if (!rig.capture || drive::card_of(rig.capture->uri) == drive::card_of(rig.output.uri)) return levels;
-  if (const auto captured = drive::mixer_levels(rig.capture->uri))
+  auto levels = audio::mixer_levels(rig.output.uri).value_or(std::map<std::string, std::string>{});
+  if (!rig.capture || audio::card_of(rig.capture->uri) == audio::card_of(rig.output.uri)) return levels;
+  if (const auto captured = audio::mixer_levels(rig.capture->uri))
     for (const auto& [control, values] : *captured) levels["capture: " + control] = values;
   return levels;
 }

@@ -5,25 +5,25 @@
 #include <string>
 #include <vector>
 
-#include "station/records/records.hpp"
+#include "station/core/proof.hpp"
+#include "station/core/records.hpp"
+#include "station/core/texts.hpp"
 #include "station/rig/rig.hpp"
 #include "station/system/condition.hpp"
-#include "station/terms/proof.hpp"
-#include "station/texts/texts.hpp"
 
 namespace turnpoint::session {
 
-using records::CheckRow;
-using records::Verdict;
+using core::CheckRow;
+using core::Verdict;
 
 /// One check of the self-test: what was measured, and how it was judged.
 struct Check {
-  texts::Phrase name;
+  core::Phrase name;
   Verdict verdict = Verdict::passed;
   std::optional<double> value,
       limit;           ///< measured value and its limit; empty if the check measures no number
   std::string unit;    ///< unit of value and limit; "" if there is no number
-  texts::Phrase what;  ///< what was found, as a sentence for the operator
+  core::Phrase what;  ///< what was found, as a sentence for the operator
 };
 
 /// Returns the row that is stored for a check. It is in English.
@@ -32,11 +32,11 @@ CheckRow row_of(const Check& check);
 /// A part of the rig does not work. Says so in the language of the screen; what() is in English.
 class PartFailed : public std::runtime_error {
  public:
-  explicit PartFailed(texts::Phrase why);
-  const texts::Phrase& why() const { return why_; }
+  explicit PartFailed(core::Phrase why);
+  const core::Phrase& why() const { return why_; }
 
  private:
-  texts::Phrase why_;
+  core::Phrase why_;
 };
 
 /// The following structs are readings of the self-test. In each, `missing` says why nothing could be
@@ -46,7 +46,7 @@ class PartFailed : public std::runtime_error {
 /// station's heartbeat signal stops. This reading was taken after the heartbeat was stopped while the enable
 /// line was high.
 struct GateReading {
-  std::optional<texts::Phrase> missing;
+  std::optional<core::Phrase> missing;
   bool opened = false;  ///< the gate was open while the heartbeat ran
   std::optional<double>
       dropped_s;  ///< time from the stop of the heartbeat until the gate was shut; empty: never
@@ -54,38 +54,38 @@ struct GateReading {
 
 /// The result of asking somebody to press and release the stop button or a response button.
 struct PressReading {
-  std::optional<texts::Phrase> missing;
+  std::optional<core::Phrase> missing;
   std::string button;  ///< name of the button; "" for the stop button
   bool pressed = false, released = false;
 };
 
 /// A quiet tone on one transducer at several levels, as the pick-ups measured it.
 struct ToneReading {
-  std::optional<texts::Phrase> missing;
+  std::optional<core::Phrase> missing;
   std::string transducer;
   double frequency_Hz = 0;
   double ratio_dB = 0;  ///< measured level of the tone relative to its calibration
   /// largest difference between the levels relative to the calibration; empty if a level was not measured
   std::optional<double> nonlinearity_dB = {};
-  terms::Proof proof = terms::Proof::unproven;
-  terms::ProofCause cause = terms::ProofCause::none;
+  core::Proof proof = core::Proof::unproven;
+  core::ProofCause cause = core::ProofCause::none;
 };
 
 /// The reading of one force cell while no finger is on the surface.
 struct CellReading {
-  std::optional<texts::Phrase> missing;
-  texts::Phrase cell;                  ///< name of the cell: "a", "b" or "lateral"
-  std::optional<texts::Phrase> fault;  ///< why the cell could not be read; empty if it was read
+  std::optional<core::Phrase> missing;
+  core::Phrase cell;                  ///< name of the cell: "a", "b" or "lateral"
+  std::optional<core::Phrase> fault;  ///< why the cell could not be read; empty if it was read
   double zero_N = 0, noise_mN = 0;     ///< mean force, and the standard deviation of the force signal
 };
 
 /// How the mixer of the sound card differs from its levels during the calibration.
 struct MixerReading {
   std::size_t controls = 0;             ///< number of controls whose levels the calibration holds; 0: none
-  std::vector<texts::Phrase> changes;  ///< one sentence for each control that differs
+  std::vector<core::Phrase> changes;  ///< one sentence for each control that differs
 };
 
-/// Reads the mixers of the cards with which a rig plays and captures (drive::mixer_levels). Controls of
+/// Reads the mixers of the cards with which a rig plays and captures (audio::mixer_levels). Controls of
 /// another card that captures have "capture: " before their names. Empty if there is no card or it cannot be
 /// read.
 std::map<std::string, std::string> mixer_levels(const rig::Rig& rig);

@@ -6,11 +6,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "station/lines/uri.hpp"
-#include "station/observer/observer.hpp"
+#include "station/core/limits.hpp"
+#include "station/io/uri.hpp"
 #include "station/sensing/pick_up.hpp"
+#include "station/simulation/observer.hpp"
 #include "station/system/clocks.hpp"
-#include "station/terms/limits.hpp"
 
 namespace turnpoint::session {
 namespace {
@@ -23,18 +23,18 @@ constexpr double kTone_s = 0.6, kLower_s = 0.3, kRamp_s = 0.05;
 constexpr std::array kLower{0.71, 0.5};
 constexpr double kAmplitude = 0.1, kShareOfLimit = 0.25;
 
-using texts::phrase;
+using core::phrase;
 
 /// Throws if the amplifier has refused. `what` is the key of the text that says what it was to do.
 void require(const std::optional<Fault>& refusal, const char* what) {
-  if (refusal) throw PartFailed(phrase(what, {texts::phrase_of(*refusal)}));
+  if (refusal) throw PartFailed(phrase(what, {core::phrase_of(*refusal)}));
 }
 
 /// Enables the amplifier. The destructor starts the heartbeat again and switches the amplifier off, even
 /// after an exception.
 class GateOpened {
  public:
-  explicit GateOpened(drive::Amplifier& amplifier) : amplifier_(amplifier) {
+  explicit GateOpened(audio::Amplifier& amplifier) : amplifier_(amplifier) {
     require(amplifier.enable(), "self_test.cannot_enable");
   }
   ~GateOpened() {
@@ -45,7 +45,7 @@ class GateOpened {
   GateOpened& operator=(const GateOpened&) = delete;
 
  private:
-  drive::Amplifier& amplifier_;
+  audio::Amplifier& amplifier_;
 };
 
 /// A tone for the self-test, at a frequency to which the pick-ups respond well.
@@ -58,7 +58,7 @@ struct Choice {
 /// transducer.
 Choice best_tone(const rig::Transducer& transducer, const std::vector<sensing::PickUp>& pick_ups) {
   Choice best;
-  const auto low_Hz = std::min(std::max(transducer.low_Hz, terms::kAudible_Hz), transducer.high_Hz);
+  const auto low_Hz = std::min(std::max(transducer.low_Hz, core::kAudible_Hz), transducer.high_Hz);
   for (const auto& pick_up : pick_ups)
     for (const auto& transfer : pick_up.transfers) {
       if (transfer.drive_channel != transducer.channel) continue;
@@ -81,12 +81,12 @@ double quiet_amplitude(const rig::Rig& rig, const rig::Transducer& transducer) {
 
 /// A quiet tone that goes down in two steps, each of 3 dB. At lower levels, the noise of the pick-up would
 /// stand out.
-drive::PreparedBurst quiet_tone(const rig::Rig& rig, const rig::Transducer& transducer, double frequency_Hz) {
+audio::PreparedBurst quiet_tone(const rig::Rig& rig, const rig::Transducer& transducer, double frequency_Hz) {
   const auto frames = [&](double s) {
     return static_cast<std::int64_t>(std::llround(s * rig.output.rate_Hz));
   };
   const double amplitude = quiet_amplitude(rig, transducer);
-  drive::Burst burst;
+  audio::Burst burst;
   burst.ramp.frames = frames(kRamp_s);
   burst.tones.count = 1;
   burst.tones.tones[0] = {frequency_Hz, amplitude, 0, transducer.channel};
@@ -97,7 +97,7 @@ drive::PreparedBurst quiet_tone(const rig::Rig& rig, const rig::Transducer& tran
     change.to.tones[0].amplitude = level * amplitude;
     burst.length_frames += frames(kLower_s);
   }
-  return drive::prepare(burst, {rig.output.rate_Hz, rig::channels(rig), rig.output.bits});
+  return audio::prepare(burst, {rig.output.rate_Hz, rig::channels(rig), rig.output.bits});
 }
 
 /// The largest difference between the measured levels of a tone, each relative to the plan. Empty unless all
@@ -113,7 +113,7 @@ std::optional<double> nonlinearity_dB(const sensing::IntervalResult& measured) {
 
 bool has_stop_line(const std::string& amplifier_uri) {
   if (amplifier_uri == "sim:") return true;
-  const auto uri = lines::parse_uri(amplifier_uri);
+  const auto uri = io::parse_uri(amplifier_uri);
   return std::any_of(uri.values.begin(), uri.values.end(),
                      [](const auto& key) { return key.first == "stop"; });
 }
@@ -144,8 +144,8 @@ class StageRig : public SelfTestRig {
       if (!until([&] { return amplifier.gate() == false; }, kGate_ns)) return reading;
       // Make sure that the external monitor has shut the gate. If the guard shut it after a fault, the
       // reading would say nothing about the monitor.
-      if (amplifier.state() == drive::AmplifierState::faulted)
-        throw PartFailed(phrase("self_test.gate_other", {texts::phrase_of(amplifier.fault())}));
+      if (amplifier.state() == audio::AmplifierState::faulted)
+        throw PartFailed(phrase("self_test.gate_other", {core::phrase_of(amplifier.fault())}));
       const auto dropped_s = 1e-9 * static_cast<double>(system::monotonic_ns() - held_ns);
       reading.dropped_s = std::min(dropped_s, reading.dropped_s.value_or(dropped_s));
     }
@@ -164,7 +164,7 @@ class StageRig : public SelfTestRig {
     parts_.ask({Request::Kind::press_stop, 0, ""});
     reading.pressed = until(
         [&] {
-          return amplifier.state() == drive::AmplifierState::faulted &&
+          return amplifier.state() == audio::AmplifierState::faulted &&
                  amplifier.fault().kind == FaultKind::stop_pressed;
         },
         press_ns_);
@@ -215,7 +215,7 @@ class StageRig : public SelfTestRig {
     std::vector<CellReading> readings;
     for (std::size_t k = 0; k < sensing::bridge_count; ++k) {
       CellReading& reading = readings.emplace_back();
-      reading.cell = k == 2 ? phrase("self_test.lateral") : texts::plain(k == 0 ? "a" : "b");
+      reading.cell = k == 2 ? phrase("self_test.lateral") : core::plain(k == 0 ? "a" : "b");
       const bool wire = forces_ && forces_->state == sensing::ForcesState::wire;
       if (wire && forces_->faulty_bridge.value_or(k) == k) {
         reading.fault = phrase("self_test.wire_off");
@@ -270,13 +270,13 @@ class StageRig : public SelfTestRig {
     const auto burst = quiet_tone(*parts_.rig, transducer, reading.frequency_Hz);
     const auto onsets = stage.present({&burst, 1}, stage.now_ns());
     const auto end_ns = stage.now_ns() + kResult_ns;
-    reading.proof = terms::Proof::lost;
+    reading.proof = core::Proof::lost;
     while (auto input = stage.wait_until(end_ns)) {
       if (input->kind == InputKind::fault) {
         stage.close_amplifier();
         const Fault fault{input->fault, input->text};
         pass_on(std::move(*input));
-        throw PartFailed(texts::phrase_of(fault));
+        throw PartFailed(core::phrase_of(fault));
       }
       if (input->kind == InputKind::heard) break;
       if (input->kind != InputKind::measured) {
@@ -322,12 +322,12 @@ std::vector<Check> self_test(const rig::Rig& rig, const AskOperator& ask, const 
 std::vector<Check> simulated_self_test(const rig::Rig& rig, const std::string& data_folder,
                                        const SimulatedFaults& faults) {
   Inputs inputs, room_inputs;
-  const auto lines = std::make_shared<lines::SimulatedAmplifierLines>();
+  const auto lines = std::make_shared<io::SimulatedAmplifierLines>();
   if (faults.lines) faults.lines(*lines);
   Devices devices;
-  devices.amplifier = lines::simulated_amplifier(lines);
+  devices.amplifier = io::simulated_amplifier(lines);
   if (rig.buttons_uri)
-    devices.buttons = lines::open_buttons(lines::ButtonsConfig{}, std::nullopt, handlers_for(inputs));
+    devices.buttons = io::open_buttons(io::ButtonsConfig{}, std::nullopt, handlers_for(inputs));
   auto* amplifier = devices.amplifier.get();
   auto* buttons = devices.buttons.get();
   auto stream = stream_of(rig);
@@ -335,21 +335,21 @@ std::vector<Check> simulated_self_test(const rig::Rig& rig, const std::string& d
   const auto stage = real_stage(stream, std::move(devices), inputs);
   SelfTestParts parts{&rig, stage.get(), amplifier,     nullptr,        {},
                       {},   data_folder, faults.clocks, faults.sensors, faults.longest_press_s};
+  SimulatedParticipant nobody(simulation::Observer(simulation::parse("sim")));
   std::unique_ptr<Stage> room_stage;
   if (simulates_capture(rig)) {
     auto room = std::make_unique<SimulatedRoom>(rig, faults.laboratory);
     if (faults.room) faults.room(*room);
     parts.capture = room->capture();
-    room_stage = virtual_stage(simulated_stream(rig), observer::Observer(observer::parse("sim")), room_inputs,
-                               std::move(room));
+    room_stage = virtual_stage(simulated_stream(rig), nobody, room_inputs, std::move(room));
     parts.room = room_stage.get();
   }
   parts.ask = [&](const Request& request) {
     const auto now_ns = system::monotonic_ns();
     if (request.kind == Request::Kind::press_button && !faults.button_disconnected)
-      buttons->simulate(lines::Press{now_ns, request.button});
+      buttons->simulate(io::Press{now_ns, request.button});
     if (request.kind != Request::Kind::press_button && !faults.stop_disconnected)
-      lines->set(lines::kSimulatedAmplifier.stop, request.kind == Request::Kind::press_stop, now_ns);
+      lines->set(io::kSimulatedAmplifier.stop, request.kind == Request::Kind::press_stop, now_ns);
   };
   auto checks = self_test(*self_test_rig(std::move(parts)));
   stage->finish();

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "station/drive/amplifier.hpp"
-#include "station/lines/simulated_lines.hpp"
+#include "station/audio/amplifier.hpp"
+#include "station/io/simulated_lines.hpp"
 #include "station/rig/rig.hpp"
 #include "station/session/self_test.hpp"
 #include "station/session/stage.hpp"
@@ -27,7 +27,7 @@ using AskOperator = std::function<void(const Request&)>;
 struct SelfTestParts {
   const rig::Rig* rig = nullptr;
   Stage* stage = nullptr;                 ///< the stage under test; it must run in real time
-  drive::Amplifier* amplifier = nullptr;  ///< the amplifier of the stage; null if the stage simulates it
+  audio::Amplifier* amplifier = nullptr;  ///< the amplifier of the stage; null if the stage simulates it
   /// The stage with which tones are played and captured: `stage` itself or, in a simulated rig, a stage whose
   /// output goes through a simulated plate back to its capture. Null if the rig captures nothing.
   Stage* room = nullptr;
@@ -53,9 +53,9 @@ std::vector<Check> self_test(const rig::Rig& rig, const AskOperator& ask, const 
 
 /// Faults of a simulated rig, for tests. Each function changes one part before the self-test.
 struct SimulatedFaults {
-  std::function<void(lines::SimulatedAmplifierLines&)> lines;
+  std::function<void(io::SimulatedAmplifierLines&)> lines;
   std::function<void(SimulatedRoom&)> room;
-  std::function<void(plant::Setup&)> laboratory;
+  std::function<void(simulation::Setup&)> laboratory;
   bool stop_disconnected = false, button_disconnected = false;
   std::function<system::Clocks()> clocks = system::read_clocks;
   std::string sensors = "/sys/class/hwmon";

@@ -11,10 +11,13 @@
 #include <system_error>
 #include <utility>
 
-#include "station/limits/finger_account.hpp"
-#include "station/programs/programs.hpp"
+#include "station/core/canonical.hpp"
+#include "station/core/limits.hpp"
+#include "station/core/texts.hpp"
 #include "station/protocol/visits.hpp"
+#include "station/session/finger_account.hpp"
 #include "station/session/planned_session.hpp"
+#include "station/session/programs.hpp"
 #include "station/session/replay.hpp"
 #include "station/session/rows.hpp"
 #include "station/session/session_run.hpp"
@@ -22,9 +25,6 @@
 #include "station/session/stage.hpp"
 #include "station/store/station.hpp"
 #include "station/system/clocks.hpp"
-#include "station/terms/limits.hpp"
-#include "station/text/canonical.hpp"
-#include "station/texts/texts.hpp"
 
 namespace turnpoint::session {
 
@@ -62,9 +62,9 @@ std::string level_unit(const protocol::Protocol& protocol) {
   return unit.value_or("");
 }
 
-records::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std::string& rights,
-                               const std::optional<int>& planned_session) {
-  records::SessionStart start;
+core::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std::string& rights,
+                            const std::optional<int>& planned_session) {
+  core::SessionStart start;
   start.participant = setup.participant;
   start.run_mode = setup.run_mode;
   start.protocol_id = setup.protocol.id;
@@ -72,7 +72,7 @@ records::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std
   start.protocol_path = setup.protocol.path;
   start.protocol_text = setup.protocol.source;
   start.protocol_sha256 = setup.protocol.sha256;
-  start.protocol_canonical = text::canonical(text::parse_toml(setup.protocol.source, setup.protocol.path));
+  start.protocol_canonical = core::canonical(core::parse_toml(setup.protocol.source, setup.protocol.path));
   for (const auto& factor : setup.protocol.factors) start.factor_columns.push_back(factor.name);
   start.level_unit = level_unit(setup.protocol);
   start.rig_name = setup.rig.name;
@@ -99,15 +99,15 @@ records::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std
 
 /// Describes a new segment of the session. `now_ns` is read from the clock of the stage, which is virtual in
 /// a simulated session.
-records::SegmentStart segment(const std::string& reason, std::int64_t now_ns) {
+core::SegmentStart segment(const std::string& reason, std::int64_t now_ns) {
   const auto clocks = system::read_clocks();
   return {boot_id(), reason, now_ns, clocks.boottime_ns, clocks.realtime_ns, store::machine_identity()};
 }
 
 }  // namespace
 
-drive::StreamConfig stream_of(const rig::Rig& rig) {
-  drive::StreamConfig config;
+audio::StreamConfig stream_of(const rig::Rig& rig) {
+  audio::StreamConfig config;
   config.output.uri = rig.output.uri;
   config.output.rate_Hz = rig.output.rate_Hz;
   config.output.channels = rig::channels(rig);
@@ -120,22 +120,22 @@ drive::StreamConfig stream_of(const rig::Rig& rig) {
   return config;
 }
 
-drive::StreamConfig session_stream(const rig::Rig& rig) {
+audio::StreamConfig session_stream(const rig::Rig& rig) {
   auto config = stream_of(rig);
   if (rig.capture && !rig.capture->bridges.empty())
-    config.carrier = {terms::kForceCarrier_Hz, kCarrier, *rig.capture->excitation_channel};
+    config.carrier = {core::kForceCarrier_Hz, kCarrier, *rig.capture->excitation_channel};
   return config;
 }
 
 bool simulates_capture(const rig::Rig& rig) { return rig.capture && rig.capture->uri == "sim:"; }
 
-drive::StreamConfig simulated_stream(const rig::Rig& rig) {
+audio::StreamConfig simulated_stream(const rig::Rig& rig) {
   auto config = session_stream(rig);
   config.virtual_lead_frames = std::int64_t{config.output.periods} * config.output.period_frames;
   const bool hardware = config.output.uri.starts_with("alsa:") && config.output.allow_plugin.empty();
   if (hardware) config.output.uri = "null:";
   // If nothing reads the samples, do not compute them: half an hour has 300 million frames.
-  if (config.output.uri == "null:" && !simulates_capture(rig)) config.samples = drive::Samples::passed;
+  if (config.output.uri == "null:" && !simulates_capture(rig)) config.samples = audio::Samples::passed;
   return config;
 }
 
@@ -143,14 +143,15 @@ namespace {
 
 /// Reads the participant's history of exposure. Call this before the log is opened for writing, because both
 /// use the same database.
-limits::FingerAccount account_of(const Setup& setup, std::int64_t origin_ns) {
+FingerAccount account_of(const Setup& setup, std::int64_t origin_ns) {
   const auto now = segment("", origin_ns);
   const double now_s = 1e-9 * static_cast<double>(now.realtime_ns);
-  const auto limits = limits::limits_of(setup.rig, setup.run_mode);
-  const auto history = setup.observer.empty() ? limits::read_finger_history(setup.database, setup.participant,
-                                                                            now, limits.continuous_s)
-                                              : limits::FingerHistory{{}, now_s};
-  return limits::FingerAccount(limits, history, origin_ns, now_s);
+  const auto limits = session::limits_of(setup.rig, setup.run_mode);
+  const auto history =
+      setup.observer.empty()
+          ? session::read_finger_history(setup.database, setup.participant, now, limits.continuous_s)
+          : FingerHistory{{}, now_s};
+  return FingerAccount(limits, history, origin_ns, now_s);
 }
 
 /// A session's log, and a director that has processed all trials in the log.
@@ -160,11 +161,11 @@ struct Begun {
   Earlier earlier;
 };
 
-Begun begin(const Setup& setup, Stage& stage, programs::Programs& programs) {
+Begun begin(const Setup& setup, Stage& stage, Programs& programs) {
   const auto next = next_session(setup);
   if (next.too_early) throw TooEarly({{}, next.problem, next.allowed}, *next.too_early);
   if (!next.problem.empty())
-    throw texts::Refusal(texts::Phrase{"", "", {next.problem, texts::plain("; "), next.allowed}});
+    throw core::Refusal(core::Phrase{"", "", {next.problem, core::plain("; "), next.allowed}});
   auto earlier = earlier_trials(setup, next);
   // With one seed for all participants, the planned sessions still have different orders.
   const auto stated =
@@ -182,7 +183,7 @@ Begun begin(const Setup& setup, Stage& stage, programs::Programs& programs) {
 
 /// Replays the stored trials first and writes afterwards, so that a session that cannot be resumed stays
 /// unchanged.
-Begun resume(const Setup& setup, Stage& stage, programs::Programs& programs) {
+Begun resume(const Setup& setup, Stage& stage, Programs& programs) {
   auto stored = store::read_session(setup.database, setup.resume_session);
   auto director = replayed(setup, stored, programs);
   auto log =
@@ -196,17 +197,17 @@ Begun resume(const Setup& setup, Stage& stage, programs::Programs& programs) {
                       program.path, before->version, before->sha256, program.version, program.sha256));
   }
   if (log.session().trials != stored.session.trials)
-    throw texts::Failure(texts::phrase("resume.grown", {texts::plain(setup.resume_session)}));
+    throw core::Failure(core::phrase("resume.grown", {core::plain(setup.resume_session)}));
   return {std::move(log), std::move(director), {std::move(stored.events), std::move(stored.blocks)}};
 }
 
 Summary run_on(const Setup& setup, Display* display, std::unique_ptr<Stage> stage,
-               programs::Programs& programs, Monitor* monitor) {
+               SimulatedParticipant* participant, Programs& programs, Monitor* monitor) {
   auto account = account_of(setup, stage->now_ns());
   auto begun =
       setup.resume_session.empty() ? begin(setup, *stage, programs) : resume(setup, *stage, programs);
   SessionRun run(setup, std::move(begun.director), std::move(begun.log), begun.earlier, std::move(stage),
-                 std::move(account), display, monitor, &programs);
+                 std::move(account), participant, display, monitor, &programs);
   return run.run();
 }
 
@@ -220,24 +221,24 @@ Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monit
 
 Summary run(const Setup& setup, Display* display, Inputs& inputs, std::unique_ptr<SimulatedRoom> room,
             Monitor* monitor) {
-  programs::Programs programs(setup.protocol.path);
-  auto observer = programs.respondent(setup.observer);
+  Programs programs(setup.protocol.path);
+  SimulatedParticipant participant(programs.respondent(setup.observer));
   if (room && setup.protocol.sensing) room->ask_for(window_of(*setup.protocol.sensing));
   return run_on(setup, display,
-                virtual_stage(simulated_stream(setup.rig), std::move(observer), inputs, std::move(room),
+                virtual_stage(simulated_stream(setup.rig), participant, inputs, std::move(room),
                               trigger_setup_of(setup.rig)),
-                programs, monitor);
+                &participant, programs, monitor);
 }
 
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Devices devices, Monitor* monitor) {
   auto capture = card_capture_of(setup.rig);
   if (capture && capture->setup.finger && setup.protocol.sensing)
     capture->setup.finger->window = window_of(*setup.protocol.sensing);
-  programs::Programs programs(setup.protocol.path);
+  Programs programs(setup.protocol.path);
   return run_on(
       setup, display,
       real_stage(session_stream(setup.rig), std::move(devices), inputs, capture, trigger_setup_of(setup.rig)),
-      programs, monitor);
+      nullptr, programs, monitor);
 }
 
 }  // namespace turnpoint::session

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "station/limits/exposure.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/rig/rig.hpp"
 #include "station/session/devices.hpp"
+#include "station/session/exposure.hpp"
 #include "station/session/inputs.hpp"
 #include "station/session/monitor.hpp"
 #include "station/session/page.hpp"
@@ -25,7 +25,7 @@ struct Setup {
   protocol::Protocol protocol;
   std::string participant;
   std::string database;
-  terms::RunMode run_mode = terms::RunMode::pilot;
+  core::RunMode run_mode = core::RunMode::pilot;
   std::string language;
   /// the text that describes the simulated observer: "sim" or "sim:threshold=..."; "" for a person
   std::string observer;
@@ -36,7 +36,7 @@ struct Setup {
   /// text. Both are "" if there is no calibration.
   std::string calibration_id, calibration_text;
   /// measured sound levels of tones at full scale, in order of frequency
-  std::vector<limits::SoundLevel> sound;
+  std::vector<SoundLevel> sound;
   /// version of the consent form that the participant signed; "" if the study needs none
   std::string consent_version;
   /// The latency of the touch panel. It is stored with each answer that was given by touch, but never
@@ -49,7 +49,7 @@ struct Setup {
   /// session with flashes, but never subtracted.
   std::optional<double> display_latency_s = {};
   /// what is known about room, surface and finger; stored with the session
-  records::Conditions conditions = {};
+  core::Conditions conditions = {};
   /// run the self-test before the first block; in a session with a person, it runs after the operator has
   /// armed the amplifier
   bool self_test = false;
@@ -67,7 +67,7 @@ struct Setup {
 /// The result of a run, for people and for --json.
 struct Summary {
   std::string session_id, participant, protocol_id, database, run_mode;
-  records::SessionStatus status = records::SessionStatus::running;
+  core::SessionStatus status = core::SessionStatus::running;
   std::string reason;
   std::uint64_t seed = 0;
   int blocks = 0, trials = 0, answered = 0, timeouts = 0, anticipations = 0, voided = 0;
@@ -83,7 +83,7 @@ struct Summary {
   /// last link of the checksum chain over the session's rows (`turnpoint verify`)
   std::string checksum;
   std::vector<trial::ProcedureEstimate> estimates;
-  std::vector<texts::Phrase> early_ends;  ///< see Director::early_ends()
+  std::vector<core::Phrase> early_ends;  ///< see Director::early_ends()
 };
 
 /// Runs a session to its end on the calling thread, with the real clock, pages on `display` and input from
@@ -93,7 +93,7 @@ struct Summary {
 /// If the setup has an observer, the session runs on the virtual clock and uses no hardware. The only input
 /// with an effect is a request to stop, and it is read only between trials. `display` may then be null.
 ///
-/// Throws text::BadInput for a setup that cannot run, store::StoreError, and std::system_error for devices.
+/// Throws core::BadInput for a setup that cannot run, store::StoreError, and std::system_error for devices.
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monitor = nullptr);
 
 class SimulatedRoom;

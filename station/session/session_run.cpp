@@ -13,6 +13,8 @@
 #include <string>
 #include <utility>
 
+#include "station/core/number.hpp"
+#include "station/core/usage_error.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/protocol/triggers.hpp"
@@ -20,8 +22,6 @@
 #include "station/session/rows.hpp"
 #include "station/session/self_test_rig.hpp"
 #include "station/store/signal_code.hpp"
-#include "station/terms/usage_error.hpp"
-#include "station/text/number.hpp"
 #include "station/trial/question.hpp"
 #include "station/trial/rows.hpp"
 #include "station/trial/timing.hpp"
@@ -29,12 +29,14 @@
 namespace turnpoint::session {
 
 SessionRun::SessionRun(const Setup& setup, trial::Director director, store::SessionLog log,
-                       const Earlier& earlier, std::unique_ptr<Stage> stage, limits::FingerAccount account,
-                       Display* display, Monitor* monitor, programs::Programs* programs)
+                       const Earlier& earlier, std::unique_ptr<Stage> stage, FingerAccount account,
+                       SimulatedParticipant* participant, Display* display, Monitor* monitor,
+                       Programs* programs)
     : setup_(setup),
       log_(std::move(log)),
       stage_(std::move(stage)),
       account_(std::move(account)),
+      participant_(participant),
       display_(display),
       monitor_(monitor),
       programs_(programs),
@@ -42,7 +44,7 @@ SessionRun::SessionRun(const Setup& setup, trial::Director director, store::Sess
       director_(std::move(director)),
       pages_(setup),
       gate_(setup, pages_, director_, *stage_, log_, display),
-      interludes_(setup, pages_, director_, gate_, *stage_, log_,
+      interludes_(setup, pages_, director_, gate_, *stage_, participant, log_,
                   [this](const protocol::Example& example, Page page) {
                     return play_example(example, std::move(page));
                   }),
@@ -63,21 +65,21 @@ Summary SessionRun::run() {
   started_ns_ = stage_->now_ns();
   const auto& signal = setup_.protocol.timing.signal;
   if (signal && signal->by == protocol::ResponseSignal::By::flash && setup_.display_latency_s)
-    log_.event({started_ns_, records::kDisplayLatencyEvent, text::number(*setup_.display_latency_s, 4), {}});
+    log_.event({started_ns_, core::kDisplayLatencyEvent, core::number(*setup_.display_latency_s, 4), {}});
   // In a pilot session without a real amplifier, nobody has to arm it.
-  if (setup_.run_mode != terms::RunMode::live && setup_.rig.amplifier_uri == "sim:")
+  if (setup_.run_mode != core::RunMode::live && setup_.rig.amplifier_uri == "sim:")
     // if arming is refused, until_armed() below shows a page
     static_cast<void>(stage_->arm());
   if (gate_.until_armed({FaultKind::disarmed, ""}) == Flow::go_on && pass_self_test() == Flow::go_on)
     static_cast<void>(run_parts());  // the code below finds out why the session ended
   if (!interludes_.ended_because().empty())
-    finish(records::SessionStatus::stopped, interludes_.ended_because());
+    finish(core::SessionStatus::stopped, interludes_.ended_because());
   else if (gate_.stop_asked())
-    finish(records::SessionStatus::interrupted, gate_.stop_reason());
+    finish(core::SessionStatus::interrupted, gate_.stop_reason());
   else if (!director_.ended_because().empty())
-    finish(records::SessionStatus::stopped, director_.ended_because());
+    finish(core::SessionStatus::stopped, director_.ended_because());
   else
-    finish(records::SessionStatus::completed, "");
+    finish(core::SessionStatus::completed, "");
   gate_.show(pages_.end(summary_, director_));
   stage_->finish();
   return summary_;
@@ -119,7 +121,7 @@ Flow SessionRun::leave_block() {
   log_estimates();
   for (auto& e : director_.estimates()) summary_.estimates.push_back(std::move(e));
   for (auto& end : director_.early_ends()) {
-    log_.event({stage_->now_ns(), records::kEndedEarlyEvent, texts::say(end, "en"), {}});
+    log_.event({stage_->now_ns(), core::kEndedEarlyEvent, core::say(end, "en"), {}});
     summary_.early_ends.push_back(std::move(end));
   }
   if (director_.block()->kind == protocol::BlockKind::friction_table && finish_friction_table() == Flow::stop)
@@ -137,7 +139,7 @@ Flow SessionRun::rest_if_due(int trials) {
                              block.break_after->min_s);
 }
 
-void SessionRun::finish(records::SessionStatus status, const std::string& reason) {
+void SessionRun::finish(core::SessionStatus status, const std::string& reason) {
   summary_.status = status;
   summary_.reason = reason;
   finish_triggers();
@@ -159,11 +161,11 @@ bool is_over(trial::Phase phase) {
          phase == trial::Phase::done;
 }
 
-records::EventRow event(std::int64_t time_ns, const char* kind, double value, int trial_index) {
-  records::EventRow row;
+core::EventRow event(std::int64_t time_ns, const char* kind, double value, int trial_index) {
+  core::EventRow row;
   row.time_ns = time_ns;
   row.kind = kind;
-  row.value = text::number(value, 9);
+  row.value = core::number(value, 9);
   row.trial_index = trial_index;
   return row;
 }
@@ -212,9 +214,9 @@ Flow SessionRun::prepare_trial(const trial::TrialSpec& spec) {
     check_plans(spec);
   } catch (const scene::Unreachable& unreachable) {
     gate_.stop(unreachable.what());
-  } catch (const limits::LimitExceeded& limit) {
+  } catch (const LimitExceeded& limit) {
     return gate_.end_at_limit(limit.what());
-  } catch (const drive::BurstRefused& refused) {
+  } catch (const audio::BurstRefused& refused) {
     gate_.stop(refused.what());
   }
   for (auto& stale : stage_->drain()) gate_.note(gate_.received(std::move(stale)));
@@ -232,7 +234,7 @@ std::optional<trial::EventKind> SessionRun::open_amplifier() {
 /// trial.
 Flow SessionRun::keep_limits(const trial::TrialSpec& spec) {
   const auto now = stage_->now_ns();
-  const auto begin = account_.earliest_ns(now, limits::stimuli_of(setup_.protocol, spec));
+  const auto begin = account_.earliest_ns(now, session::stimuli_of(setup_.protocol, spec));
   if (begin <= now) return Flow::go_on;
   const double stretch_s = static_cast<double>(begin - now) * 1e-9;
   summary_.stretched_s += stretch_s;
@@ -245,31 +247,31 @@ Flow SessionRun::keep_limits(const trial::TrialSpec& spec) {
   return Flow::go_on;
 }
 
-/// Checks the scenes against the rig's limits, just before they are presented. Throws limits::LimitExceeded.
+/// Checks the scenes against the rig's limits, just before they are presented. Throws LimitExceeded.
 void SessionRun::check_plans(const trial::TrialSpec& spec) {
   const auto& plans = plans_.take(spec).plans;
   const auto times = trial::interval_times(setup_.protocol, spec);
   for (std::size_t i = 0; i < plans.size(); ++i)
     for (const auto& plan : plans[i]) {
       account_.check(plan.peak_displacement_m, times[i].length_s);
-      if (setup_.run_mode != terms::RunMode::live) continue;
+      if (setup_.run_mode != core::RunMode::live) continue;
       for (const auto& tone : plan.tones)
-        if (const auto problem = limits::sound_problem(tone.frequency_Hz, tone.full_scale, setup_.sound))
-          throw limits::LimitExceeded(texts::say(*problem, "en"));
+        if (const auto problem = session::sound_problem(tone.frequency_Hz, tone.full_scale, setup_.sound))
+          throw LimitExceeded(core::say(*problem, "en"));
     }
 }
 
 Flow SessionRun::after_trial(const Running& trial) {
   if (gate_.stop_asked()) return Flow::stop;
   const auto& row = trial.row;
-  const bool repeated = trial.outside && row.outcome == terms::Outcome::fault;
+  const bool repeated = trial.outside && row.outcome == core::Outcome::fault;
   repeats_in_a_row_ = repeated ? repeats_in_a_row_ + 1 : 0;
   // A single refused stimulus can be a coincidence, so it is presented again. Two in a row stop the session.
-  const bool refused = row.proof == terms::Proof::refused || row.proof == terms::Proof::stopped;
+  const bool refused = row.proof == core::Proof::refused || row.proof == core::Proof::stopped;
   refused_in_a_row_ = refused ? refused_in_a_row_ + 1 : 0;
-  if ((row.proof == terms::Proof::stopped || refused_in_a_row_ >= kRefusedBeforePage) && !gate_.fault())
+  if ((row.proof == core::Proof::stopped || refused_in_a_row_ >= kRefusedBeforePage) && !gate_.fault())
     gate_.set_fault(Fault{FaultKind::vibration, describe_proof(row)});
-  unanswered_in_a_row_ = row.outcome == terms::Outcome::answered ? 0 : unanswered_in_a_row_ + 1;
+  unanswered_in_a_row_ = row.outcome == core::Outcome::answered ? 0 : unanswered_in_a_row_ + 1;
   if (!setup_.observer.empty() && unanswered_in_a_row_ >= kUnansweredBeforeStop) {
     gate_.stop(
         fmt::format("the simulated observer left {} trials in a row unanswered", kUnansweredBeforeStop));
@@ -277,8 +279,8 @@ Flow SessionRun::after_trial(const Running& trial) {
   }
   voids_in_a_row_ = trial.is_void() ? voids_in_a_row_ + 1 : 0;
   if (voids_in_a_row_ >= kVoidsBeforeStop) {
-    gate_.stop(records::kVoidsReason +
-               (gate_.fault() ? records::kVoidsLast + terms::describe(*gate_.fault()) : std::string()));
+    gate_.stop(core::kVoidsReason +
+               (gate_.fault() ? core::kVoidsLast + core::describe(*gate_.fault()) : std::string()));
     return Flow::stop;
   }
   if (gate_.fault() && gate_.recover() == Flow::stop) return Flow::stop;
@@ -320,8 +322,8 @@ void SessionRun::handle_in_trial(Input raw, Running& trial) {
                {onset.frame, 1e-9 * static_cast<double>(onset.time_ns - started_ns_)});
     const bool asked = setup_.protocol.sensing && input.forces->state == sensing::ForcesState::ok;
     // A stimulus that was not the planned one makes the trial void, however the finger moved.
-    const bool refuted = trial.row.proof == terms::Proof::refused ||
-                         trial.row.proof == terms::Proof::stopped || trial.row.proof == terms::Proof::lost;
+    const bool refuted = trial.row.proof == core::Proof::refused || trial.row.proof == core::Proof::stopped ||
+                         trial.row.proof == core::Proof::lost;
     trial.outside = asked && !refuted && !is_training() && input.forces->movement != sensing::Movement::ok;
     if (trial.outside && repeats_in_a_row_ < setup_.protocol.sensing->repeats)
       perform(trial.machine.handle({input.time_ns, trial::EventKind::outside, 0}), trial);
@@ -374,7 +376,7 @@ void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
   const auto& bursts = plans_.take(trial.spec).bursts;
   try {
     trial.onsets = stage_->present(bursts, earliest_ns);
-  } catch (const drive::BurstRefused& refused) {
+  } catch (const audio::BurstRefused& refused) {
     gate_.stop(refused.what());
     return perform(trial.machine.handle({stage_->now_ns(), trial::EventKind::abort, 0}), trial);
   }
@@ -399,19 +401,21 @@ void SessionRun::interval_begins(Running& trial) {
 }
 
 void SessionRun::ask_observer(const Running& trial, std::int64_t onset_ns) {
-  if (trial.spec.strokes) return;
+  if (!participant_ || trial.spec.strokes) return;
+  const auto now_ns = stage_->now_ns();
   const auto times = trial::simulated_times(setup_.protocol, trial.spec, onset_ns);
   try {
     if (trial.slider)
-      stage_->adjustment(trial::adjustment_of(trial.spec, setup_.protocol, summary_.seed), trial.spec, times);
+      participant_->set(trial::adjustment_of(trial.spec, setup_.protocol, summary_.seed), trial.spec, times,
+                        now_ns);
     else
-      stage_->question(trial::question_of(trial.spec, setup_.protocol, summary_.seed), times);
-  } catch (const terms::ProgramFailed& failed) {
+      participant_->answer(trial::question_of(trial.spec, setup_.protocol, summary_.seed), times, now_ns);
+  } catch (const core::ProgramFailed& failed) {
     // The trial ends without a result, and the session is interrupted.
     Input failure;
     failure.kind = InputKind::failure;
     failure.text = failed.what();
-    stage_->simulate(failure);
+    participant_->will(failure, now_ns);
   }
 }
 
@@ -447,8 +451,8 @@ void SessionRun::leave_surface() {
 void SessionRun::finish_row(Running& trial) {
   auto& row = trial.row;
   trial::fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_, trial.value);
-  const bool good = row.proof == terms::Proof::ok || row.proof == terms::Proof::flagged;
-  if (good && trial.measured < trial.begun) row.proof = terms::Proof::unproven;
+  const bool good = row.proof == core::Proof::ok || row.proof == core::Proof::flagged;
+  if (good && trial.measured < trial.begun) row.proof = core::Proof::unproven;
   const auto& found_for = setup_.response_offset_quality;
   const bool applies = !trial.by_button && (found_for.empty() || found_for == row.response_time_quality);
   row.response_offset_s = applies ? setup_.response_offset_s : 0;
@@ -458,26 +462,26 @@ void SessionRun::finish_row(Running& trial) {
   }
 }
 
-void SessionRun::count(const trial::TrialSpec& spec, const records::TrialRow& row) {
+void SessionRun::count(const trial::TrialSpec& spec, const core::TrialRow& row) {
   ++summary_.trials;
   summary_.xruns += row.xruns;
   switch (row.outcome) {
-    case terms::Outcome::answered:
+    case core::Outcome::answered:
       ++summary_.answered;
       break;
-    case terms::Outcome::timeout:
+    case core::Outcome::timeout:
       ++summary_.timeouts;
       break;
-    case terms::Outcome::anticipation:
+    case core::Outcome::anticipation:
       ++summary_.anticipations;
       break;
-    case terms::Outcome::aborted:
-    case terms::Outcome::fault:
+    case core::Outcome::aborted:
+    case core::Outcome::fault:
       ++summary_.voided;
       break;
   }
   interludes_.score(spec.block_index, spec.attempt, director_.block()->name, row);
-  if (spec.type == terms::TrialType::experimental && row.correct) ++scored_, right_ += *row.correct ? 1 : 0;
+  if (spec.type == core::TrialType::experimental && row.correct) ++scored_, right_ += *row.correct ? 1 : 0;
 }
 
 // The part of SessionRun that runs adjustments, in which the surface follows a slider.
@@ -493,7 +497,7 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
   if (page.answer_now && signal->by == protocol::ResponseSignal::By::flash)
     page.flash_ns = *trial.machine.result().zero_ns + std::llround(1e9 * *trial.spec.signal_s);
   if (trial.slider && adjusting) pages_.add_slider(page, *trial.spec.slider, trial.slider->setting());
-  if (phase == trial::Phase::late && trial.machine.result().outcome == terms::Outcome::fault)
+  if (phase == trial::Phase::late && trial.machine.result().outcome == core::Outcome::fault)
     page.text = pages_.movement(trial.row.finger.sensing);
   if (trial.spec.strokes && phase == trial::Phase::feedback)
     page.text = pages_.movement(trial.row.finger.sensing);
@@ -573,7 +577,7 @@ void SessionRun::judge_strokes(const Input& input, Running& trial) {
           trial);
 }
 
-/// Computes the friction table from the trials of a block. Throws terms::UsageError if a level has too few
+/// Computes the friction table from the trials of a block. Throws core::UsageError if a level has too few
 /// valid trials.
 sensing::FrictionTable SessionRun::measured_friction(int block_index) const {
   std::vector<sensing::TableStroke> strokes;
@@ -589,13 +593,12 @@ Flow SessionRun::finish_friction_table() {
   sensing::FrictionTable table;
   try {
     table = measured_friction(director_.block_index());
-  } catch (const terms::UsageError& error) {
+  } catch (const core::UsageError& error) {
     gate_.stop(fmt::format("block \"{}\": {}; \"turnpoint resume --policy block\" repeats the block",
                            block.name, error.what()));
     return Flow::stop;
   }
-  records::EventRow event{stage_->now_ns(), "friction_table", in_words(table, block.strokes.used),
-                          std::nullopt};
+  core::EventRow event{stage_->now_ns(), "friction_table", in_words(table, block.strokes.used), std::nullopt};
   for (const auto& level : table.levels)
     event.friction_levels.push_back({1e6 * level.displacement_m, level.strokes, level.measured,
                                      level.relative_friction, level.sd, level.interval.low,
@@ -693,7 +696,7 @@ void SessionRun::log_triggers() {
     log_.event(row_of_extra(extra, now, trial_index()));
   }
   if (done.failure.empty()) return;
-  records::EventRow row;
+  core::EventRow row;
   row.time_ns = now, row.kind = "notice", row.value = "no more trigger codes on lines: " + done.failure;
   log_.event(std::move(row));
 }
@@ -735,7 +738,7 @@ Flow SessionRun::pass_self_test() {
   if (parts.capture) parts.room = stage_.get();
   parts.data_folder = std::filesystem::absolute(setup_.database).parent_path().string();
   parts.other = [this](Input input) { gate_.note(gate_.received(std::move(input))); };
-  records::EventRow event{stage_->now_ns(), "self_test", "passed", std::nullopt};
+  core::EventRow event{stage_->now_ns(), "self_test", "passed", std::nullopt};
   const auto checks = self_test(*self_test_rig(std::move(parts)));
   for (const auto& check : checks) event.checks.push_back(row_of(check));
   if (passed(checks)) {
@@ -805,15 +808,15 @@ std::optional<trial::TrialSpec> SessionRun::next_trial() {
     stage_->wait_for([this] { return director_.ready(); });
     try {
       if (const auto failed = std::exchange(failed_program_, std::nullopt))
-        throw terms::ProgramFailed(*failed);
+        throw core::ProgramFailed(*failed);
       auto spec = director_.next();
       log_programs();
       return spec;
-    } catch (const terms::ProgramFailed& failed) {
-      records::EventRow event;
+    } catch (const core::ProgramFailed& failed) {
+      core::EventRow event;
       event.time_ns = stage_->now_ns();
       event.kind = "fault";
-      event.value = terms::name(FaultKind::program) + std::string(": ") + failed.what();
+      event.value = core::name(FaultKind::program) + std::string(": ") + failed.what();
       log_.event(event);
       log_programs();
       if (!setup_.observer.empty()) {
@@ -832,7 +835,7 @@ void SessionRun::plan_ahead() {
   if (failed_program_ || !director_.ready()) return;
   try {
     if (const auto next = director_.next()) plans_.begin(*next);
-  } catch (const terms::ProgramFailed& failed) {
+  } catch (const core::ProgramFailed& failed) {
     failed_program_ = failed.what();
   }
 }
@@ -842,9 +845,9 @@ void SessionRun::log_programs() {
   if (programs_ == nullptr) return;
   auto started = programs_->take_started();
   if (started.empty()) return;
-  records::EventRow event;
+  core::EventRow event;
   event.time_ns = stage_->now_ns();
-  event.kind = records::kProgramEvent;
+  event.kind = core::kProgramEvent;
   event.value = started.front().program;
   event.programs = std::move(started);
   log_.event(event);
@@ -852,14 +855,14 @@ void SessionRun::log_programs() {
 
 /// Stores what the programs of the block have estimated.
 void SessionRun::log_estimates() {
-  records::EventRow event;
+  core::EventRow event;
   for (const auto& found : director_.estimates())
     if (protocol::is_program(setup_.protocol, found.procedure))
       event.estimates.push_back({director_.block_index(), director_.attempt(), found.procedure,
                                  found.parameter, found.mean, found.sd, found.basis});
   if (event.estimates.empty()) return;
   event.time_ns = stage_->now_ns();
-  event.kind = records::kEstimatesEvent;
+  event.kind = core::kEstimatesEvent;
   event.value = director_.block()->name;
   log_.event(event);
 }
@@ -867,9 +870,9 @@ void SessionRun::log_estimates() {
 namespace {
 
 /// Returns the captured frames as a signal, without the time of its first point. Takes up to seconds.
-records::SignalRow raw_signal(const sensing::RawCapture& raw) {
-  records::SignalRow signal;
-  signal.stream = records::kRawStream;
+core::SignalRow raw_signal(const sensing::RawCapture& raw) {
+  core::SignalRow signal;
+  signal.stream = core::kRawStream;
   signal.start_frame = raw.first_frame;
   signal.rate_Hz = raw.rate_Hz;
   for (int c = 0; c < raw.channels; ++c) signal.channels.push_back({"channel_" + std::to_string(c), "", 1});
@@ -888,7 +891,7 @@ void SessionRun::keep_raw(Running& trial) {
   auto packed = std::async(std::launch::async, [raw = *std::move(raw)] { return raw_signal(raw); });
   stage_->wait_for([&] {
     return packed.wait_for(std::chrono::seconds(0)) == std::future_status::ready &&
-           stage_->amplifier() != drive::AmplifierState::enabled;
+           stage_->amplifier() != audio::AmplifierState::enabled;
   });
   auto signal = packed.get();
   const auto& onset = trial.onsets.front();

@@ -5,15 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "station/limits/finger_account.hpp"
-#include "station/programs/programs.hpp"
 #include "station/sensing/friction_table.hpp"
 #include "station/session/drift.hpp"
+#include "station/session/finger_account.hpp"
 #include "station/session/guidance.hpp"
 #include "station/session/interludes.hpp"
 #include "station/session/operator_gate.hpp"
 #include "station/session/pages.hpp"
 #include "station/session/plan_ahead.hpp"
+#include "station/session/programs.hpp"
 #include "station/session/session.hpp"
 #include "station/session/stage.hpp"
 #include "station/store/session_log.hpp"
@@ -30,8 +30,8 @@ class SessionRun {
   /// `director` must be in the state that corresponds to the log, and to `earlier`, which is empty for a new
   /// session. `programs` starts the separate programs of the session; null if it has none.
   SessionRun(const Setup& setup, trial::Director director, store::SessionLog log, const Earlier& earlier,
-             std::unique_ptr<Stage> stage, limits::FingerAccount account, Display* display, Monitor* monitor,
-             programs::Programs* programs = nullptr);
+             std::unique_ptr<Stage> stage, FingerAccount account, SimulatedParticipant* participant,
+             Display* display, Monitor* monitor, Programs* programs = nullptr);
 
   /// Runs until the last block has ended or somebody stops the session.
   Summary run();
@@ -41,7 +41,7 @@ class SessionRun {
   struct Running {
     trial::TrialSpec spec;
     trial::Machine machine;
-    records::TrialRow row;
+    core::TrialRow row;
     std::optional<trial::Slider> slider;  ///< the slider of an adjustment
     std::optional<double> value;          ///< the participant's answer, if it is a number
     std::vector<Onset> onsets;            ///< onsets of all intervals; set once the intervals are scheduled
@@ -50,7 +50,7 @@ class SessionRun {
     bool decided = false;
     bool outside = false;  ///< the finger did not move in the way that the protocol asks for
     /// True if something went wrong. A trial that is repeated because of the finger's movement is not void.
-    bool is_void() const { return row.outcome == terms::Outcome::fault && !outside; }
+    bool is_void() const { return row.outcome == core::Outcome::fault && !outside; }
     /// the boundary of the trial's last scene is where the relative friction has this value
     std::optional<double> friction_level = {};
     /// true if the answer came from a button, so that the touch panel's latency does not apply
@@ -69,7 +69,7 @@ class SessionRun {
   Flow pass_self_test();
   Flow rest_if_due(int trials_in_block);
   int trial_index() const { return log_.session().trials; }
-  void finish(records::SessionStatus status, const std::string& reason);
+  void finish(core::SessionStatus status, const std::string& reason);
 
   // Procedures and observers that are separate programs.
   std::optional<trial::TrialSpec> next_trial();
@@ -94,7 +94,7 @@ class SessionRun {
   void finish_row(Running& trial);
   void keep_raw(Running& trial);
   void leave_surface();
-  void count(const trial::TrialSpec& spec, const records::TrialRow& row);
+  void count(const trial::TrialSpec& spec, const core::TrialRow& row);
 
   // Trigger codes.
   void trigger(protocol::TriggerEvent event, const Running& trial);
@@ -122,10 +122,11 @@ class SessionRun {
   const Setup& setup_;
   store::SessionLog log_;
   std::unique_ptr<Stage> stage_;
-  limits::FingerAccount account_;
+  FingerAccount account_;
+  SimulatedParticipant* participant_;  ///< null if a person takes part
   Display* display_;
   Monitor* monitor_;
-  programs::Programs* programs_;
+  Programs* programs_;
   /// why a program failed while the next trial was being planned; next_trial() deals with it
   std::optional<std::string> failed_program_;
   PlanAhead plans_;

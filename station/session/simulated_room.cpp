@@ -5,8 +5,8 @@
 #include <complex>
 #include <stdexcept>
 
+#include "station/core/limits.hpp"
 #include "station/scene/planner.hpp"
-#include "station/terms/limits.hpp"
 
 namespace turnpoint::session {
 
@@ -25,18 +25,18 @@ constexpr double kExcitation_V = 2.5, kReference_V = 4.0;
 constexpr double kHeight_m = 8e-3;  // height of the surface above the pivots of the force cells
 
 /// Returns the ratio of bridge signal to reference signal for a force of 1 N on a cell.
-double ratio_per_N(const plant::Setup& room) {
+double ratio_per_N(const simulation::Setup& room) {
   const auto& wires = room.wires;
   return room.cells.volt_per_volt_N * wires.gain * wires.reference_V_at_full_scale / wires.full_scale_V;
 }
 
 /// Returns the calibration that would be measured with exact weights.
-sensing::ForceCalibration calibrated(const plant::Setup& room) {
+sensing::ForceCalibration calibrated(const simulation::Setup& room) {
   std::vector<sensing::DeadWeight> weights;
   for (const double share : {0.2, 0.5, 0.8})
     for (const double pull_N : {-0.5, 0.0, 0.5}) {
       const double x_m = share * room.cells.span_m;
-      const auto forces = plant::forces_on(room.cells, {1, pull_N, x_m});
+      const auto forces = simulation::forces_on(room.cells, {1, pull_N, x_m});
       auto& weight = weights.emplace_back(sensing::DeadWeight{1, pull_N, 1e3 * x_m, {}});
       for (std::size_t c = 0; c < forces.size(); ++c)
         for (std::size_t k = 0; k < forces.size(); ++k)
@@ -45,11 +45,11 @@ sensing::ForceCalibration calibrated(const plant::Setup& room) {
   return sensing::fit_weights(weights).calibration;
 }
 
-sensing::FingerSetup finger_of(const plant::Setup& room) {
+sensing::FingerSetup finger_of(const simulation::Setup& room) {
   sensing::FingerSetup finger;
   auto& bridges = finger.bridges;
   bridges.rate_Hz = room.rate_Hz;
-  bridges.carrier_Hz = terms::kForceCarrier_Hz;
+  bridges.carrier_Hz = core::kForceCarrier_Hz;
   bridges.channels = room.capture.count;
   bridges.reference = *room.capture.reference;
   bridges.bridges = {*room.capture.bridge_a, *room.capture.bridge_b, *room.capture.lateral};
@@ -63,9 +63,9 @@ sensing::FingerSetup finger_of(const plant::Setup& room) {
 
 }  // namespace
 
-plant::Setup laboratory_of(const rig::Rig& rig) {
+simulation::Setup laboratory_of(const rig::Rig& rig) {
   if (!rig.capture) throw std::logic_error("simulated laboratory: the rig captures nothing");
-  plant::Setup room;
+  simulation::Setup room;
   room.rate_Hz = rig.output.rate_Hz;
   room.playback_channels = rig::channels(rig);
   room.transducers.clear();
@@ -106,14 +106,14 @@ plant::Setup laboratory_of(const rig::Rig& rig) {
   return room;
 }
 
-SimulatedRoom::SimulatedRoom(const rig::Rig& rig, const std::function<void(plant::Setup&)>& change)
+SimulatedRoom::SimulatedRoom(const rig::Rig& rig, const std::function<void(simulation::Setup&)>& change)
     : rig_(rig.capture.value_or(rig::Capture{})), plant_([&] {
         auto room = laboratory_of(rig);
         if (change) change(room);
         return room;
       }()) {}
 
-void SimulatedRoom::expect(std::span<const drive::PreparedBurst> bursts) {
+void SimulatedRoom::expect(std::span<const audio::PreparedBurst> bursts) {
   std::vector<double> frequencies;
   const auto add = [&](std::uint64_t increment) {
     frequencies.push_back(static_cast<double>(increment) * 0x1p-64 * plant_.setup().rate_Hz);

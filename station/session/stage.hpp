@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "station/drive/amplifier.hpp"
-#include "station/drive/burst.hpp"
-#include "station/drive/engine.hpp"
-#include "station/observer/observer.hpp"
+#include "station/audio/amplifier.hpp"
+#include "station/audio/burst.hpp"
+#include "station/audio/engine.hpp"
 #include "station/rig/rig.hpp"
 #include "station/session/capture_feed.hpp"
 #include "station/session/devices.hpp"
 #include "station/session/inputs.hpp"
+#include "station/session/simulated_participant.hpp"
 #include "station/session/simulated_room.hpp"
 #include "station/session/triggers.hpp"
 #include "station/trial/timing.hpp"
@@ -61,13 +61,13 @@ class Stage {
   /// before `earliest_ns`; the distances between intervals are exactly those of their start frames. Returns
   /// the onsets. If scheduling fails, returns nothing and pushes a fault to the inputs. Later, the inputs
   /// report lost frames (InputKind::xrun), and each interval that was played completely (InputKind::heard).
-  virtual std::vector<Onset> present(std::span<const drive::PreparedBurst> intervals,
+  virtual std::vector<Onset> present(std::span<const audio::PreparedBurst> intervals,
                                      std::int64_t earliest_ns) = 0;
 
   /// Makes the burst that is playing glide to other tones within `seconds`, beginning now. Returns the frame
   /// at which the glide begins. If no burst is playing, or the burst is about to end, does nothing and
   /// returns nothing.
-  virtual std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) = 0;
+  virtual std::optional<std::int64_t> glide(const audio::ToneSet& to, double seconds) = 0;
 
   /// Ramps all bursts down now, and cancels those that have not begun. Returns the time at which the surface
   /// will be silent. If the converter does not report its position, this time is an upper limit; if the
@@ -83,7 +83,7 @@ class Stage {
   [[nodiscard]] virtual Refusal arm() = 0;
   virtual void disarm() = 0;
   [[nodiscard]] virtual Refusal clear() = 0;
-  virtual drive::AmplifierState amplifier() const = 0;
+  virtual audio::AmplifierState amplifier() const = 0;
   /// Switches the amplifier on before the stimuli of a trial, while the drive is silent.
   [[nodiscard]] virtual Refusal open_amplifier() = 0;
   /// Switches the amplifier off after the stimuli, as soon as the surface is silent.
@@ -97,21 +97,9 @@ class Stage {
   /// Names the lines (buttons, contact) that are disconnected at present, with the reason; "" if none are.
   virtual std::string missing() const = 0;
 
-  /// Asks a simulated observer to answer this question, and its finger to touch and leave the surface if the
-  /// protocol asks for it. A real stage does nothing. Throws terms::ProgramFailed if the observer is a
-  /// program that fails.
-  virtual void question(const observer::Question& question, const trial::SimulatedTimes& times) = 0;
-
-  /// Asks a simulated observer to set the slider of this trial and press Done. A real stage does nothing.
-  virtual void adjustment(const observer::Adjustment& adjustment, const trial::TrialSpec& spec,
-                          const trial::SimulatedTimes& times) = 0;
-
-  /// Makes a simulated participant give this input at the time `input.time_ns`. A real stage does nothing.
-  virtual void simulate(Input input) = 0;
-
   /// For the self-test. guarded_amplifier() is null in a simulated session; the capture is that of the
   /// simulated room, and empty without a room.
-  virtual drive::Amplifier* guarded_amplifier() { return nullptr; }
+  virtual audio::Amplifier* guarded_amplifier() { return nullptr; }
   virtual std::optional<CaptureSetup> capture() const { return std::nullopt; }
 
   /// Tells the stage by what fraction the resonance frequencies of the surface have risen since the
@@ -131,28 +119,28 @@ class Stage {
 };
 
 /// Returns the configuration of the stream for a rig's output, with a channel for each transducer.
-drive::StreamConfig stream_of(const rig::Rig& rig);
+audio::StreamConfig stream_of(const rig::Rig& rig);
 /// Like stream_of(), with the carrier that excites the bridges of force cells.
-drive::StreamConfig session_stream(const rig::Rig& rig);
+audio::StreamConfig session_stream(const rig::Rig& rig);
 /// True if the rig captures the signals of a simulated surface and finger instead of a sound card's.
 bool simulates_capture(const rig::Rig& rig);
 /// Returns the configuration of a simulated session's stream. It uses no hardware: if the rig's output is a
 /// converter, samples are discarded. Output to files and to plug-ins that the rig allows is kept.
-drive::StreamConfig simulated_stream(const rig::Rig& rig);
+audio::StreamConfig simulated_stream(const rig::Rig& rig);
 
 /// Makes a stage that runs in real time: CLOCK_MONOTONIC, the audio thread, the amplifier guard, and inputs
 /// from a display and the touch panel. `inputs` must outlive the stage. With a `capture`, the surface is
 /// measured: a pilot aligns playback and capture before the amplifier is enabled, unless they are aligned
 /// already.
-std::unique_ptr<Stage> real_stage(const drive::StreamConfig& stream, Devices devices, Inputs& inputs,
+std::unique_ptr<Stage> real_stage(const audio::StreamConfig& stream, Devices devices, Inputs& inputs,
                                   const std::optional<CardCapture>& capture = std::nullopt,
                                   const TriggerSetup& triggers = {});
 
-/// Makes a stage on the virtual clock. The drive advances with the clock. The simulated observer answers,
-/// arms a simulated amplifier, and presses Continue when nothing else is left to do. `inputs` must outlive
-/// the stage. Of `inputs`, only a stop has an effect, and only between trials. With a `room`, stimuli are
-/// computed sample by sample, and the surface is measured.
-std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Respondent observer,
+/// Makes a stage on the virtual clock. The drive advances with the clock. The participant's inputs come in
+/// their time; the stage arms a simulated amplifier, and presses Continue when nothing else is left to do.
+/// `participant` and `inputs` must outlive the stage. Of `inputs`, only a stop has an effect, and only
+/// between trials. With a `room`, stimuli are computed sample by sample, and the surface is measured.
+std::unique_ptr<Stage> virtual_stage(const audio::StreamConfig& stream, SimulatedParticipant& participant,
                                      Inputs& inputs, std::unique_ptr<SimulatedRoom> room = nullptr,
                                      const TriggerSetup& triggers = {});
 

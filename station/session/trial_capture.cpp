@@ -21,7 +21,7 @@ constexpr std::int64_t kConverter_ns = 1'500'000'000;
 
 }  // namespace
 
-TrialCapture::TrialCapture(const CardCapture& plan, const Devices& devices, drive::Stream& stream,
+TrialCapture::TrialCapture(const CardCapture& plan, const Devices& devices, audio::Stream& stream,
                            Inputs& inputs, Wait wait)
     : stream_(stream),
       inputs_(inputs),

@@ -21,7 +21,7 @@ class TrialCapture {
   using Wait = std::function<void(const std::function<bool()>& ready)>;
 
   /// Opens the devices. Throws the errors of their drivers.
-  TrialCapture(const CardCapture& plan, const Devices& devices, drive::Stream& stream, Inputs& inputs,
+  TrialCapture(const CardCapture& plan, const Devices& devices, audio::Stream& stream, Inputs& inputs,
                Wait wait);
 
   CaptureFeed& feed() { return feed_; }
@@ -50,7 +50,7 @@ class TrialCapture {
   void report_measured(std::int64_t now_ns);
   void report_losses(std::int64_t now_ns);
 
-  drive::Stream& stream_;
+  audio::Stream& stream_;
   Inputs& inputs_;
   const Wait wait_;
   const sensing::Pilot pilot_;

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "station/drive/trigger_code.hpp"
+#include "station/audio/trigger_code.hpp"
 #include "station/protocol/triggers.hpp"
 
 namespace turnpoint::session {
 
-static_assert(rig::trigger_code_bits == drive::trigger_bits + drive::trigger_quiet_bits);
+static_assert(rig::trigger_code_bits == audio::trigger_bits + audio::trigger_quiet_bits);
 
 namespace {
 
@@ -61,10 +61,10 @@ TriggerCapture::News TriggerCapture::take() {
   return std::exchange(news_, {});
 }
 
-Triggers::Triggers(const TriggerSetup& setup, drive::Stream& stream, lines::TriggerLines* lines)
+Triggers::Triggers(const TriggerSetup& setup, audio::Stream& stream, io::TriggerLines* lines)
     : setup_(setup), stream_(stream), lines_(lines) {}
 
-std::int64_t Triggers::code_frames() const { return drive::trigger_bits * setup_.bit_frames; }
+std::int64_t Triggers::code_frames() const { return audio::trigger_bits * setup_.bit_frames; }
 
 void Triggers::add(Open open) {
   auto& trigger = open.trigger;
@@ -85,11 +85,11 @@ void Triggers::send(Trigger trigger, std::int64_t now_ns) {
   std::uint32_t burst_id = 0;
   trigger.time_ns = now_ns;
   if (setup_.marker) {
-    drive::Burst burst;
+    audio::Burst burst;
     burst.start_frame = free_from_;
     burst.length_frames = rig::trigger_code_bits * setup_.bit_frames;
     burst.ramp.frames = 0;
-    burst.marker = {drive::MarkerKind::code,  setup_.marker->channel,
+    burst.marker = {audio::MarkerKind::code,  setup_.marker->channel,
                     setup_.marker->amplitude, 0,
                     setup_.bit_frames,        {static_cast<std::uint8_t>(trigger.code)}};
     try {
@@ -97,7 +97,7 @@ void Triggers::send(Trigger trigger, std::int64_t now_ns) {
       burst_id = scheduled.burst;
       trigger.frame = scheduled.start_frame;
       trigger.time_ns = stream_.time_of(scheduled.start_frame).value_or(now_ns);
-    } catch (const drive::BurstRefused& refused) {
+    } catch (const audio::BurstRefused& refused) {
       trigger.refused = refused.what();
     }
   }
@@ -208,10 +208,10 @@ Triggers::Done Triggers::take(std::int64_t now_ns) {
   return done;
 }
 
-std::vector<records::EventRow> rows_of(const Trigger& trigger) {
+std::vector<core::EventRow> rows_of(const Trigger& trigger) {
   const auto what = fmt::format("{} {} frame {}", trigger.code, protocol::name(trigger.event), trigger.frame);
   const auto row = [&](const char* kind, const std::string& value) {
-    records::EventRow made;
+    core::EventRow made;
     made.time_ns = trigger.time_ns, made.kind = kind, made.value = value;
     made.trial_index = trigger.trial_index;
     return made;
@@ -228,13 +228,13 @@ std::vector<records::EventRow> rows_of(const Trigger& trigger) {
     // Adding 0 turns -0 into 0, which would be printed as "-0.00".
     value += fmt::format("; read back {:+.2f} frames", std::round(100 * trigger.error_frames) / 100 + 0.0);
   if (trigger.read_back == Trigger::ReadBack::lost) value += "; not captured";
-  std::vector<records::EventRow> rows{row("trigger", value)};
+  std::vector<core::EventRow> rows{row("trigger", value)};
   if (trigger.read_back == Trigger::ReadBack::missed) rows.push_back(row("trigger_missed", what));
   return rows;
 }
 
-records::EventRow row_of_extra(const sensing::DecodedTrigger& extra, std::int64_t time_ns, int trial_index) {
-  records::EventRow row;
+core::EventRow row_of_extra(const sensing::DecodedTrigger& extra, std::int64_t time_ns, int trial_index) {
+  core::EventRow row;
   row.time_ns = time_ns, row.kind = "trigger_extra", row.trial_index = trial_index;
   row.value = fmt::format("{} frame {:.0f}", extra.code, extra.frame);
   return row;

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "station/drive/engine.hpp"
-#include "station/lines/trigger_lines.hpp"
+#include "station/audio/engine.hpp"
+#include "station/core/records.hpp"
+#include "station/io/trigger_lines.hpp"
 #include "station/protocol/protocol.hpp"
-#include "station/records/records.hpp"
 #include "station/rig/rig.hpp"
 #include "station/sensing/trigger_decoder.hpp"
 
@@ -74,7 +74,7 @@ class Triggers {
  public:
   /// `lines` may be null. Then, with `setup.lines`, each code counts as set on the lines exactly when it was
   /// due (virtual clock). `stream` and `lines` must outlive this object.
-  Triggers(const TriggerSetup& setup, drive::Stream& stream, lines::TriggerLines* lines);
+  Triggers(const TriggerSetup& setup, audio::Stream& stream, io::TriggerLines* lines);
 
   bool active() const { return setup_.active(); }
   /// Registers a code that is part of a scheduled burst. `frame` and `time_ns` must be set.
@@ -113,8 +113,8 @@ class Triggers {
   void conclude(std::int64_t first_frame, std::int64_t end_frame);
 
   const TriggerSetup setup_;
-  drive::Stream& stream_;
-  lines::TriggerLines* lines_;
+  audio::Stream& stream_;
+  io::TriggerLines* lines_;
   std::vector<Open> open_;
   std::vector<sensing::DecodedTrigger> extra_;
   std::int64_t free_from_ = 0;
@@ -124,7 +124,7 @@ class Triggers {
 
 /// Returns the rows of events for a code: one that it was sent, and, if it was not read back, one that says
 /// so.
-std::vector<records::EventRow> rows_of(const Trigger& trigger);
-records::EventRow row_of_extra(const sensing::DecodedTrigger& extra, std::int64_t time_ns, int trial_index);
+std::vector<core::EventRow> rows_of(const Trigger& trigger);
+core::EventRow row_of_extra(const sensing::DecodedTrigger& extra, std::int64_t time_ns, int trial_index);
 
 }  // namespace turnpoint::session

@@ -34,12 +34,12 @@ sensing::CaptureBlock part_of(const sensing::CaptureBlock& block, std::int64_t b
 /// Adds the silence before an interval to the verdict on the interval.
 void add_silence(const sensing::SilenceResult& silence, sensing::IntervalResult& result) {
   result.silence = silence;
-  if (silence.verdict == terms::Proof::unproven) return;
+  if (silence.verdict == core::Proof::unproven) return;
   // The stimulus itself is still proven if only the silence before it is not known, so the trial counts.
-  const auto verdict = silence.verdict == terms::Proof::lost ? terms::Proof::flagged : silence.verdict;
+  const auto verdict = silence.verdict == core::Proof::lost ? core::Proof::flagged : silence.verdict;
   auto all = sensing::concluded({{result.cause, result.verdict}, {silence.cause, verdict}});
   // A surface that already moved before the stimulus also explains the residual during the stimulus.
-  if (all.cause == terms::ProofCause::residual && verdict == all.verdict) all.cause = silence.cause;
+  if (all.cause == core::ProofCause::residual && verdict == all.verdict) all.cause = silence.cause;
   result.verdict = all.verdict;
   result.cause = all.cause;
 }
@@ -106,12 +106,12 @@ void VibrationWatch::set_drift(double share) {
   setup_.pick_ups = sensing::scaled(calibrated_, share);
 }
 
-void VibrationWatch::expect(std::span<const drive::PreparedBurst> intervals, std::int64_t quiet_until) {
+void VibrationWatch::expect(std::span<const audio::PreparedBurst> intervals, std::int64_t quiet_until) {
   std::vector<std::unique_ptr<sensing::IntervalProof>> proofs;
   std::vector<sensing::TrialFinger::Range> ranges;
   for (const auto& burst : intervals)
     ranges.push_back({burst.start_frame, burst.start_frame + burst.length_frames});
-  const auto plan_of = [&](const drive::PreparedBurst& burst) {
+  const auto plan_of = [&](const audio::PreparedBurst& burst) {
     return sensing::IntervalPlan{burst,           setup_.rate_Hz,      setup_.channels,
                                  setup_.pick_ups, setup_.delay_frames, setup_.limits};
   };
@@ -140,7 +140,7 @@ void VibrationWatch::cut(std::int64_t from_frame) {
   if (finger_) finger_->cut(from_frame);
 }
 
-void VibrationWatch::changed(std::size_t interval, const drive::Change& change, const drive::Format& format) {
+void VibrationWatch::changed(std::size_t interval, const audio::Change& change, const audio::Format& format) {
   const std::lock_guard lock(mutex_);
   if (interval < proofs_.size()) proofs_[interval]->changed(change, format);
 }

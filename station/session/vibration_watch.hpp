@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "station/drive/prepared_burst.hpp"
+#include "station/audio/prepared_burst.hpp"
 #include "station/rig/rig.hpp"
 #include "station/sensing/interval_proof.hpp"
 #include "station/sensing/raw_ring.hpp"
@@ -59,13 +59,13 @@ class VibrationWatch {
   /// Announces the intervals of a trial, with absolute start frames, in order. They replace those of the
   /// previous trial. Nobody is asked to touch the surface before playback frame `quiet_until`. From then
   /// on, but at most for the last 80 ms before the first interval, the surface must be silent.
-  void expect(std::span<const drive::PreparedBurst> intervals, std::int64_t quiet_until);
+  void expect(std::span<const audio::PreparedBurst> intervals, std::int64_t quiet_until);
   /// Tells the watch that all bursts ramp down from this playback frame on. Intervals that have not begun by
   /// then are dropped.
   void cut(std::int64_t from_frame);
   /// Tells the watch that this interval, which is playing, glides to other tones. `format` is that of the
   /// output.
-  void changed(std::size_t interval, const drive::Change& change, const drive::Format& format);
+  void changed(std::size_t interval, const audio::Change& change, const audio::Format& format);
 
   /// True if one of the expected intervals needs captured frames from this range.
   bool needs(std::int64_t first_frame, std::int64_t end_frame) const;

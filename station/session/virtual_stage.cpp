@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <deque>
 #include <utility>
 
-#include "station/lines/guard.hpp"
+#include "station/io/guard.hpp"
 #include "station/session/presented.hpp"
 
 namespace turnpoint::session {
@@ -13,12 +12,12 @@ namespace {
 
 class VirtualStage : public Stage {
  public:
-  VirtualStage(const drive::StreamConfig& config, observer::Respondent observer, Inputs& inputs,
+  VirtualStage(const audio::StreamConfig& config, SimulatedParticipant& participant, Inputs& inputs,
                std::unique_ptr<SimulatedRoom> room, const TriggerSetup& triggers)
-      : stream_(drive::open_synchronous(config)),
+      : stream_(audio::open_synchronous(config)),
         triggers_(triggers, *stream_, nullptr),
         simulated_sync_(triggers.simulated_sync),
-        observer_(std::move(observer)),
+        participant_(participant),
         inputs_(inputs),
         room_(std::move(room)) {
     if (room_) {
@@ -47,14 +46,11 @@ class VirtualStage : public Stage {
   }
 
   std::optional<Input> wait_for_input(std::int64_t deadline_ns) {
-    if (auto heard =
-            next_heard(script_.empty() ? deadline_ns : std::min(deadline_ns, script_.front().time_ns)))
-      return heard;
-    if (!script_.empty() && script_.front().time_ns <= deadline_ns) {
-      auto input = std::move(script_.front());
-      script_.pop_front();
-      advance_to(input.time_ns);
-      return input;
+    const auto next_ns = participant_.next_ns();
+    if (auto heard = next_heard(std::min(deadline_ns, next_ns.value_or(deadline_ns)))) return heard;
+    if (next_ns && *next_ns <= deadline_ns) {
+      advance_to(*next_ns);
+      return participant_.take();
     }
     if (deadline_ns != kForever) {
       advance_to(deadline_ns);
@@ -72,7 +68,7 @@ class VirtualStage : public Stage {
   /// session that was stopped and resumed equals one that was not interrupted. A trial takes only
   /// milliseconds of real time, so nobody waits long.
   std::vector<Input> drain() override {
-    script_.clear();
+    participant_.forget();
     unheard_.clear();
     measured_ = false;
     touchable_ = false;
@@ -90,7 +86,7 @@ class VirtualStage : public Stage {
     // meanwhile.
   }
 
-  std::vector<Onset> present(std::span<const drive::PreparedBurst> intervals,
+  std::vector<Onset> present(std::span<const audio::PreparedBurst> intervals,
                              std::int64_t earliest_ns) override {
     // The bursts of an aborted trial may still be ramping down. They occupy the drive until they are silent.
     advance_to(quiet_ns_);
@@ -109,10 +105,10 @@ class VirtualStage : public Stage {
     return onsets;
   }
 
-  std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) override {
+  std::optional<std::int64_t> glide(const audio::ToneSet& to, double seconds) override {
     const auto change = glide_to(*stream_, presented_, to, seconds);
     if (!change) return std::nullopt;
-    if (watch_) watch_->changed(presented_.size() - 1, *change, drive::format_of(stream_->config().output));
+    if (watch_) watch_->changed(presented_.size() - 1, *change, audio::format_of(stream_->config().output));
     return presented_.back().start_frame + change->at_frame;
   }
 
@@ -133,7 +129,7 @@ class VirtualStage : public Stage {
   Refusal arm() override { return refusal(alive().arm(now_ns_)); }
   void disarm() override { guard_.disarm(); }
   Refusal clear() override { return refusal(guard_.clear()); }
-  drive::AmplifierState amplifier() const override { return guard_.state(); }
+  audio::AmplifierState amplifier() const override { return guard_.state(); }
   Refusal open_amplifier() override {
     // Before each trial the force cells are read without a finger, which takes a moment.
     if (room_ && room_->capture().finger) {
@@ -151,43 +147,6 @@ class VirtualStage : public Stage {
 
   const std::vector<std::string>& buttons() const override { return no_buttons_; }
   std::string missing() const override { return ""; }
-  void question(const observer::Question& question, const trial::SimulatedTimes& times) override {
-    const auto reply = observer_.answer(question);
-    script_.clear();
-    for (const auto& event : trial::simulated_events(times, reply)) {
-      auto& input = script_.emplace_back(at(event.time_ns, InputKind::answer));
-      input.value = event.value;
-      if (event.kind == trial::EventKind::contact) {
-        input.kind = InputKind::contact, input.number = -1;
-      } else if (reply.value) {
-        input.kind = InputKind::value, input.number = *reply.value;
-      }
-    }
-  }
-
-  void adjustment(const observer::Adjustment& adjustment, const trial::TrialSpec& spec,
-                  const trial::SimulatedTimes& times) override {
-    const auto settings = observer_.adjust(adjustment);
-    script_.clear();
-    for (const auto& event : trial::simulated_events(times, {})) {
-      auto& input = script_.emplace_back(at(event.time_ns, InputKind::contact));
-      input.value = event.value, input.number = -1;
-    }
-    for (const auto& move : settings.moves)
-      script_
-          .emplace_back(at(times.slider_ns + static_cast<std::int64_t>(move.time_s * 1e9), InputKind::slider))
-          .number = move.value;
-    script_.push_back(at(trial::simulated_done_ns(times, spec, settings.done_s), InputKind::next));
-    std::stable_sort(script_.begin(), script_.end(),
-                     [](const Input& a, const Input& b) { return a.time_ns < b.time_ns; });
-  }
-
-  void simulate(Input input) override {
-    input.quality = TimeQuality::simulated;
-    input.time_ns = std::max(now_ns_, input.time_ns);
-    script_ = {std::move(input)};
-  }
-
   std::optional<CaptureSetup> capture() const override {
     return room_ ? std::optional(room_->capture()) : std::nullopt;
   }
@@ -236,15 +195,6 @@ class VirtualStage : public Stage {
     return input;
   }
 
-  /// What the simulated participant does at this time, but not in the past.
-  Input at(std::int64_t time_ns, InputKind kind) const {
-    Input input;
-    input.time_ns = std::max(now_ns_, time_ns);
-    input.kind = kind;
-    input.quality = TimeQuality::simulated;
-    return input;
-  }
-
   /// A pulse of a simulated device, one each second.
   Input pulse() {
     Input input;
@@ -270,27 +220,26 @@ class VirtualStage : public Stage {
 
   /// Returns the amplifier guard's state machine, which works here without GPIO lines. All threads are
   /// reported as alive, because on the virtual clock none of them can hang.
-  lines::Guard& alive() {
+  io::Guard& alive() {
     guard_.audio_alive(now_ns_);
     guard_.session_alive(now_ns_);
     return guard_;
   }
-  static Refusal refusal(const std::optional<lines::Guard::Refusal>& why) {
+  static Refusal refusal(const std::optional<io::Guard::Refusal>& why) {
     return why ? Refusal(Fault{why->kind, ""}) : std::nullopt;
   }
 
   const std::vector<std::string> no_buttons_;
-  lines::Guard guard_;
-  std::unique_ptr<drive::SynchronousStream> stream_;
+  io::Guard guard_;
+  std::unique_ptr<audio::SynchronousStream> stream_;
   Triggers triggers_;
   std::optional<TriggerCapture> capture_;
   const bool simulated_sync_;
   std::int64_t sync_due_ns_ = 0;
-  observer::Respondent observer_;
+  SimulatedParticipant& participant_;
   Inputs& inputs_;
   std::int64_t now_ns_ = 0;
   std::int64_t quiet_ns_ = 0;  ///< time at which the surface will be silent
-  std::deque<Input> script_;   ///< what the simulated observer will do, in order of time
   std::vector<Presented> presented_, unheard_;
   // The plate goes on moving for some time after the drive stops, so simulate it from this many frames before
   // the measurement, and for as many frames after it.
@@ -305,10 +254,10 @@ class VirtualStage : public Stage {
 
 }  // namespace
 
-std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Respondent observer,
+std::unique_ptr<Stage> virtual_stage(const audio::StreamConfig& stream, SimulatedParticipant& participant,
                                      Inputs& inputs, std::unique_ptr<SimulatedRoom> room,
                                      const TriggerSetup& triggers) {
-  return std::make_unique<VirtualStage>(stream, std::move(observer), inputs, std::move(room), triggers);
+  return std::make_unique<VirtualStage>(stream, participant, inputs, std::move(room), triggers);
 }
 
 }  // namespace turnpoint::session

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "station/core/file_descriptor.hpp"
 #include "station/store/sqlite.hpp"
-#include "station/system/file_descriptor.hpp"
 
 namespace turnpoint::store {
 
@@ -50,7 +50,7 @@ class BackupFolderLock {
   explicit BackupFolderLock(const std::string& folder);
 
  private:
-  system::FileDescriptor lock_;
+  core::FileDescriptor lock_;
 };
 
 /// Throws StoreError (missing) unless a separate disk is mounted at the folder or at its parent folder. The

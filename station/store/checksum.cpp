@@ -8,9 +8,9 @@
 #include <string_view>
 #include <utility>
 
+#include "station/core/sha256.hpp"
 #include "station/store/fields.hpp"
 #include "station/store/schema.hpp"
-#include "station/text/sha256.hpp"
 
 namespace turnpoint::store {
 
@@ -42,7 +42,7 @@ class Encoder {
 
   /// Hashes the data with which the session started. The session's status is left out: it changes later, and
   /// each link contains it anyway.
-  void add_provenance(text::Sha256& hash) const {
+  void add_provenance(core::Sha256& hash) const {
     auto session = session_table();
     session.fields.resize(session.fields.size() - 2);
     auto columns = column_list(session, "s.");
@@ -59,7 +59,7 @@ class Encoder {
   }
 
   /// Hashes the session's rows after `from`, up to and including `to`, table by table.
-  void add_rows(text::Sha256& hash, const Extent& from, const Extent& to) {
+  void add_rows(core::Sha256& hash, const Extent& from, const Extent& to) {
     add(hash, segment_, segment_table(), "segment_index", "segment_index", from.segment, to.segment);
     add(hash, block_, block_table(), "run_order", "run_order", from.block, to.block);
     add(hash, trial_, trial_table(), "trial_index", "trial_index", from.trial, to.trial);
@@ -108,7 +108,7 @@ class Encoder {
 
  private:
   template <class Record>
-  void add(text::Sha256& hash, std::optional<Statement>& rows, const Table<Record>& table,
+  void add(core::Sha256& hash, std::optional<Statement>& rows, const Table<Record>& table,
            const std::string& key, const std::string& order, std::int64_t from, std::int64_t to) {
     if (from == to) return;
     if (!rows)
@@ -130,7 +130,7 @@ class Encoder {
 namespace {
 
 std::string checksum_of(Encoder& encoder, const Link& previous, const Link& link) {
-  text::Sha256 hash;
+  core::Sha256 hash;
   hash.add(fmt::format("turnpoint/{} {} {}\n{}\n{}:{}\n", kSchema, link.index, previous.sha256, link.status,
                        link.status_reason.size(), link.status_reason));
   if (link.index == 0) encoder.add_provenance(hash);
@@ -352,7 +352,7 @@ std::vector<VerifiedSession> verify_database(Database& database, const std::stri
 }
 
 std::string annotations_checksum(Database& database, const std::string& session_id) {
-  text::Sha256 hash;
+  core::Sha256 hash;
   Statement notes(database,
                   "SELECT annotation_id, realtime_ns, text FROM annotation WHERE session_id = ?"
                   " ORDER BY annotation_id");
@@ -369,7 +369,7 @@ std::optional<Link> link_at(Database& database, const std::string& session_id, s
 }
 
 std::string session_checksum(Database& database, const std::string& schema, const std::string& session_id) {
-  text::Sha256 hash;
+  core::Sha256 hash;
   Encoder encoder(database, schema, session_id);
   encoder.add_provenance(hash);
   encoder.add_rows(hash, {}, encoder.extent());

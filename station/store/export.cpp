@@ -14,13 +14,13 @@
 #include <tuple>
 #include <utility>
 
+#include "station/core/usage_error.hpp"
 #include "station/store/export_files.hpp"
 #include "station/store/export_tables.hpp"
 #include "station/store/files.hpp"
 #include "station/store/open.hpp"
 #include "station/store/sqlite.hpp"
 #include "station/store/whole_file.hpp"
-#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::store {
 namespace {
@@ -79,7 +79,7 @@ namespace fs = std::filesystem;
 namespace {
 
 void check_style(const ExportOptions& options) {
-  const auto refuse = [](const std::string& what) { throw terms::UsageError("export: " + what); };
+  const auto refuse = [](const std::string& what) { throw core::UsageError("export: " + what); };
   if (options.decimal != '.' && options.decimal != ',')
     refuse(fmt::format("the decimal mark must be '.' or ',', not '{}'", options.decimal));
   if (std::string(",;\t|").find(options.separator) == std::string::npos)
@@ -177,7 +177,7 @@ void for_each_row(Database& database, const ProtocolSelection& selection, const 
         rows.estimates(cells_of(columns.estimates, row));
       }
     }
-    for (const auto* event : records::standing_answers(stored.events)) {
+    for (const auto* event : core::standing_answers(stored.events)) {
       const auto& segment = stored.segments.at(static_cast<std::size_t>(event->segment_index) - 1);
       ExportRow row{&stored.session, nullptr, nullptr, nullptr, event, segment.monotonic_ns};
       for (const auto& answer : event->answers) {

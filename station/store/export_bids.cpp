@@ -12,14 +12,14 @@
 #include <string>
 #include <vector>
 
+#include "station/core/letters.hpp"
+#include "station/core/number.hpp"
+#include "station/core/toml.hpp"
 #include "station/store/export_files.hpp"
 #include "station/store/export_tables.hpp"
 #include "station/store/signal_code.hpp"
 #include "station/store/sqlite.hpp"
 #include "station/store/stored_signals.hpp"
-#include "station/terms/letters.hpp"
-#include "station/text/number.hpp"
-#include "station/text/toml.hpp"
 
 namespace turnpoint::store {
 
@@ -50,15 +50,15 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Reads a text of the protocol, which is a string, or a table with one string per language.
-std::string text_of(const text::Value* value, const std::string& language) {
+std::string text_of(const core::Value* value, const std::string& language) {
   if (value == nullptr) return "";
-  if (value->kind == text::Value::Kind::string) return value->string;
-  if (value->kind != text::Value::Kind::table || value->entries.empty()) return "";
+  if (value->kind == core::Value::Kind::string) return value->string;
+  if (value->kind != core::Value::Kind::table || value->entries.empty()) return "";
   const auto* found = value->find(language) == nullptr ? &value->entries.front() : value->find(language);
   return found->value.string;
 }
 
-const text::Value* at(const text::Value& table, const std::string& key) {
+const core::Value* at(const core::Value& table, const std::string& key) {
   const auto* entry = table.find(key);
   return entry == nullptr ? nullptr : &entry->value;
 }
@@ -71,7 +71,7 @@ struct Texts {
 Texts texts_of(const SessionStart& start) {
   Texts texts;
   try {
-    const auto document = text::parse_toml(start.protocol_text, start.protocol_path);
+    const auto document = core::parse_toml(start.protocol_text, start.protocol_path);
     if (const auto* head = at(document, "protocol"))
       texts.title = text_of(at(*head, "title"), start.language);
     if (const auto* task = at(document, "task")) {
@@ -79,7 +79,7 @@ Texts texts_of(const SessionStart& start) {
       const auto question = text_of(at(*task, "question"), start.language);
       if (!question.empty()) texts.instructions += (texts.instructions.empty() ? "" : "\n") + question;
     }
-  } catch (const text::BadInput&) {
+  } catch (const core::BadInput&) {
     // Leave out texts that this release can no longer read. The data are exported anyway.
   }
   if (texts.title.empty()) texts.title = start.protocol_id;
@@ -227,7 +227,7 @@ void export_bids_signals(Database& database, const BidsRun& run, const std::stri
   const auto& session_id = run.session_id;
   for (const auto& stream : signal_streams(database, session_id)) {
     // A recording of BIDS has no gaps. Between two void trials, hours of samples would be missing.
-    if (stream == records::kRawStream) continue;
+    if (stream == core::kRawStream) continue;
     SignalReader reader(database, session_id, stream, run.segment);
     std::optional<Recording> recording;
     while (const auto stored = reader.next()) {
@@ -262,11 +262,11 @@ struct Labels {
 /// which is the same in every export.
 std::map<std::string, std::string> labels_for(const std::set<std::string>& names) {
   std::map<std::string, int> users;
-  for (const auto& name : names) ++users[terms::lower(bids_label(name))];
+  for (const auto& name : names) ++users[core::lower(bids_label(name))];
   std::map<std::string, std::string> labels;
   for (const auto& name : names) {
-    const bool shared = users[terms::lower(bids_label(name))] > 1 || bids_label(name).empty();
-    labels[name] = bids_label(name) + (shared ? "x" + text::sha256(name).substr(0, 8) : "");
+    const bool shared = users[core::lower(bids_label(name))] > 1 || bids_label(name).empty();
+    labels[name] = bids_label(name) + (shared ? "x" + core::sha256(name).substr(0, 8) : "");
   }
   return labels;
 }

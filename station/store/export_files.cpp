@@ -86,7 +86,7 @@ void write_file(const std::string& path, const std::string& bytes) {
 
 FolderLock::FolderLock(const std::string& folder) {
   writing(folder, [&] { system::make_folder(folder); });
-  folder_ = system::FileDescriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  folder_ = core::FileDescriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   while (folder_.is_open() && ::flock(folder_.get(), LOCK_EX) != 0 && errno == EINTR) {
   }
 }

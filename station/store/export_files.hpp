@@ -109,7 +109,7 @@ class FolderLock {
   explicit FolderLock(const std::string& folder);
 
  private:
-  system::FileDescriptor folder_;
+  core::FileDescriptor folder_;
 };
 
 /// These functions throw StoreError (conflict) if the folder has an earlier export with sessions that are not

@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "station/core/toml.hpp"
 #include "station/store/export_files.hpp"
 #include "station/store/export_tables.hpp"
 #include "station/store/signal_code.hpp"
 #include "station/store/sqlite.hpp"
 #include "station/store/stored_signals.hpp"
-#include "station/text/toml.hpp"
 
 namespace turnpoint::store {
 
@@ -103,11 +103,11 @@ Json explained(const std::vector<Column>& columns) { return Json::parse(columns_
 
 std::optional<double> playback_rate_Hz(const SessionStart& start) {
   try {
-    const auto rig = text::parse_toml(start.rig_text, start.rig_path);
+    const auto rig = core::parse_toml(start.rig_text, start.rig_path);
     const auto* output = rig.find("output");
     const auto* rate = output == nullptr ? nullptr : output->value.find("rate_Hz");
     if (rate != nullptr && rate->value.number > 0) return rate->value.number;
-  } catch (const text::BadInput&) {
+  } catch (const core::BadInput&) {
     // The stored rig file cannot be read, so the rate of frames is unknown. The export then leaves out frame
     // numbers.
   }

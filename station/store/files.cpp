@@ -13,14 +13,14 @@
 #include <string_view>
 #include <system_error>
 
-#include "station/system/read_file.hpp"
+#include "station/core/read_file.hpp"
+#include "station/core/sha256.hpp"
 #include "station/system/write_file.hpp"
-#include "station/text/sha256.hpp"
 
 namespace turnpoint::store {
 
 namespace fs = std::filesystem;
-using system::FileDescriptor;
+using core::FileDescriptor;
 
 namespace {
 
@@ -70,7 +70,7 @@ namespace {
 
 /// Reads a file and passes its bytes to `take`, piece by piece.
 void read_pieces(const std::string& path, const std::function<void(std::string_view)>& take) try {
-  system::FileReader file(path);
+  core::FileReader file(path);
   const auto expected = file_size(path);
   std::uint64_t taken = 0;
   for (auto piece = file.read(); !piece.empty(); piece = file.read()) {
@@ -96,7 +96,7 @@ std::string read_bytes(const std::string& path) {
 }
 
 std::string sha256_of_file(const std::string& path) {
-  text::Sha256 hash;
+  core::Sha256 hash;
   read_pieces(path, [&](std::string_view piece) { hash.add(piece); });
   return hash.hex();
 }

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "station/core/file_descriptor.hpp"
 #include "station/store/error.hpp"
-#include "station/system/file_descriptor.hpp"
 
 namespace turnpoint::store {
 
@@ -39,7 +39,7 @@ std::string canonical(const std::string& path);
 
 /// Opens the lock file, and creates it if it is missing. Throws if it is a symbolic link or has a second name
 /// (hard link), and leaves it unchanged.
-system::FileDescriptor open_lock(const std::string& path);
+core::FileDescriptor open_lock(const std::string& path);
 
 /// Creates an empty file that only its owner may read.
 void create_private(const std::string& path);

@@ -18,19 +18,19 @@ auto named(const std::string& word, const Values& values) {
 
 }  // namespace
 
-RunMode run_mode_named(const std::string& word) { return named(word, terms::run_modes); }
+RunMode run_mode_named(const std::string& word) { return named(word, core::run_modes); }
 
 SessionStatus session_status_named(const std::string& word) {
   return named(word, std::array{SessionStatus::running, SessionStatus::completed, SessionStatus::interrupted,
                                 SessionStatus::stopped, SessionStatus::abandoned});
 }
 
-Outcome trial_outcome_named(const std::string& word) { return named(word, terms::outcomes); }
-Proof proof_named(const std::string& word) { return named(word, terms::proofs); }
-ProofCause proof_cause_named(const std::string& word) { return named(word, terms::proof_causes); }
+Outcome trial_outcome_named(const std::string& word) { return named(word, core::outcomes); }
+Proof proof_named(const std::string& word) { return named(word, core::proofs); }
+ProofCause proof_cause_named(const std::string& word) { return named(word, core::proof_causes); }
 
-Verdict verdict_named(const std::string& word) { return named(word, terms::verdicts); }
+Verdict verdict_named(const std::string& word) { return named(word, core::verdicts); }
 
-TrialType trial_type_named(const std::string& word) { return named(word, terms::trial_types); }
+TrialType trial_type_named(const std::string& word) { return named(word, core::trial_types); }
 
 }  // namespace turnpoint::store

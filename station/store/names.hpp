@@ -1,12 +1,12 @@
 #pragma once
 #include <string>
 
-#include "station/records/records.hpp"
+#include "station/core/records.hpp"
 
 namespace turnpoint::store {
 
 // Lets the code of the store use the names of the records without a prefix.
-using namespace records;
+using namespace core;
 
 /// Convert the database's words to enums. They throw StoreError (corrupt) for a word that no release has
 /// written.

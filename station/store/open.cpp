@@ -177,7 +177,7 @@ void StationLock::note(const std::string& database_id) {
 }
 
 std::string remembered_database_id(const std::string& database) {
-  const system::FileDescriptor lock(::open((database + ".lock").c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC));
+  const core::FileDescriptor lock(::open((database + ".lock").c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC));
   return lock.is_open() ? note_in(lock.get()).database_id : "";
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <string>
 
+#include "station/core/file_descriptor.hpp"
 #include "station/store/sqlite.hpp"
-#include "station/system/file_descriptor.hpp"
 
 namespace turnpoint::store {
 
@@ -18,7 +18,7 @@ class StationLock {
 
  private:
   void note(const std::string& database_id);
-  system::FileDescriptor lock_;
+  core::FileDescriptor lock_;
 };
 
 /// Returns the id that remember() stored beside this database, even if the database itself is lost; "" if

@@ -6,8 +6,8 @@
 #include <charconv>
 #include <utility>
 
+#include "station/core/sha256.hpp"
 #include "station/store/checksum.hpp"
-#include "station/text/sha256.hpp"
 
 namespace turnpoint::store {
 
@@ -69,7 +69,7 @@ std::vector<Tally> tallies_of(Database& database) {
   for (const auto& sealed : sealed_tables()) {
     auto& tally = tallies.emplace_back();
     Statement rows(database, sealed.rows);
-    for (; rows.step(); ++tally.rows) tally.sum = plus(tally.sum, from_hex(text::sha256(row_bytes(rows))));
+    for (; rows.step(); ++tally.rows) tally.sum = plus(tally.sum, from_hex(core::sha256(row_bytes(rows))));
   }
   return tallies;
 }

@@ -10,6 +10,8 @@
 #include <system_error>
 #include <utility>
 
+#include "station/core/number.hpp"
+#include "station/core/usage_error.hpp"
 #include "station/store/checksum.hpp"
 #include "station/store/fields.hpp"
 #include "station/store/open.hpp"
@@ -23,8 +25,6 @@
 #include "station/store/withdraw.hpp"
 #include "station/system/clocks.hpp"
 #include "station/system/uuid.hpp"
-#include "station/terms/usage_error.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::store {
 namespace {
@@ -121,14 +121,14 @@ std::string keep(Database& database, const Table<SessionRecord>& table, const Se
 std::string keep_protocol(Database& database, const SessionRecord& session) {
   const auto& start = session.start;
   return keep(database, protocol_table(), session,
-              text::sha256(start.protocol_id + '\n' + start.protocol_version + '\n' + start.protocol_sha256 +
+              core::sha256(start.protocol_id + '\n' + start.protocol_version + '\n' + start.protocol_sha256 +
                            '\n' + start.protocol_text + '\n' + start.protocol_canonical));
 }
 
 std::string keep_rig(Database& database, const SessionRecord& session) {
   const auto& start = session.start;
   return keep(database, rig_table(), session,
-              text::sha256(start.rig_name + '\n' + start.rig_sha256 + '\n' + start.rig_text));
+              core::sha256(start.rig_name + '\n' + start.rig_sha256 + '\n' + start.rig_text));
 }
 
 int next_session_index(Database& database, const SessionStart& start) {
@@ -342,7 +342,7 @@ void SessionLog::finish(SessionStatus status, const std::string& reason) {
 }
 
 void annotate(const std::string& path, const std::string& session_id, const std::string& text) {
-  if (text.empty()) throw terms::UsageError("annotate: the note is empty");
+  if (text.empty()) throw core::UsageError("annotate: the note is empty");
   auto writer = open_writer(path, IfMissing::fail);
   const auto session = session_record(writer.database, session_id);
   SealedTransaction transaction(writer.database);

@@ -88,7 +88,7 @@ class SessionLog {
 };
 
 /// Adds a researcher's note to a session that is not running. The rows of its trials do not change. Throws
-/// StoreError, or terms::UsageError for an empty note.
+/// StoreError, or core::UsageError for an empty note.
 void annotate(const std::string& database, const std::string& session_id, const std::string& text);
 
 /// Marks an interrupted session as abandoned, because nobody will continue it, and stores the reason. Throws

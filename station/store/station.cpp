@@ -11,13 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "station/core/number.hpp"
 #include "station/store/checksum.hpp"
 #include "station/store/files.hpp"
 #include "station/store/open.hpp"
 #include "station/store/seal.hpp"
 #include "station/system/clocks.hpp"
 #include "station/system/uuid.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::store {
 
@@ -147,7 +147,7 @@ std::string machine_identity(const std::string& root) {
   auto board = first_word(root + "/sys/firmware/devicetree/base/serial-number");
   const auto uuid = root + "/sys/class/dmi/id/product_uuid";
   if (board.empty() && everybody_may_read(uuid)) board = first_word(uuid);
-  return id.empty() && board.empty() ? "" : text::sha256(id + "\n" + board);
+  return id.empty() && board.empty() ? "" : core::sha256(id + "\n" + board);
 }
 
 std::string suggested_station_name(const std::string& root) {

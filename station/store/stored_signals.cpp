@@ -4,8 +4,8 @@
 #include <cctype>
 #include <map>
 
+#include "station/core/letters.hpp"
 #include "station/store/fields.hpp"
-#include "station/terms/letters.hpp"
 
 namespace turnpoint::store {
 
@@ -88,7 +88,7 @@ Column signal_column(const SignalChannel& channel) {
   std::string name;
   for (const char c : channel.unit.empty() ? channel.name : channel.name + "_" + channel.unit) {
     const auto letter = static_cast<unsigned char>(c);
-    name += std::isalnum(letter) != 0 ? terms::lower(c) : '_';
+    name += std::isalnum(letter) != 0 ? core::lower(c) : '_';
   }
   return {name, meaning_of(channel.name), channel.unit, ""};
 }

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <stdexcept>
 
-#include "station/text/number.hpp"
+#include "station/core/number.hpp"
 
 namespace turnpoint::store {
 
@@ -40,7 +40,7 @@ struct Formatter {
   std::string operator()(std::monostate) const { return "n/a"; }
   std::string operator()(std::int64_t value) const { return std::to_string(value); }
   std::string operator()(double value) const {
-    auto text = text::exact(value);
+    auto text = core::exact(value);
     if (style.decimal != '.') std::replace(text.begin(), text.end(), '.', style.decimal);
     return text;
   }

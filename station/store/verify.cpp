@@ -6,13 +6,13 @@
 #include <system_error>
 #include <utility>
 
+#include "station/core/read_file.hpp"
+#include "station/core/toml.hpp"
 #include "station/store/open.hpp"
 #include "station/store/schema.hpp"
 #include "station/store/seal.hpp"
 #include "station/store/text_table.hpp"
 #include "station/store/whole_file.hpp"
-#include "station/system/read_file.hpp"
-#include "station/text/toml.hpp"
 
 namespace turnpoint::store {
 
@@ -30,7 +30,7 @@ std::vector<Exported> read_export(const std::string& path) {
   };
   std::string bytes;
   try {
-    bytes = system::read_file(path);
+    bytes = core::read_file(path);
   } catch (const std::system_error& error) {
     refuse(error.what());
   }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "station/core/number.hpp"
 #include "station/store/backup.hpp"
 #include "station/store/backup_folder.hpp"
 #include "station/store/files.hpp"
@@ -20,7 +21,6 @@
 #include "station/store/whole_file.hpp"
 #include "station/system/clocks.hpp"
 #include "station/system/uuid.hpp"
-#include "station/text/number.hpp"
 
 namespace turnpoint::store {
 
@@ -104,7 +104,7 @@ void remove_copies(const Copies& copies, const std::string& backup_folder) {
 namespace {
 
 std::string digest(const std::string& salt, const std::string& code) {
-  return text::sha256(salt + "/" + code);
+  return core::sha256(salt + "/" + code);
 }
 
 /// True if this code has a tombstone (the mark of a withdrawal): of this station, or of any station if

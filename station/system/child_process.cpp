@@ -34,16 +34,16 @@ constexpr int kNiceness = 5;
 }
 
 struct Pipe {
-  FileDescriptor read, write;
+  core::FileDescriptor read, write;
 };
 
 Pipe new_pipe(const std::string& file) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) fail(file + ": cannot make a pipe");
-  return {FileDescriptor(ends[0]), FileDescriptor(ends[1])};
+  return {core::FileDescriptor(ends[0]), core::FileDescriptor(ends[1])};
 }
 
-void never_wait(const FileDescriptor& end) { ::fcntl(end.get(), F_SETFL, O_NONBLOCK); }
+void never_wait(const core::FileDescriptor& end) { ::fcntl(end.get(), F_SETFL, O_NONBLOCK); }
 
 /// Everything that the new process needs, prepared before it exists: it shares our memory until it runs the
 /// program, so it must not allocate.
@@ -114,7 +114,7 @@ std::vector<std::string> sparse_environment() {
 }
 
 /// Appends what can be read at once, up to a limit. Closes the descriptor at the end of the file.
-void read_into(FileDescriptor& from, std::string& text) {
+void read_into(core::FileDescriptor& from, std::string& text) {
   std::array<char, 4096> buffer{};
   while (from.is_open() && text.size() < kMostUnread) {
     const auto n = ::read(from.get(), buffer.data(), buffer.size());
@@ -124,7 +124,7 @@ void read_into(FileDescriptor& from, std::string& text) {
     } else if (n < 0 && (errno == EAGAIN || errno == EINTR)) {
       return;
     } else {
-      from = FileDescriptor();
+      from = core::FileDescriptor();
     }
   }
 }
@@ -181,7 +181,7 @@ ChildProcess::ChildProcess(const std::string& file) {
 }
 
 ChildProcess::~ChildProcess() {
-  to_ = FileDescriptor(), from_ = FileDescriptor(), errors_ = FileDescriptor();
+  to_ = core::FileDescriptor(), from_ = core::FileDescriptor(), errors_ = core::FileDescriptor();
   if (!ends_within(kPatience_ns)) {
     ::kill(-id_, SIGTERM);
     static_cast<void>(ends_within(kPatience_ns));
@@ -231,7 +231,7 @@ void ChildProcess::write_waiting() {
     else if (errno == EAGAIN || errno == EINTR)
       return;
     else
-      to_ = FileDescriptor();  // the program has closed its standard input; line() will tell why
+      to_ = core::FileDescriptor();  // the program has closed its standard input; line() will tell why
   }
 }
 

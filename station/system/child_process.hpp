@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "station/system/file_descriptor.hpp"
+#include "station/core/file_descriptor.hpp"
 
 namespace turnpoint::system {
 
@@ -52,7 +52,7 @@ class ChildProcess {
   pid_t id_ = -1;
   bool reaped_ = false;
   int status_ = 0;
-  FileDescriptor to_, from_, errors_;
+  core::FileDescriptor to_, from_, errors_;
   std::string waiting_, out_, said_;
 };
 

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "station/system/file_descriptor.hpp"
+#include "station/core/file_descriptor.hpp"
 
 namespace turnpoint::system {
 
@@ -20,7 +20,7 @@ void notify_service_manager(std::string_view state) {
   std::strcpy(address.sun_path, path);
   // '@' at the start of a name means the abstract namespace, where the first byte is zero
   if (address.sun_path[0] == '@') address.sun_path[0] = '\0';
-  const FileDescriptor socket(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const core::FileDescriptor socket(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (!socket.is_open()) return;
   // Failure can be ignored: if the manager does not receive the state, it restarts the station, and its
   // journal says why.

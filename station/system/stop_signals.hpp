@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "station/system/file_descriptor.hpp"
+#include "station/core/file_descriptor.hpp"
 
 namespace turnpoint::system {
 
@@ -49,7 +49,7 @@ class StopSignals {
     int signal = 0;
     struct sigaction action {};
   };
-  FileDescriptor wake_;  ///< an eventfd
+  core::FileDescriptor wake_;  ///< an eventfd
   std::vector<Before> before_;
 };
 

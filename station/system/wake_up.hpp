@@ -1,5 +1,5 @@
 #pragma once
-#include "station/system/file_descriptor.hpp"
+#include "station/core/file_descriptor.hpp"
 
 namespace turnpoint::system {
 
@@ -19,7 +19,7 @@ class WakeUp {
   int descriptor() const noexcept { return event_.get(); }
 
  private:
-  FileDescriptor event_;
+  core::FileDescriptor event_;
 };
 
 }  // namespace turnpoint::system

@@ -13,7 +13,7 @@
 #include <system_error>
 #include <utility>
 
-#include "station/system/read_file.hpp"
+#include "station/core/read_file.hpp"
 
 namespace turnpoint::system {
 
@@ -49,7 +49,7 @@ std::string destination(const std::string& path) {
 /// True if the file begins as an SQLite database does. A file that this user cannot read is not recognised.
 bool is_database(const std::string& path) {
   constexpr std::string_view kStart("SQLite format 3\0", 16);
-  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  const core::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   std::array<char, kStart.size()> start{};
   return file.is_open() &&
          ::read(file.get(), start.data(), start.size()) == static_cast<ssize_t>(start.size()) &&
@@ -66,16 +66,17 @@ void require_replaceable(const std::string& path, Replaces replaces) {
   if (S_ISDIR(status.st_mode)) refuse(path, "is a folder");
   if (!S_ISREG(status.st_mode)) refuse(path, "is neither a file nor a pipe");
   if (is_database(path)) refuse(path, "is a database");
-  if (replaces == Replaces::output && was_read(status)) refuse(path, "is one of the files that were read");
+  if (replaces == Replaces::output && core::was_read(status))
+    refuse(path, "is one of the files that were read");
 }
 
 /// Opens a device or a pipe; a closed descriptor for anything else. A pipe that nobody reads is refused,
 /// because opening it would wait for ever.
-FileDescriptor opened_device(const std::string& path) {
+core::FileDescriptor opened_device(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0 || !(S_ISCHR(status.st_mode) || S_ISFIFO(status.st_mode)))
-    return FileDescriptor();
-  FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+    return core::FileDescriptor();
+  core::FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   if (!file.is_open() && errno == ENXIO && S_ISFIFO(status.st_mode))
     throw RefusedDestination(path + " is a pipe that nobody reads; start its reader first");
   if (!file.is_open()) fail(path, errno);
@@ -85,7 +86,7 @@ FileDescriptor opened_device(const std::string& path) {
 }
 
 /// True if the open file still has this name. Throws if that cannot be found out.
-bool is_named(const FileDescriptor& file, const std::string& path) {
+bool is_named(const core::FileDescriptor& file, const std::string& path) {
   struct stat ours {
   }, named{};
   if (::fstat(file.get(), &ours) != 0) fail(path, errno);
@@ -96,7 +97,7 @@ bool is_named(const FileDescriptor& file, const std::string& path) {
 
 /// Removes a draft that no process is writing. Whoever writes a draft holds a lock on it.
 void remove_if_abandoned(const std::string& draft) {
-  const FileDescriptor file(::open(draft.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK));
+  const core::FileDescriptor file(::open(draft.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK));
   const bool link_or_pipe = !file.is_open() && (errno == ELOOP || errno == ENXIO);
   const bool abandoned =
       file.is_open() && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0 && is_named(file, draft);
@@ -116,7 +117,8 @@ void FileWriter::open_draft(mode_t mode) {
   for (int k = 1; k <= kMostDrafts; ++k) {
     const auto draft = path_ + ".new" + (k > 1 ? std::to_string(k) : "");
     remove_if_abandoned(draft);
-    FileDescriptor file(::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode));
+    core::FileDescriptor file(
+        ::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode));
     if (!file.is_open() && errno == EEXIST) continue;
     if (!file.is_open()) fail(draft, errno);
     // Between the two calls, another process may have taken the draft for an abandoned one. Where there are
@@ -167,7 +169,7 @@ void FileWriter::commit() {
   if (::rename(draft_.c_str(), path_.c_str()) != 0) fail(path_, errno);
   draft_.clear();
   struct stat status {};
-  if (::fstat(file_.get(), &status) == 0) mark_written(status);
+  if (::fstat(file_.get(), &status) == 0) core::mark_written(status);
   if (::close(file_.release()) != 0) fail(path_, errno);
   sync_folder(fs::path(path_).parent_path().string());
 }
@@ -184,7 +186,7 @@ bool not_offered(int error) {
 
 void sync_folder(const std::string& path) {
   const auto name = path.empty() ? std::string(".") : path;
-  const FileDescriptor folder(::open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const core::FileDescriptor folder(::open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   // a folder may be writable but not readable
   if (!folder.is_open() && errno == EACCES) return;
   if (!folder.is_open() || (::fsync(folder.get()) != 0 && !not_offered(errno))) fail(name, errno);

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "station/system/file_descriptor.hpp"
+#include "station/core/file_descriptor.hpp"
 
 namespace turnpoint::system {
 
@@ -25,7 +25,7 @@ enum class Replaces { output, input };
 /// directly.
 ///
 /// Every output of the program is written by this class, and it refuses to replace an SQLite database, the
-/// files that SQLite keeps beside one, and a file that this process has read (see FileReader) unless
+/// files that SQLite keeps beside one, and a file that this process has read (see core::FileReader) unless
 /// `replaces` allows it. Throws RefusedDestination then, and also for a folder, a disk or a socket.
 ///
 /// It is safe for root to write into another user's folder: a symbolic link that another user has made is
@@ -47,7 +47,7 @@ class FileWriter {
   void open_draft(mode_t mode);
 
   std::string path_, draft_;  ///< draft_ is "" for a device, and after commit()
-  FileDescriptor file_;
+  core::FileDescriptor file_;
 };
 
 /// Writes a file as FileWriter does. Use this if all bytes are already in memory.

@@ -5,17 +5,17 @@
 #include <stdexcept>
 #include <utility>
 
+#include "station/core/number.hpp"
 #include "station/procedure/description.hpp"
 #include "station/procedure/state_hash.hpp"
 #include "station/protocol/sources.hpp"
-#include "station/text/number.hpp"
 #include "station/trial/director_state.hpp"
 #include "station/trial/orders.hpp"
 
 namespace turnpoint::trial {
 
+using core::Stream;
 using protocol::Block;
-using random::Stream;
 
 void Director::State::enter_block() {
   trial = shown = right = 0;
@@ -72,10 +72,10 @@ void Director::State::learn(const TrialEnd& end) {
   last_procedure = current_procedure;
   std::erase(pass, current_procedure);
   if (specs[index]->kind == procedure::Kind::adjustment && end.setting &&
-      end.outcome == terms::Outcome::answered)
+      end.outcome == core::Outcome::answered)
     return procedures[index]->record_setting(*end.setting);
   auto answer = procedure::Answer::none;
-  if (end.outcome == terms::Outcome::answered && end.response) {
+  if (end.outcome == core::Outcome::answered && end.response) {
     const auto& tracks = specs[index]->tracks;
     const auto& choice = protocol.task.choices[static_cast<std::size_t>(*end.response)];
     const bool one = tracks.empty() ? end.correct.value_or(false) : choice.id == tracks;
@@ -140,12 +140,12 @@ void Director::record(const TrialEnd& end) {
   auto& s = *state_;
   if (!s.current)
     throw std::logic_error("director: record() was called although no trial had been given out");
-  if (end.outcome == terms::Outcome::fault || end.outcome == terms::Outcome::aborted) return;
+  if (end.outcome == core::Outcome::fault || end.outcome == core::Outcome::aborted) return;
   s.count_runs(*s.current);
   const auto type = s.current->type;
   const auto level = s.current->level;
   s.current.reset();
-  if (type == terms::TrialType::warmup) {
+  if (type == core::TrialType::warmup) {
     --s.warmups, ++s.warmups_given;
     return;
   }
@@ -154,7 +154,7 @@ void Director::record(const TrialEnd& end) {
   if (s.now()->kind == protocol::BlockKind::friction_table)
     s.strokes[s.block].push_back({*level, end.friction});
   ++s.trial, ++s.done;
-  if (type != terms::TrialType::catch_trial) ++s.shown;
+  if (type != core::TrialType::catch_trial) ++s.shown;
   if (end.correct.value_or(false)) ++s.right;
 }
 
@@ -222,8 +222,8 @@ std::vector<ProcedureEstimate> Director::estimates() const {
 
 const std::map<std::string, Director::LongRun>& Director::long_runs() const { return state_->long_runs; }
 
-std::vector<texts::Phrase> Director::early_ends() const {
-  std::vector<texts::Phrase> all;
+std::vector<core::Phrase> Director::early_ends() const {
+  std::vector<core::Phrase> all;
   for (const auto& procedure : state_->procedures)
     if (const auto end = procedure->end()) all.push_back(*end);
   return all;
@@ -239,9 +239,9 @@ std::optional<std::pair<double, std::optional<double>>> Director::threshold() co
 }
 
 std::string in_words(const ProcedureEstimate& estimate) {
-  std::string rest = estimate.sd ? "SD " + text::number(*estimate.sd, 3) : "";
+  std::string rest = estimate.sd ? "SD " + core::number(*estimate.sd, 3) : "";
   if (!estimate.basis.empty()) rest += (rest.empty() ? "" : ", ") + estimate.basis;
-  return text::number(estimate.mean, 4) + (rest.empty() ? "" : " (" + rest + ")");
+  return core::number(estimate.mean, 4) + (rest.empty() ? "" : " (" + rest + ")");
 }
 
 std::uint64_t Director::state_hash() const {

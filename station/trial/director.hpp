@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "station/core/records.hpp"
 #include "station/procedure/continuation.hpp"
 #include "station/procedure/program.hpp"
 #include "station/protocol/protocol.hpp"
-#include "station/records/records.hpp"
 #include "station/trial/slider.hpp"
 
 namespace turnpoint::trial {
@@ -20,7 +20,7 @@ struct TrialSpec {
   int block_index = 0, attempt = 0;
   /// part of the key of the trial's random draws; when a void trial is repeated, the key stays the same
   int trial_in_block = 0;
-  terms::TrialType type = terms::TrialType::experimental;
+  core::TrialType type = core::TrialType::experimental;
   std::string procedure;  ///< name of the procedure that chose the level; "" if no procedure did
   std::optional<double> level;
   protocol::Factors factors;
@@ -44,7 +44,7 @@ struct TrialSpec {
 
 /// The parts of a trial's result on which later trials depend.
 struct TrialEnd {
-  terms::Outcome outcome = terms::Outcome::answered;
+  core::Outcome outcome = core::Outcome::answered;
   std::optional<int> response;
   std::optional<bool> correct;
   std::optional<double> setting = {};   ///< the setting; only for an adjustment that was answered
@@ -85,7 +85,7 @@ class Director {
   /// True if next() would not wait for the program of a procedure.
   bool ready() const;
   /// Returns the next trial of this block. Waits for procedures that are programs, and throws
-  /// terms::ProgramFailed if one has failed; it may then be called again. After a void trial, returns the
+  /// core::ProgramFailed if one has failed; it may then be called again. After a void trial, returns the
   /// same trial again. Empty when the block is done.
   std::optional<TrialSpec> next();
   /// Records the result of the trial that next() returned last.
@@ -108,7 +108,7 @@ class Director {
   /// Returns the current estimates of the block's procedures. Procedures without an estimate are left out.
   std::vector<ProcedureEstimate> estimates() const;
   /// Says which of the block's procedures have ended, and how, if that was not by their rules.
-  std::vector<texts::Phrase> early_ends() const;
+  std::vector<core::Phrase> early_ends() const;
   /// A run of trials that was longer than the protocol allows.
   struct LongRun {
     int limit = 0, longest = 0;

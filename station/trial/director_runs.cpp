@@ -2,7 +2,7 @@
 #include <tuple>
 #include <utility>
 
-#include "station/text/number.hpp"
+#include "station/core/number.hpp"
 #include "station/trial/director_state.hpp"
 #include "station/trial/orders.hpp"
 
@@ -40,7 +40,7 @@ std::string Director::State::value_of(const std::string& key, const TrialSpec& s
   const auto found = spec.factors.find(key);
   if (found == spec.factors.end()) return "";
   const auto* number = std::get_if<double>(&found->second);
-  return number ? text::exact(*number) : std::get<std::string>(found->second);
+  return number ? core::exact(*number) : std::get<std::string>(found->second);
 }
 
 /// Returns how many runs would become too long.
@@ -211,7 +211,7 @@ void Director::State::apply_deviation() {
 }
 
 void Director::State::count_runs(const TrialSpec& spec) {
-  if (spec.strokes || spec.type == terms::TrialType::warmup) return;
+  if (spec.strokes || spec.type == core::TrialType::warmup) return;
   for (auto& [key, run] : runs) {
     const auto value = value_of(key, spec);
     run.length = value == run.value ? run.length + 1 : 1;

@@ -79,8 +79,8 @@ struct Director::State {
   const protocol::Block* now() const {
     return ended.empty() && block < blocks.size() ? &blocks[block] : nullptr;
   }
-  random::Draws draws(random::Stream stream, int key) const {
-    return random::Draws({seed, stream, static_cast<int>(block), attempt, key});
+  core::Draws draws(core::Stream stream, int key) const {
+    return core::Draws({seed, stream, static_cast<int>(block), attempt, key});
   }
 
   // These functions handle blocks and procedures (director.cpp).
@@ -98,7 +98,7 @@ struct Director::State {
   protocol::FactorValue drawn_value(const protocol::Factor& factor, int number) const;
   std::optional<int> pick_procedure();
   bool catch_due() const;
-  TrialSpec blank(terms::TrialType type) const;
+  TrialSpec blank(core::TrialType type) const;
   IntervalOrder presented_order(int key) const;
   void complete(TrialSpec& spec) const;
   std::optional<SliderSpan> slider(int key) const;

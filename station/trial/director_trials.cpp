@@ -6,7 +6,7 @@
 
 namespace turnpoint::trial {
 
-using random::Stream;
+using core::Stream;
 
 namespace {
 
@@ -118,12 +118,12 @@ bool Director::State::catch_due() const {
   return now()->catch_trials && draws(Stream::catch_trial, trial).uniform() < now()->catch_trials->rate;
 }
 
-TrialSpec Director::State::blank(terms::TrialType type) const {
+TrialSpec Director::State::blank(core::TrialType type) const {
   TrialSpec spec;
   spec.block_index = static_cast<int>(block);
   spec.attempt = attempt;
   spec.trial_in_block = trial;
-  spec.type = now()->practice ? terms::TrialType::practice : type;
+  spec.type = now()->practice ? core::TrialType::practice : type;
   spec.factors = drawn_factors();
   spec.timeouts_are_data = timeouts_are_data();
   return spec;
@@ -135,8 +135,8 @@ IntervalOrder Director::State::presented_order(int key) const {
 
 /// Fills in what follows from the level and the factors: order of intervals, right answer, roving, times.
 void Director::State::complete(TrialSpec& spec) const {
-  const int key = spec.type == terms::TrialType::warmup ? -1 - warmups_given : trial;
-  const auto order = presented_order(spec.type == terms::TrialType::warmup
+  const int key = spec.type == core::TrialType::warmup ? -1 - warmups_given : trial;
+  const auto order = presented_order(spec.type == core::TrialType::warmup
                                          ? warmups_given
                                          : order_key(deviation.order_of.value_or(trial)));
   spec.intervals = order.intervals;
@@ -173,8 +173,8 @@ std::optional<SliderSpan> Director::State::slider(int key) const {
 }
 
 TrialSpec Director::State::warmup_trial() const {
-  auto spec = blank(terms::TrialType::warmup);
-  spec.type = terms::TrialType::warmup;
+  auto spec = blank(core::TrialType::warmup);
+  spec.type = core::TrialType::warmup;
   std::vector<double> levels = practice_levels;
   std::string factor = now()->level;
   if (!specs.empty()) {
@@ -198,7 +198,7 @@ TrialSpec Director::State::warmup_trial() const {
 }
 
 TrialSpec Director::State::catch_trial() const {
-  auto spec = blank(terms::TrialType::catch_trial);
+  auto spec = blank(core::TrialType::catch_trial);
   const auto& wanted = *now()->catch_trials;
   auto draw = draws(Stream::catch_trial, trial);
   draw.uniform();  // skip the random number that has decided that this is a catch trial
@@ -211,7 +211,7 @@ TrialSpec Director::State::catch_trial() const {
 
 std::optional<TrialSpec> Director::State::practice_trial() const {
   if (static_cast<std::size_t>(trial) >= practice_levels.size()) return std::nullopt;
-  auto spec = blank(terms::TrialType::experimental);
+  auto spec = blank(core::TrialType::experimental);
   spec.level = practice_levels[static_cast<std::size_t>(trial)];
   spec.factors[now()->level] = *spec.level;
   complete(spec);
@@ -223,7 +223,7 @@ std::optional<TrialSpec> Director::State::practice_trial() const {
 std::optional<TrialSpec> Director::State::strokes_trial() const {
   if (static_cast<std::size_t>(trial) >= practice_levels.size()) return std::nullopt;
   const bool training = now()->kind == protocol::BlockKind::training;
-  auto spec = blank(terms::TrialType::practice);
+  auto spec = blank(core::TrialType::practice);
   spec.level = practice_levels[static_cast<std::size_t>(trial)];
   spec.intervals = {{now()->strokes.scene}};
   spec.rove_dB = {0};
@@ -249,7 +249,7 @@ void Director::State::set_proposal(const procedure::Proposal& proposal, const pr
 TrialSpec Director::State::procedure_trial(int index) const {
   const auto& from = *specs[static_cast<std::size_t>(index)];
   const auto proposal = procedures[static_cast<std::size_t>(index)]->choice(deviation.place);
-  auto spec = blank(terms::TrialType::experimental);
+  auto spec = blank(core::TrialType::experimental);
   spec.procedure = from.name;
   spec.level = proposal.level;
   set_proposal(proposal, from, spec.factors);

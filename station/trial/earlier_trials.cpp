@@ -9,28 +9,28 @@ namespace turnpoint::trial {
 
 namespace {
 
-bool was_repeated(const records::BlockRecord& block, const std::vector<records::BlockRecord>& blocks) {
+bool was_repeated(const core::BlockRecord& block, const std::vector<core::BlockRecord>& blocks) {
   return std::ranges::any_of(blocks, [&](const auto& other) {
     return other.start.block_index == block.start.block_index && other.start.attempt > block.start.attempt;
   });
 }
 
-procedure::Answer answer_in(const records::TrialRow& row, const procedure::Spec& spec) {
-  if (row.outcome != terms::Outcome::answered) return procedure::Answer::none;
+procedure::Answer answer_in(const core::TrialRow& row, const procedure::Spec& spec) {
+  if (row.outcome != core::Outcome::answered) return procedure::Answer::none;
   const bool one = spec.tracks.empty() ? row.correct.value_or(false) : row.response == spec.tracks;
   return one ? procedure::Answer::one : procedure::Answer::zero;
 }
 
 }  // namespace
 
-void add_earlier_trials(const protocol::Protocol& protocol, const std::vector<records::BlockRecord>& blocks,
+void add_earlier_trials(const protocol::Protocol& protocol, const std::vector<core::BlockRecord>& blocks,
                         procedure::EarlierTrials& earlier) {
   for (const auto& block : blocks) {
     if (block.start.practice || was_repeated(block, blocks)) continue;
     for (const auto& row : block.trials) {
       const auto* spec = protocol::find_procedure(protocol, row.procedure);
-      if (spec == nullptr || !spec->continues || row.type != terms::TrialType::experimental ||
-          row.outcome == terms::Outcome::fault || row.outcome == terms::Outcome::aborted)
+      if (spec == nullptr || !spec->continues || row.type != core::TrialType::experimental ||
+          row.outcome == core::Outcome::fault || row.outcome == core::Outcome::aborted)
         continue;
       procedure::EarlierTrial trial{row.level.value(), answer_in(row, *spec)};
       if (spec->second) trial.second = std::get<double>(row.factors.at(spec->second->level));

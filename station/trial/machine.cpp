@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "station/terms/limits.hpp"
+#include "station/core/limits.hpp"
 
 namespace turnpoint::trial {
 
@@ -262,7 +262,7 @@ void Machine::answer(const Event& event) {
 void Machine::confide(const Event& event) {
   const auto answered_ns = *result_.zero_ns + *result_.response_time_ns;
   if (event.value < 0 || event.value >= plan_.confidence ||
-      event.time_ns < answered_ns + terms::kConfidenceGuard_ns) {
+      event.time_ns < answered_ns + core::kConfidenceGuard_ns) {
     ++result_.extra_touches;
     return;
   }

@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "station/terms/trial.hpp"
+#include "station/core/trial.hpp"
 
 namespace turnpoint::trial {
 
 /// The moment from which response times are counted. The enumerators have the names used in protocol files.
-using terms::ResponseZero;
+using core::ResponseZero;
 
 enum class Phase {
   idle,        ///< the trial has not started
@@ -24,7 +24,7 @@ enum class Phase {
   done,
 };
 
-using terms::Outcome;
+using core::Outcome;
 
 /// One interval: its duration, and the times at which its later scenes begin, counted from its onset.
 struct IntervalTiming {
@@ -55,7 +55,7 @@ struct Timing {
   int answers = 2;             ///< number of possible answers
   std::optional<int> correct;  ///< index of the right answer; empty if no answer is right or wrong
   /// number of confidence levels that the participant chooses from after the answer, without a deadline; 0:
-  /// confidence is not asked for. A second press of the answer, within terms::kConfidenceGuard_ns of the
+  /// confidence is not asked for. A second press of the answer, within core::kConfidenceGuard_ns of the
   /// first, is no confidence
   int confidence = 0;
 };

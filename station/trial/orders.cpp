@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "station/random/draws.hpp"
+#include "station/core/draws.hpp"
 
 namespace turnpoint::trial {
 
@@ -109,16 +109,16 @@ IntervalOrder order_for(const protocol::Task& task, std::uint64_t seed, int bloc
   if (orders.size() == 1) return orders.front();
   std::vector<std::size_t> run;
   for (int i = 0; i < kRun; ++i) run.push_back(static_cast<std::size_t>(i) % orders.size());
-  random::Draws draws({seed, random::Stream::interval_order, block, attempt, trial / kRun});
+  core::Draws draws({seed, core::Stream::interval_order, block, attempt, trial / kRun});
   draws.shuffle(run);
   return orders[run[static_cast<std::size_t>(trial % kRun)]];
 }
 
 std::vector<double> friction_table_order(std::span<const double> levels, int repeats,
-                                         const random::Key& key) {
+                                         const core::DrawKey& key) {
   std::vector<double> driven;
   for (int i = 0; i < repeats; ++i) driven.insert(driven.end(), levels.begin(), levels.end());
-  random::Draws(key).shuffle(driven);
+  core::Draws(key).shuffle(driven);
   std::vector<double> order{0};
   for (const double level : driven) {
     order.push_back(level);

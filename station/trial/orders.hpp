@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "station/core/draws.hpp"
 #include "station/protocol/protocol.hpp"
-#include "station/random/draws.hpp"
 
 namespace turnpoint::trial {
 
@@ -31,7 +31,8 @@ int run_of_orders();
 
 /// The levels of a friction table in the order to present them: each level `repeats` times, in random order,
 /// with the surface at rest (0) before, between and after them.
-std::vector<double> friction_table_order(std::span<const double> levels, int repeats, const random::Key& key);
+std::vector<double> friction_table_order(std::span<const double> levels, int repeats,
+                                         const core::DrawKey& key);
 
 /// Returns the right choice for these factors; empty if none of the task's comparisons is true. If the
 /// comparisons are about scenes (2ifc), it is the place of the right scene in `intervals`.

@@ -25,7 +25,7 @@ std::string level_factor(const TrialSpec& spec, const protocol::Protocol& protoc
 /// Sets the trial's value of the second dimension of its procedure. Trials without a procedure (practice,
 /// catch trials) take it from the first procedure that has the same level.
 void set_second(const TrialSpec& spec, const protocol::Protocol& protocol, const std::string& level,
-                observer::Question& question) {
+                simulation::Question& question) {
   const auto* procedure = protocol::find_procedure(protocol, spec.procedure);
   for (const auto& other : protocol.procedures)
     if (!procedure && other.level == level && other.second) procedure = &other;
@@ -38,15 +38,15 @@ void set_second(const TrialSpec& spec, const protocol::Protocol& protocol, const
     question.log_step = procedure->scale == procedure::Scale::dB ? ln10 / 20 : ln10;
 }
 
-observer::Finding finding_of(protocol::TaskKind kind) {
+simulation::Finding finding_of(protocol::TaskKind kind) {
   switch (kind) {
     case protocol::TaskKind::several_intervals:
-      return observer::Finding::largest;
+      return simulation::Finding::largest;
     case protocol::TaskKind::abx:
     case protocol::TaskKind::match_to_sample:
-      return observer::Finding::nearest;
+      return simulation::Finding::nearest;
     default:
-      return observer::Finding::weibull;
+      return simulation::Finding::weibull;
   }
 }
 
@@ -61,15 +61,15 @@ double median_step(std::vector<double> categories) {
 
 }  // namespace
 
-observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& protocol,
-                               std::uint64_t seed) {
-  observer::Question question;
+simulation::Question question_of(const TrialSpec& spec, const protocol::Protocol& protocol,
+                                 std::uint64_t seed) {
+  simulation::Question question;
   question.level = spec.level.value_or(0);
   question.correct = spec.correct;
   question.deadline_s = spec.deadline_s;
   question.signal_s = spec.signal_s;
   question.answers = static_cast<int>(protocol.task.choices.size());
-  question.key = {seed, random::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
+  question.key = {seed, core::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
   const auto level = level_factor(spec, protocol);
   question.decibel = level.ends_with("_dB");
   question.default_threshold = protocol::middle_level(protocol, level);
@@ -77,12 +77,13 @@ observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& 
   const auto& task = protocol.task;
   if (task.confidence) question.confidence = static_cast<int>(task.confidence->labels.size());
   if (protocol::judges(task)) {
-    question.decides = observer::Decides::presence;
+    question.decides = simulation::Decides::presence;
     question.rating = task.rating;
-    question.middle = !question.decibel && protocol::two_sided(protocol, level) ? observer::Middle::bias
-                                                                                : observer::Middle::threshold;
+    question.middle = !question.decibel && protocol::two_sided(protocol, level)
+                          ? simulation::Middle::bias
+                          : simulation::Middle::threshold;
     if (task.present) {
-      question.middle = observer::Middle::criterion;
+      question.middle = simulation::Middle::criterion;
       question.absent = !protocol::holds(*task.present, spec.factors);
     }
     if (const auto& value = task.value)
@@ -106,15 +107,15 @@ observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& 
       question.finding = finding_of(task.kind);
       break;
     case protocol::AnswerKind::category:
-      question.decides = observer::Decides::category;
+      question.decides = simulation::Decides::category;
       question.categories = rule.categories;
       question.default_threshold = median_step(rule.categories);
       break;
     case protocol::AnswerKind::side:
-      question.decides = observer::Decides::side;
+      question.decides = simulation::Decides::side;
       break;
     case protocol::AnswerKind::presence:
-      question.decides = observer::Decides::presence;
+      question.decides = simulation::Decides::presence;
       question.absent = protocol.task.kind == protocol::TaskKind::same_different && spec.correct &&
                         *spec.correct != rule.positive;
       break;
@@ -134,13 +135,13 @@ double equal_setting(const protocol::Protocol& protocol, const protocol::Factors
   return low <= 0 && high >= 0 ? 0 : 0.5 * (low + high);
 }
 
-observer::Adjustment adjustment_of(const TrialSpec& spec, const protocol::Protocol& protocol,
-                                   std::uint64_t seed) {
-  observer::Adjustment adjustment;
+simulation::Adjustment adjustment_of(const TrialSpec& spec, const protocol::Protocol& protocol,
+                                     std::uint64_t seed) {
+  simulation::Adjustment adjustment;
   adjustment.start = spec.level.value_or(spec.slider->low);
   adjustment.low = spec.slider->low, adjustment.high = spec.slider->high;
   adjustment.equal = equal_setting(protocol, spec.factors);
-  adjustment.key = {seed, random::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
+  adjustment.key = {seed, core::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
   return adjustment;
 }
 

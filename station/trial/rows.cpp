@@ -1,6 +1,6 @@
 #include "station/trial/rows.hpp"
 
-#include "station/text/number.hpp"
+#include "station/core/number.hpp"
 #include "station/trial/timing.hpp"
 
 namespace turnpoint::trial {
@@ -19,15 +19,15 @@ std::string choice_id(const protocol::Protocol& protocol, int index) {
 
 /// Returns the "response" to store for a trial without a question: a word for how the finger moved.
 /// Simulations without a surface know only whether the movement was right or wrong.
-std::string movement_word(const records::TrialRow& row, int response) {
+std::string movement_word(const core::TrialRow& row, int response) {
   if (!row.finger.sensing.empty()) return row.finger.sensing;
   return response == 0 ? "ok" : "strokes";
 }
 
 }  // namespace
 
-records::BlockStart block_start(const protocol::Block& block, int block_index, int attempt) {
-  records::BlockStart start;
+core::BlockStart block_start(const protocol::Block& block, int block_index, int attempt) {
+  core::BlockStart start;
   start.block_index = block_index;
   start.attempt = attempt;
   start.name = block.name;
@@ -38,8 +38,8 @@ records::BlockStart block_start(const protocol::Block& block, int block_index, i
   return start;
 }
 
-records::TrialRow row_of(const TrialSpec& spec, const protocol::Protocol& protocol, int trial_index) {
-  records::TrialRow row;
+core::TrialRow row_of(const TrialSpec& spec, const protocol::Protocol& protocol, int trial_index) {
+  core::TrialRow row;
   row.trial_index = trial_index;
   row.trial_in_block = spec.trial_in_block;
   row.type = spec.type;
@@ -54,11 +54,11 @@ records::TrialRow row_of(const TrialSpec& spec, const protocol::Protocol& protoc
   return row;
 }
 
-void fill_result(records::TrialRow& row, const Result& result, const TrialSpec& spec,
+void fill_result(core::TrialRow& row, const Result& result, const TrialSpec& spec,
                  const protocol::Protocol& protocol, std::int64_t origin_ns,
                  const std::optional<double>& value) {
   row.outcome = result.outcome;
-  if (result.response) row.response = value ? text::exact(*value) : choice_id(protocol, *result.response);
+  if (result.response) row.response = value ? core::exact(*value) : choice_id(protocol, *result.response);
   if (result.response && spec.strokes) row.response = movement_word(row, *result.response);
   row.correct = result.correct;
   row.confidence = result.confidence;

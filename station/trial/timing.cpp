@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "station/core/limits.hpp"
 #include "station/protocol/answers.hpp"
-#include "station/terms/limits.hpp"
 
 namespace turnpoint::trial {
 
@@ -53,7 +53,7 @@ std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, co
     const double at_s = *signal_in_stimulus_s(protocol, spec);
     auto& last = times.back();
     last.starts_s.insert(last.starts_s.end(), {at_s, at_s + buzz->length_s});
-    last.transitions_s.insert(last.transitions_s.end(), 2, terms::kBuzzRamp_s);
+    last.transitions_s.insert(last.transitions_s.end(), 2, core::kBuzzRamp_s);
   }
   return times;
 }
@@ -71,12 +71,12 @@ std::vector<std::vector<std::string>> presented_scenes(const protocol::Protocol&
 std::optional<double> signal_in_stimulus_s(const protocol::Protocol& protocol, const TrialSpec& spec) {
   const auto& signal = protocol.timing.signal;
   if (!spec.signal_s || !signal || !protocol::in_stimulus(*signal)) return std::nullopt;
-  const bool at_change = zero_of(protocol, spec) == terms::ResponseZero::change;
+  const bool at_change = zero_of(protocol, spec) == core::ResponseZero::change;
   return *spec.signal_s + (at_change ? task_times(protocol, spec).back().starts_s.front() : 0);
 }
 
-terms::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& spec) {
-  return spec.strokes ? terms::ResponseZero::interval_off : protocol.timing.response_zero;
+core::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& spec) {
+  return spec.strokes ? core::ResponseZero::interval_off : protocol.timing.response_zero;
 }
 
 SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSpec& spec,
@@ -88,19 +88,19 @@ SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSp
   if (const auto scenes = task_times(protocol, spec); !spec.strokes && !scenes.back().starts_s.empty())
     times.slider_ns += whole_ns(scenes.back().starts_s.back());
   switch (zero_of(protocol, spec)) {
-    case terms::ResponseZero::go_cue:
+    case core::ResponseZero::go_cue:
       break;
-    case terms::ResponseZero::change:
+    case core::ResponseZero::change:
       times.zero_ns += whole_ns(last.starts_s.front());
       break;
-    case terms::ResponseZero::interval_off:
+    case core::ResponseZero::interval_off:
       times.zero_ns += whole_ns(last.length_s);
       break;
-    case terms::ResponseZero::first_contact:
+    case core::ResponseZero::first_contact:
       times.touch_ns = times.zero_ns += whole_ns(std::min(reach_s, 0.5 * last.length_s));
       times.slider_ns = std::max(times.slider_ns, times.zero_ns);
       break;
-    case terms::ResponseZero::lift_off:
+    case core::ResponseZero::lift_off:
       times.touch_ns = onset_ns + whole_ns(std::min(reach_s, 0.5 * last.length_s));
       times.lift_ns = times.zero_ns += whole_ns(last.length_s);
       break;
@@ -108,7 +108,7 @@ SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSp
   return times;
 }
 
-std::vector<Event> simulated_events(const SimulatedTimes& times, const observer::Reply& reply) {
+std::vector<Event> simulated_events(const SimulatedTimes& times, const simulation::Reply& reply) {
   std::vector<Event> events;
   if (times.touch_ns) events.push_back({*times.touch_ns, EventKind::contact, 1});
   if (!reply.choice) {
@@ -138,7 +138,7 @@ std::int64_t simulated_done_ns(const SimulatedTimes& times, const TrialSpec& spe
 Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec) {
   Timing plan;
   plan.cue_ns = ns(kCue_s);
-  plan.watermark_ns = terms::kWatermark_ns;
+  plan.watermark_ns = core::kWatermark_ns;
   for (const auto& interval : interval_times(protocol, spec)) {
     IntervalTiming timed{ns(interval.length_s), {}};
     for (const double start : interval.starts_s) timed.scene_starts_ns.push_back(ns(start));

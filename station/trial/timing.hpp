@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "station/observer/observer.hpp"
 #include "station/protocol/protocol.hpp"
+#include "station/simulation/observer.hpp"
 #include "station/trial/director.hpp"
 #include "station/trial/machine.hpp"
 
@@ -16,7 +16,7 @@ inline constexpr double kCue_s = 0.8, kFeedback_s = 0.8, kLate_s = 1.0;
 
 /// The moment from which response times of a trial are counted. In a block in which the finger only strokes
 /// the surface, it is the end of the interval, because the movement is judged then.
-terms::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& spec);
+core::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& spec);
 
 /// When a simulated participant does what it does, given the onset of the last interval. If response times
 /// count from the finger's contact, the finger touches the surface soon after the onset; if they count from
@@ -32,7 +32,7 @@ SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSp
                                std::int64_t onset_ns);
 
 /// What the simulated participant does then, in order of time.
-std::vector<Event> simulated_events(const SimulatedTimes& times, const observer::Reply& reply);
+std::vector<Event> simulated_events(const SimulatedTimes& times, const simulation::Reply& reply);
 
 /// When the simulated participant presses Done: never before response times count.
 std::int64_t simulated_done_ns(const SimulatedTimes& times, const TrialSpec& spec, double done_s);

@@ -1,6 +1,6 @@
 #include "station/analysis/course.hpp"
 
-#include "station/random/draws.hpp"
+#include "station/core/draws.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::analysis;
@@ -99,7 +99,7 @@ TEST_CASE("Traces show each procedure's trials in the order of presentation, wit
 TEST_CASE("People who repeat their answers are found, and a run of equal stimuli does not look like them",
           "[analysis]") {
   for (const double habit : {0.0, 0.2}) {
-    turnpoint::random::Draws draws({15, turnpoint::random::Stream::observer, 0, 0, 0});
+    turnpoint::core::Draws draws({15, turnpoint::core::Stream::observer, 0, 0, 0});
     std::vector<TrialRecord> trials;
     int right = 0, last = 0, repeated = 0;
     for (int i = 0; i < 4000; ++i) {
@@ -124,7 +124,7 @@ TEST_CASE("People who repeat their answers are found, and a run of equal stimuli
 TEST_CASE("Post-error slowing is found, and a session that becomes slower and worse does not look like it",
           "[analysis]") {
   for (const double slowing_s : {0.0, 0.08}) {
-    turnpoint::random::Draws draws({14, turnpoint::random::Stream::observer, 0, 0, 0});
+    turnpoint::core::Draws draws({14, turnpoint::core::Stream::observer, 0, 0, 0});
     std::vector<TrialRecord> trials;
     bool after_error = false;
     double after = 0, other = 0;

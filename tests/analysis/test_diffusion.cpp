@@ -18,7 +18,7 @@
 
 using namespace turnpoint::analysis;
 using turnpoint::tests::sample_decision;
-namespace rnd = turnpoint::random;
+namespace rnd = turnpoint::core;
 
 namespace {
 

@@ -6,7 +6,7 @@
 
 #include "station/analysis/mixed_fit.hpp"
 #include "station/analysis/quantile.hpp"
-#include "station/random/draws.hpp"
+#include "station/core/draws.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -55,7 +55,7 @@ struct Group {
   int people = 10, trials = 10;
   double threshold = 2, threshold_sd = 3, rate = 0.25, rate_sd = 0.04;
 
-  std::vector<PersonCounts> answers(random::Draws& draws, std::vector<double>& thresholds) const {
+  std::vector<PersonCounts> answers(core::Draws& draws, std::vector<double>& thresholds) const {
     std::vector<PersonCounts> all;
     const auto normal = [&draws] {
       double sum = -6;
@@ -70,7 +70,7 @@ struct Group {
       for (const double level : {-10.0, -5.0, -2.0, 2.0, 5.0, 10.0, 14.0}) {
         LevelCount count{level, trials, 0};
         for (int k = 0; k < trials; ++k)
-          count.positive += draws.uniform() < core(Function::normal, intercept + own_rate * level);
+          count.positive += draws.uniform() < sigmoid(Function::normal, intercept + own_rate * level);
         person.counts.push_back(count);
       }
       all.push_back(person);
@@ -128,7 +128,7 @@ TEST_CASE("Levels on a log10 scale and in another unit give the same group", "[m
 }
 
 TEST_CASE("Few trials of an unusual participant are drawn to the group, many are not", "[mixed]") {
-  random::Draws draws({23, random::Stream::observer, 0, 0, 0});
+  core::Draws draws({23, core::Stream::observer, 0, 0, 0});
   std::vector<double> thresholds;
   const Group group{14, 20, 2, 2, 0.25, 0.03};
   auto people = group.answers(draws, thresholds);
@@ -137,7 +137,7 @@ TEST_CASE("Few trials of an unusual participant are drawn to the group, many are
     for (const double level : {-10.0, -5.0, -2.0, 2.0, 5.0, 10.0, 14.0})
       person.counts.push_back(
           {level, trials,
-           static_cast<int>(std::lround(trials * core(Function::normal, 0.25 * (level - 8))))});
+           static_cast<int>(std::lround(trials * sigmoid(Function::normal, 0.25 * (level - 8))))});
     return person;
   };
   auto few = people, many = people;
@@ -162,7 +162,7 @@ TEST_CASE("Partial pooling predicts participants better than their own fits, and
   };
   const Group group{from("TURNPOINT_PEOPLE", 10), from("TURNPOINT_LEVEL_TRIALS", 10)};
   for (int study = 0; study < studies; ++study) {
-    random::Draws draws({7, random::Stream::observer, 0, 0, study});
+    core::Draws draws({7, core::Stream::observer, 0, 0, study});
     std::vector<double> thresholds;
     const auto answers = group.answers(draws, thresholds);
     const auto fit = fitted(answers, Function::normal);
@@ -192,7 +192,7 @@ TEST_CASE("Partial pooling predicts participants better than their own fits, and
 }
 
 TEST_CASE("The shared lapse rate is found", "[mixed]") {
-  random::Draws draws({9, random::Stream::observer, 0, 0, 0});
+  core::Draws draws({9, core::Stream::observer, 0, 0, 0});
   std::vector<double> thresholds;
   auto people = Group{20, 60, 2, 2, 0.3, 0.03}.answers(draws, thresholds);
   for (auto& person : people)

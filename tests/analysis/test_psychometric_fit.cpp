@@ -3,11 +3,11 @@
 
 #include "station/analysis/psychometric_fit.hpp"
 #include "station/analysis/psychometric_posterior.hpp"
-#include "station/random/draws.hpp"
+#include "station/core/draws.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::analysis;
-namespace rnd = turnpoint::random;
+namespace rnd = turnpoint::core;
 
 namespace {
 
@@ -217,8 +217,8 @@ TEST_CASE("The fit agrees with psignifit 4.3 on the same data", "[analysis]") {
     const auto fit = fit_psychometric(kReference, options);
     REQUIRE(fit.parameters);
     const double rate = rate_from_slope(row.function, fit.parameters->slope);
-    const double half = fit.parameters->threshold + core_inverse(row.function, 0.5) / rate;
-    const double width = (core_inverse(row.function, 0.95) - core_inverse(row.function, 0.05)) / rate;
+    const double half = fit.parameters->threshold + sigmoid_inverse(row.function, 0.5) / rate;
+    const double width = (sigmoid_inverse(row.function, 0.95) - sigmoid_inverse(row.function, 0.05)) / rate;
     CHECK(half == Approx(row.threshold).margin(0.25));
     CHECK(width == Approx(row.width).epsilon(0.1));  // psignifit's prior makes the width larger
     const auto drawn = bootstrap(fit, {});

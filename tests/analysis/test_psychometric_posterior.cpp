@@ -2,12 +2,12 @@
 #include <cmath>
 
 #include "station/analysis/psychometric_posterior.hpp"
-#include "station/random/draws.hpp"
+#include "station/core/draws.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/reference_posterior.hpp"
 
 using namespace turnpoint::analysis;
-namespace rnd = turnpoint::random;
+namespace rnd = turnpoint::core;
 
 namespace {
 

@@ -5,7 +5,7 @@
 
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/signal_detection.hpp"
-#include "station/random/draws.hpp"
+#include "station/core/draws.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -98,7 +98,7 @@ TEST_CASE("answers that do not determine the distributions have no fit", "[analy
 
 TEST_CASE("fits of small samples are finite, and their intervals contain the true value as often as they say",
           "[analysis]") {
-  random::Draws draws({4, random::Stream::observer, 0, 0, 0});
+  core::Draws draws({4, core::Stream::observer, 0, 0, 0});
   const double mean = 1.2, sd = 1.3, truth = mean / std::sqrt((1 + sd * sd) / 2);
   int fitted = 0, held = 0, sd_held = 0;
   for (int study = 0; study < 400; ++study) {

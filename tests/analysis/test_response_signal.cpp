@@ -7,11 +7,11 @@
 
 #include "station/analysis/group.hpp"
 #include "station/analysis/quantile.hpp"
-#include "station/random/draws.hpp"
+#include "station/core/draws.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::analysis;
-using turnpoint::random::Draws;
+using turnpoint::core::Draws;
 
 namespace {
 
@@ -53,7 +53,7 @@ bool holds(const std::optional<Estimate>& estimate, double value) {
 
 TEST_CASE("the curve of sensitivity over time is found again, and the answers at each lag are counted",
           "[analysis]") {
-  Draws draws({3, turnpoint::random::Stream::observer, 0, 0, 0});
+  Draws draws({3, turnpoint::core::Stream::observer, 0, 0, 0});
   const auto curves = response_signal(session({2.5, 4, 0.3}, 4000, draws), {}, Detecting::sides, 1);
   REQUIRE(curves.size() == 1);
   const auto& curve = curves.front();
@@ -110,7 +110,7 @@ std::optional<Estimate> logarithm(const std::optional<Estimate>& rate) {
 std::array<Shares, 6> simulate(const Truth& truth, int first, int sets, int per_lag) {
   std::array<Shares, 6> all;
   for (int i = first; i < first + sets; ++i) {
-    Draws draws({static_cast<std::uint64_t>(i), turnpoint::random::Stream::observer, 0, 0, 0});
+    Draws draws({static_cast<std::uint64_t>(i), turnpoint::core::Stream::observer, 0, 0, 0});
     std::vector<SpeedAccuracyCurve> curves;
     for (int condition = 0; condition < 2; ++condition)
       curves.push_back(response_signal(session(truth, per_lag, draws), {}, Detecting::sides, 1).front());
@@ -177,7 +177,7 @@ namespace {
 std::array<double, 3> rejected(const Truth& a, const Truth& b, int first, int sets) {
   std::array<double, 3> shares{};
   for (int i = first; i < first + sets; ++i) {
-    Draws draws({static_cast<std::uint64_t>(i), turnpoint::random::Stream::observer, 1, 0, 0});
+    Draws draws({static_cast<std::uint64_t>(i), turnpoint::core::Stream::observer, 1, 0, 0});
     auto trials = session(a, 56, draws);
     for (auto& trial : trials) trial.instruction = "a";
     for (auto& trial : session(b, 56, draws)) {
@@ -220,7 +220,7 @@ TEST_CASE("the asymptote of eight people holds the truth", "[analysis]") {
   int held = 0;
   std::vector<double> means;
   for (int study = 0; study < studies; ++study) {
-    Draws draws({static_cast<std::uint64_t>(study), turnpoint::random::Stream::observer, 2, 0, 0});
+    Draws draws({static_cast<std::uint64_t>(study), turnpoint::core::Stream::observer, 2, 0, 0});
     std::vector<PersonMeasure> measures;
     for (int person = 0; person < 8; ++person) {
       const Truth truth{2.5 + 0.4 * draws.normal(), 4 * std::exp(0.2 * draws.normal()), 0.3};
@@ -238,7 +238,7 @@ TEST_CASE("the asymptote of eight people holds the truth", "[analysis]") {
 }
 
 TEST_CASE("d' is given by level, if there are two or more", "[analysis]") {
-  Draws draws({6, turnpoint::random::Stream::observer, 0, 0, 0});
+  Draws draws({6, turnpoint::core::Stream::observer, 0, 0, 0});
   auto trials = session({2.5, 4, 0.3}, 200, draws);
   CHECK(response_signal(trials, {}, Detecting::sides, 1).front().by_level.empty());
   for (std::size_t i = 0; i < trials.size(); i += 4)
@@ -255,7 +255,7 @@ TEST_CASE("d' is given by level, if there are two or more", "[analysis]") {
 }
 
 TEST_CASE("a curve that the answers do not support is not reported", "[analysis]") {
-  Draws draws({5, turnpoint::random::Stream::observer, 0, 0, 0});
+  Draws draws({5, turnpoint::core::Stream::observer, 0, 0, 0});
   const auto guessed = response_signal(session({0, 4, 0.3}, 60, draws), {}, Detecting::sides, 1).front();
   CHECK_FALSE(guessed.rate_per_s);
   REQUIRE(guessed.statements.size() == 1);

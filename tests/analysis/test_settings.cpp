@@ -56,9 +56,9 @@ TEST_CASE("Settings that depend on the slider's start position are reported as s
 TEST_CASE("Too few settings, equal settings and void trials give statements instead of numbers",
           "[analysis]") {
   auto timeout = set_to(9);
-  timeout.outcome = terms::Outcome::timeout;
+  timeout.outcome = core::Outcome::timeout;
   auto practice = set_to(9);
-  practice.type = terms::TrialType::practice;
+  practice.type = core::TrialType::practice;
   const auto two = analysis::settings({set_to(1), set_to(2), timeout, practice}).front();
   CHECK(two.values.size() == 2);
   CHECK_FALSE(two.mean);

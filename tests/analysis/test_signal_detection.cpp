@@ -2,8 +2,8 @@
 
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/signal_detection.hpp"
-#include "station/observer/observer.hpp"
-#include "station/random/draws.hpp"
+#include "station/core/draws.hpp"
+#include "station/simulation/observer.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::analysis;
@@ -84,17 +84,17 @@ namespace {
 
 /// Makes a session of a simulated observer who answers yes or no or, if there are more than two answers,
 /// gives ratings. Half of the trials have no signal.
-std::vector<TrialRecord> yes_no_session(const turnpoint::observer::Observer& observer, int answers,
+std::vector<TrialRecord> yes_no_session(const turnpoint::simulation::Observer& observer, int answers,
                                         int trials, int run) {
   using namespace turnpoint;
   std::vector<TrialRecord> session;
   for (int i = 0; i < trials; ++i) {
-    observer::Question question;
-    question.decides = observer::Decides::presence;
+    simulation::Question question;
+    question.decides = simulation::Decides::presence;
     question.rating = answers > 2;
     question.answers = answers;
     question.level = i % 2 == 0 ? 0 : i % 4 == 1 ? 3 : 6;
-    question.key = {9, random::Stream::observer, run, 0, i};
+    question.key = {9, core::Stream::observer, run, 0, i};
     TrialRecord trial;
     trial.level = question.level;
     trial.right_choice = question.level > 0;
@@ -112,8 +112,8 @@ bool holds(const std::optional<Estimate>& estimate, double value) {
 
 TEST_CASE("The intervals of d' and criterion contain the true values of a yes/no observer", "[analysis]") {
   // d' is 1.349 at level 3 and twice that at level 6; c is the criterion minus half of d'.
-  const turnpoint::observer::Observer observer(
-      turnpoint::observer::parse("sim:threshold=3,lapse=0,criterion=0.9"));
+  const turnpoint::simulation::Observer observer(
+      turnpoint::simulation::parse("sim:threshold=3,lapse=0,criterion=0.9"));
   const int sessions = 400;
   int weak = 0, strong = 0, criterion = 0;
   double sum = 0;
@@ -171,13 +171,13 @@ TEST_CASE(
   // The expected area, counted by hand as Mann and Whitney count pairs: (30 (15 + 30 + 5/2) + 15 (30 + 15/2)
   // + 5 (30/2)) / 2500.
   CHECK(example->area.value == Approx((30 * 47.5 + 15 * 37.5 + 5 * 15) / 2500.0));
-  const turnpoint::observer::Observer observer(turnpoint::observer::parse("sim:threshold=3,lapse=0"));
+  const turnpoint::simulation::Observer observer(turnpoint::simulation::parse("sim:threshold=3,lapse=0"));
   int held = 0;
   const int sessions = 200;
   // `expected` is the area under the observer's true ROC with six ratings
   double expected = 0, below = 0;
-  turnpoint::observer::Question question;
-  question.decides = turnpoint::observer::Decides::presence, question.rating = true, question.answers = 6;
+  turnpoint::simulation::Question question;
+  question.decides = turnpoint::simulation::Decides::presence, question.rating = true, question.answers = 6;
   for (int rating = 0; rating < 6; ++rating) {
     question.level = 0;
     const double noise = observer.share(question, rating);
@@ -205,7 +205,7 @@ TEST_CASE("the interval of the area under a ROC holds with few trials and strong
   CHECK(certain.interval.high == 1);
   CHECK(certain.interval.low == Approx(0.898668).epsilon(1e-5));
   CHECK(roc({0, 20}, {20, 0})->area.interval.high == Approx(1 - certain.interval.low));
-  turnpoint::random::Draws draws({4, turnpoint::random::Stream::observer, 0, 0, 0});
+  turnpoint::core::Draws draws({4, turnpoint::core::Stream::observer, 0, 0, 0});
   for (const double mean : {0.5, 3.0}) {
     INFO(mean);
     const auto rating = [&](double at) {

@@ -15,7 +15,7 @@ import tempfile
 
 SECTOR = 512
 FLUSH, DISCARD = 1, 4
-MARK_SECTOR = (31 << 20) // SECTOR  # marks are written to this sector (see programs/disk_marker.hpp)
+MARK_SECTOR = (31 << 20) // SECTOR  # marks are written to this sector (see session/disk_marker.hpp)
 
 
 @dataclasses.dataclass
@@ -30,7 +30,7 @@ class Cut:
     # folder with the disk's files after the cut and after repairing the file system; the next cut overwrites
     # it
     files: pathlib.Path
-    marked: int          # number of the last mark (see programs/disk_marker.hpp) that the disk had accepted
+    marked: int          # number of the last mark (see session/disk_marker.hpp) that the disk had accepted
     position: int        # position of the cut in the record of disk operations
 
 

@@ -21,7 +21,7 @@ std::vector<analysis::LevelCount> answers(int trials) {
     const double near = std::exp(-0.5 * std::pow((level + 17) / 5.0, 2));
     const int count = 1 + static_cast<int>(std::lround(near * trials / 12.5));
     const double p =
-        analysis::probability(terms::Function::weibull, analysis::Scale::linear, {-18, 2, 0.5, 0.02}, level);
+        analysis::probability(core::Function::weibull, analysis::Scale::linear, {-18, 2, 0.5, 0.02}, level);
     data.push_back({static_cast<double>(level), count, static_cast<int>(std::lround(count * p))});
   }
   return data;
@@ -34,7 +34,7 @@ Report bench_intervals() {
   report.name = "intervals";
   report.title = "95 % intervals of a psychometric function on 28 levels; the bootstrap has 1000 replicates";
   report.table.columns = {"trials", "posterior_ms", "bootstrap_ms", "ratio"};
-  const auto prior = analysis::prior_around(terms::Function::weibull, analysis::Scale::linear, {-30, -3}, {});
+  const auto prior = analysis::prior_around(core::Function::weibull, analysis::Scale::linear, {-30, -3}, {});
   for (const int wanted : {48, 96, 200}) {
     const auto data = answers(wanted);
     int trials = 0;

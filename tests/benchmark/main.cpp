@@ -7,7 +7,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "station/plot/chart.hpp"
+#include "station/report/chart.hpp"
 #include "station/system/progress.hpp"
 #include "station/system/stop_signals.hpp"
 #include "station/system/write_file.hpp"
@@ -70,7 +70,7 @@ std::vector<std::string> write(const Report& report, const std::string& folder) 
   system::write_file(files.back(), to_csv(report.table));
   for (const auto& picture : report.pictures) {
     files.push_back(path(picture.name + ".svg"));
-    system::write_file(files.back(), plot::render(picture.figure));
+    system::write_file(files.back(), report::render(picture.figure));
   }
   return files;
 }

@@ -15,7 +15,6 @@ struct SynthMethod {
 struct SynthBenchmark {
   double frequency_Hz = 0;
   int rate_Hz = 0;
-  std::string processor;  ///< instruction set of the station's synthesis loop that was used
   std::vector<double> times_s;
   std::vector<SynthMethod> methods;  ///< the station's own method is first
 };

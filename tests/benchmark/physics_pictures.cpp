@@ -38,15 +38,15 @@ struct Axes {
   double floor, top = 1;
 };
 
-plot::Chart panel_of(const std::string& scene, const std::vector<PhysicsRow>& rows,
-                     const std::vector<Series>& series, const Axes& axes) {
+report::Chart panel_of(const std::string& scene, const std::vector<PhysicsRow>& rows,
+                       const std::vector<Series>& series, const Axes& axes) {
   const double floor = axes.floor;
-  plot::Chart panel;
+  report::Chart panel;
   panel.title = scene;
-  panel.x = {axes.time, 10, 1e5, plot::AxisScale::log10};
-  panel.y = {axes.error, floor, axes.top, plot::AxisScale::log10};
+  panel.x = {axes.time, 10, 1e5, report::AxisScale::log10};
+  panel.y = {axes.error, floor, axes.top, report::AxisScale::log10};
   for (std::size_t s = 0; s < series.size(); ++s) {
-    plot::Line line;
+    report::Line line;
     line.series = static_cast<int>(s);
     line.name = series[s].label;
     for (const auto& row : rows) {
@@ -55,19 +55,19 @@ plot::Chart panel_of(const std::string& scene, const std::vector<PhysicsRow>& ro
       line.y.push_back(std::max(row.error, floor));
     }
     if (line.x.empty()) continue;
-    plot::Points dots{line.x, line.y, {}, {}, {}, {}, line.series, line.name};
+    report::Points dots{line.x, line.y, {}, {}, {}, {}, line.series, line.name};
     if (line.x.size() > 1 && series[s].joined) panel.layers.emplace_back(line);
     panel.layers.emplace_back(dots);
   }
   return panel;
 }
 
-plot::Figure figure_of(const std::string& title, const std::vector<PhysicsRow>& rows, Task task,
-                       const std::vector<Series>& series, const Axes& axes) {
+report::Figure figure_of(const std::string& title, const std::vector<PhysicsRow>& rows, Task task,
+                         const std::vector<Series>& series, const Axes& axes) {
   std::vector<PhysicsRow> wanted;
   std::copy_if(rows.begin(), rows.end(), std::back_inserter(wanted),
                [task](const PhysicsRow& row) { return row.task == task; });
-  plot::Figure figure;
+  report::Figure figure;
   figure.title = title;
   figure.columns = 2;
   figure.chart_width_px = 480;
@@ -84,7 +84,7 @@ plot::Figure figure_of(const std::string& title, const std::vector<PhysicsRow>& 
 
 std::vector<Picture> physics_pictures(const std::vector<PhysicsRow>& rows) {
   std::vector<Picture> pictures;
-  const auto add = [&](const char* name, plot::Figure figure) {
+  const auto add = [&](const char* name, report::Figure figure) {
     if (!figure.charts.empty()) pictures.push_back({name, std::move(figure)});
   };
   const std::string profile = "time for 1000 points (\u00b5s)", error = "largest error of |v|";

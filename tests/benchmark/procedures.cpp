@@ -129,7 +129,7 @@ std::vector<std::vector<Cell>> peer(const std::string& name, std::size_t stimuli
 
 /// Draws the time per trial against the size of the grid, with one series per program.
 Picture picture_of_procedures(const Table& table) {
-  plot::Chart panel;
+  report::Chart panel;
   panel.title = "One trial of QUEST+: median (marker) to 99th percentile";
   std::vector<double> sizes, times;
   std::vector<std::string> names;
@@ -140,9 +140,9 @@ Picture picture_of_procedures(const Table& table) {
       names.push_back(name);
       found = names.end() - 1;
       panel.layers.emplace_back(
-          plot::Points{{}, {}, {}, {}, {}, {}, static_cast<int>(names.size()) - 1, name});
+          report::Points{{}, {}, {}, {}, {}, {}, static_cast<int>(names.size()) - 1, name});
     }
-    auto& dots = std::get<plot::Points>(panel.layers[static_cast<std::size_t>(found - names.begin())]);
+    auto& dots = std::get<report::Points>(panel.layers[static_cast<std::size_t>(found - names.begin())]);
     const double cells = std::get<double>(row[1]) * std::get<double>(row[2]);
     dots.x.push_back(cells);
     dots.y.push_back(std::get<double>(row[3]));
@@ -151,8 +151,8 @@ Picture picture_of_procedures(const Table& table) {
     sizes.push_back(cells);
     times.insert(times.end(), {dots.low.back(), dots.high.back()});
   }
-  panel.x = plot::fitted("stimuli x parameters", sizes, 0.15, plot::AxisScale::log10);
-  panel.y = plot::fitted("time (ms)", times, 0.15, plot::AxisScale::log10);
+  panel.x = report::fitted("stimuli x parameters", sizes, 0.15, report::AxisScale::log10);
+  panel.y = report::fitted("time (ms)", times, 0.15, report::AxisScale::log10);
   return {"procedures", {"Time of an adaptive trial", {panel}, 1, 520, 340, ""}};
 }
 

@@ -3,7 +3,7 @@
 #include <variant>
 #include <vector>
 
-#include "station/plot/chart.hpp"
+#include "station/report/chart.hpp"
 
 namespace turnpoint::benchmark {
 
@@ -18,7 +18,7 @@ struct Table {
 
 struct Picture {
   std::string name;  ///< file name without extension
-  plot::Figure figure;
+  report::Figure figure;
 };
 
 /// The result of one benchmark: a table and figures.

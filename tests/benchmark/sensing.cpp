@@ -8,9 +8,9 @@
 #include <random>
 #include <string>
 
-#include "station/drive/alsa_capture.hpp"
-#include "station/drive/sine.hpp"
-#include "station/drive/synth.hpp"
+#include "station/audio/alsa_capture.hpp"
+#include "station/audio/sine.hpp"
+#include "station/audio/synth.hpp"
 #include "station/sensing/carrier.hpp"
 #include "station/sensing/interval_proof.hpp"
 #include "station/sensing/lock_in.hpp"
@@ -28,8 +28,8 @@ constexpr std::int64_t kStart = 9600, kFrames = 2 * kRate_Hz, kBuffer = 4 * kBlo
 // In the device's buffer, all tones and the carrier have whole numbers of cycles.
 constexpr double kStep_Hz = 1.0 * kRate_Hz / kBuffer, kCarrier_Hz = 84 * kStep_Hz;
 
-drive::Burst eight_tones() {
-  drive::Burst burst;
+audio::Burst eight_tones() {
+  audio::Burst burst;
   burst.start_frame = kStart;
   burst.length_frames = kFrames - 2 * kStart;
   burst.tones.count = 8;
@@ -69,10 +69,10 @@ void each_block(const std::vector<std::int32_t>& buffer, const Take& take) {
 }
 
 void synthesise() {
-  const drive::Format format{kRate_Hz, 2, 24};
+  const audio::Format format{kRate_Hz, 2, 24};
   std::vector<std::int32_t> block(2 * kBlock);
-  drive::Synth synth(format);
-  if (!synth.start(drive::prepare(eight_tones(), format))) return;
+  audio::Synth synth(format);
+  if (!synth.start(audio::prepare(eight_tones(), format))) return;
   for (std::int64_t at = 0; at < kFrames; at += kBlock) synth.render(at, std::span(block));
 }
 
@@ -82,7 +82,7 @@ void lock_in(const std::vector<std::int32_t>& samples, const std::vector<int>& i
   for (int i = 0; i < burst.tones.count; ++i) {
     const auto& tone = burst.tones.tones[static_cast<std::size_t>(i)];
     tones.push_back(
-        {{drive::phase_of_angle(tone.phase_rad), drive::phase_increment(tone.frequency_Hz, kRate_Hz)},
+        {{audio::phase_of_angle(tone.phase_rad), audio::phase_increment(tone.frequency_Hz, kRate_Hz)},
          burst.start_frame});
   }
   LockIn lock_in(kRate_Hz, kChannels, inputs, tones, 0);
@@ -91,7 +91,7 @@ void lock_in(const std::vector<std::int32_t>& samples, const std::vector<int>& i
 
 IntervalPlan interval_plan() {
   IntervalPlan plan;
-  plan.burst = drive::prepare(eight_tones(), {kRate_Hz, 1, 24});
+  plan.burst = audio::prepare(eight_tones(), {kRate_Hz, 1, 24});
   plan.capture_channels = kChannels;
   plan.pick_ups = {flat_pick_up(4), flat_pick_up(5)};
   return plan;
@@ -118,7 +118,7 @@ void measure_forces(const std::vector<std::int32_t>& samples) {
 /// What a session does with captured samples: the capture thread puts them into a ring, the sensing thread
 /// takes them from there, proves the interval and measures the forces.
 struct SessionCapture {
-  drive::CaptureRing ring;
+  audio::CaptureRing ring;
   BridgeDemodulator bridges{bridge_options()};
   std::int64_t frames = 0;  ///< number of frames that the bridges have received
 };
@@ -128,10 +128,10 @@ void capture_and_demodulate(const std::vector<std::int32_t>& samples, SessionCap
   auto& [ring, bridges, frames] = session;
   IntervalProof proof(interval_plan());
   each_block(samples, [&](const CaptureBlock& block) {
-    constexpr std::size_t most = drive::CapturedBlock::kSamples / kChannels * kChannels;
+    constexpr std::size_t most = audio::CapturedBlock::kSamples / kChannels * kChannels;
     for (std::size_t at = 0; at < block.samples.size(); at += most) {
       const auto part = block.samples.subspan(at, std::min(most, block.samples.size() - at));
-      const bool pushed = ring.fill([&](drive::CapturedBlock& in) {
+      const bool pushed = ring.fill([&](audio::CapturedBlock& in) {
         in.first_frame = block.first_frame + static_cast<std::int64_t>(at / kChannels);
         in.count = static_cast<std::int32_t>(part.size());
         std::copy_n(part.data(), part.size(), in.samples.data());

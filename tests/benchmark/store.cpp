@@ -7,24 +7,24 @@ namespace turnpoint::benchmark {
 namespace {
 
 Picture picture_of_store(const Table& table) {
-  plot::Chart panel;
+  report::Chart panel;
   panel.title = "A durable trial: median (marker) to 99th percentile";
   std::vector<double> times;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const auto& row = table.rows[i];
     const double median = std::get<double>(row[2]), p99 = std::get<double>(row[3]);
-    panel.layers.emplace_back(plot::Points{{static_cast<double>(i + 1)},
-                                           {median},
-                                           {median},
-                                           {p99},
-                                           {},
-                                           {},
-                                           static_cast<int>(i),
-                                           std::get<std::string>(row[0])});
+    panel.layers.emplace_back(report::Points{{static_cast<double>(i + 1)},
+                                             {median},
+                                             {median},
+                                             {p99},
+                                             {},
+                                             {},
+                                             static_cast<int>(i),
+                                             std::get<std::string>(row[0])});
     times.insert(times.end(), {median, p99});
   }
-  panel.x = {"way of writing", 0, static_cast<double>(table.rows.size() + 1), plot::AxisScale::linear};
-  panel.y = plot::fitted("time per trial (ms)", times, 0.1, plot::AxisScale::log10);
+  panel.x = {"way of writing", 0, static_cast<double>(table.rows.size() + 1), report::AxisScale::linear};
+  panel.y = report::fitted("time per trial (ms)", times, 0.1, report::AxisScale::log10);
   return {"store", {"Cost of a durable trial", {panel}, 1, 520, 340, ""}};
 }
 

@@ -10,12 +10,12 @@ namespace turnpoint::benchmark {
 
 namespace {
 
-plot::Chart panel_of(const char* title, const SynthBenchmark& measured, std::size_t from, std::size_t to) {
-  plot::Chart panel;
+report::Chart panel_of(const char* title, const SynthBenchmark& measured, std::size_t from, std::size_t to) {
+  report::Chart panel;
   panel.title = title;
   for (std::size_t m = from; m < std::min(to, measured.methods.size()); ++m) {
     const auto& method = measured.methods[m];
-    plot::Line line;
+    report::Line line;
     line.series = static_cast<int>(m - from);
     line.name = fmt::format("{}: {:.2g} ns", method.name, method.ns_per_tone_frame);
     for (std::size_t i = 1; i < method.error_dB.size(); ++i) {
@@ -24,8 +24,8 @@ plot::Chart panel_of(const char* title, const SynthBenchmark& measured, std::siz
     }
     panel.layers.emplace_back(line);
   }
-  panel.x = {"time since the start (s)", 1, 1e5, plot::AxisScale::log10};
-  panel.y = {"largest error (dB re full scale)", -340, 20, plot::AxisScale::linear};
+  panel.x = {"time since the start (s)", 1, 1e5, report::AxisScale::log10};
+  panel.y = {"largest error (dB re full scale)", -340, 20, report::AxisScale::linear};
   return panel;
 }
 
@@ -33,7 +33,7 @@ plot::Chart panel_of(const char* title, const SynthBenchmark& measured, std::siz
 Picture picture_of_synth(const SynthBenchmark& measured) {
   // The first methods are the station's own and others whose error does not grow with time.
   constexpr std::size_t exact = 5;
-  plot::Figure figure;
+  report::Figure figure;
   figure.title = "Ways of making a sinusoid";
   figure.columns = 2;
   figure.chart_width_px = 480;
@@ -49,13 +49,12 @@ Picture picture_of_synth(const SynthBenchmark& measured) {
 
 Report bench_synth() {
   const auto measured = benchmark_synthesis();
-  Report report{
-      "synth",
-      fmt::format("A tone of {} Hz at {} Hz, our loops by {}: largest error (dB re full scale) after "
-                  "a time, and cost",
-                  measured.frequency_Hz, measured.rate_Hz, measured.processor),
-      {{"method", "ns_per_tone_frame"}, {}},
-      {picture_of_synth(measured)}};
+  Report report{"synth",
+                fmt::format("A tone of {} Hz at {} Hz: largest error (dB re full scale) after "
+                            "a time, and cost",
+                            measured.frequency_Hz, measured.rate_Hz),
+                {{"method", "ns_per_tone_frame"}, {}},
+                {picture_of_synth(measured)}};
   for (const double time : measured.times_s)
     report.table.columns.push_back(fmt::format("error_dB_{}_s", time));
   for (const auto& method : measured.methods) {

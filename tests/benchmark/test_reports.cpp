@@ -78,5 +78,5 @@ TEST_CASE("the figures have a panel for each scene", "[benchmark]") {
   REQUIRE(pictures.size() >= 2);
   CHECK(pictures[0].figure.charts.size() == 6);
   CHECK(pictures[1].figure.charts.size() == 3);  // plate theories at three frequencies
-  CHECK(!turnpoint::plot::render(pictures[0].figure).empty());
+  CHECK(!turnpoint::report::render(pictures[0].figure).empty());
 }

@@ -2,7 +2,7 @@
 // figures.
 #include <fstream>
 
-#include "station/system/read_file.hpp"
+#include "station/core/read_file.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/child.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -36,7 +36,7 @@ std::string cues_of(const std::string& protocol) {
 TEST_CASE("check states the precision of accuracies that come from simulated sessions", "[cli]") {
   // Even with roving, the amplitude reveals something about the answer. It reveals more at the easier levels
   // of the staircase.
-  const auto text = with(turnpoint::system::read_file(source + "/protocols/friction-staircase.toml"),
+  const auto text = with(turnpoint::core::read_file(source + "/protocols/friction-staircase.toml"),
                          {{"tolerance = { level_dB = 0.1 }", "rove_dB = 2.5"},
                           {"-3.0", "-9.0"},
                           {"-5.0", "-9.0"},
@@ -50,7 +50,7 @@ TEST_CASE("check compares each cue with its own chance", "[cli]") {
   // In three of four trials "right" is correct, so always pressing that key reaches 75 % without any cue. So
   // the accuracy of an observer who uses the amplitude as a cue must be compared with 75 %.
   const auto text =
-      with(turnpoint::system::read_file(source + "/protocols/boundary-constant.toml"),
+      with(turnpoint::core::read_file(source + "/protocols/boundary-constant.toml"),
            {{"values = [-28.0, -16.0, -8.0, -3.0, 3.0, 8.0, 16.0, 28.0]", "values = [-3.0, 3.0, 8.0, 16.0]"},
             {"levels = [152.0, 158.0, 164.0]", "levels = [158.0]"}});
   const auto said = cues_of(text);

@@ -2,8 +2,8 @@
 #include <system_error>
 
 #include "station/cli/command.hpp"
+#include "station/core/problem.hpp"
 #include "station/scene/planner.hpp"
-#include "station/text/problem.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/child.hpp"
 
@@ -37,10 +37,10 @@ int status_of(std::vector<std::string> arguments) {
 }  // namespace
 
 TEST_CASE("the exit status says whose mistake it was", "[cli]") {
-  CHECK(ending_with(text::BadInput({{{"a.toml", 3, 1}, texts::plain("what"), texts::plain("allowed")}}))
+  CHECK(ending_with(core::BadInput({{{"a.toml", 3, 1}, core::plain("what"), core::plain("allowed")}}))
             .status == 2);
-  CHECK(ending_with(terms::UsageError("--x 3: 1 and 2 are allowed")).status == 2);
-  CHECK(ending_with(scene::Unreachable(texts::plain("no frequency reaches 900 mm"))).status == 2);
+  CHECK(ending_with(core::UsageError("--x 3: 1 and 2 are allowed")).status == 2);
+  CHECK(ending_with(scene::Unreachable(core::plain("no frequency reaches 900 mm"))).status == 2);
   CHECK(ending_with(std::system_error(EIO, std::generic_category(), "a.sqlite")).status == 1);
   for (const auto& end :
        {ending_with(std::logic_error("started twice")), ending_with(std::invalid_argument("n is 0")),

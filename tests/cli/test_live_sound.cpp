@@ -3,8 +3,8 @@
 #include <sstream>
 
 #include "station/cli/command.hpp"
-#include "station/setup/prepare.hpp"
-#include "station/text/toml.hpp"
+#include "station/core/toml.hpp"
+#include "station/session/prepare.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/quick_rig.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -18,7 +18,7 @@ const std::string root = TURNPOINT_SOURCE_DIR;
 class Laboratory {
  public:
   Laboratory() {
-    std::ofstream(folder_ / "rig.toml") << system::read_file(root + "/tests/support/thin_plate.toml");
+    std::ofstream(folder_ / "rig.toml") << core::read_file(root + "/tests/support/thin_plate.toml");
     auto response = std::ofstream(folder_ / "response.csv");
     response << "frequency_Hz,displacement_um,phase_deg\n";
     for (int f = 20000; f <= 50000; f += 1000) response << f << ",4,0\n";
@@ -48,14 +48,14 @@ class Laboratory {
   /// Returns the reason why a live session of this protocol is refused; "" if it may begin.
   std::string refusal(const std::string& protocol) const {
     std::ofstream(folder_ / "p.toml") << protocol;
-    setup::RunRequest request;
+    session::RunRequest request;
     request.protocol = folder_ / "p.toml", request.rig = folder_ / "rig.toml";
     request.calibration = folder_ / "calibration.toml";
     request.participant = "P01", request.database = folder_ / "a.sqlite", request.mode = "live";
     try {
-      static_cast<void>(setup::prepare(request));
+      static_cast<void>(session::prepare(request));
       return "";
-    } catch (const text::BadInput& bad) {
+    } catch (const core::BadInput& bad) {
       return bad.what();
     }
   }
@@ -64,7 +64,7 @@ class Laboratory {
   TemporaryFolder folder_;
 };
 
-std::string demo() { return system::read_file(root + "/protocols/demo.toml"); }
+std::string demo() { return core::read_file(root + "/protocols/demo.toml"); }
 
 }  // namespace
 

@@ -84,11 +84,11 @@ store::SessionRecord only_session(const std::string& database) {
 }
 
 /// The trials of the session, without the warm-up trials that follow a resume.
-std::vector<records::TrialRow> trials_of(const std::string& database) {
-  std::vector<records::TrialRow> trials;
+std::vector<core::TrialRow> trials_of(const std::string& database) {
+  std::vector<core::TrialRow> trials;
   for (const auto& block : store::read_session(database, only_session(database).session_id).blocks)
     for (const auto& trial : block.trials)
-      if (trial.type != terms::TrialType::warmup) trials.push_back(trial);
+      if (trial.type != core::TrialType::warmup) trials.push_back(trial);
   return trials;
 }
 
@@ -102,7 +102,7 @@ void check_stopped(const Child& child, int signal, const store::SessionRecord& s
   CHECK(child.said().find("interrupted: " + reason_for(signal)) != std::string::npos);
   CHECK(child.said().find("turnpoint resume --db ") != std::string::npos);
   CHECK(child.said().find("--session " + session.session_id) != std::string::npos);
-  CHECK(session.status == records::SessionStatus::interrupted);
+  CHECK(session.status == core::SessionStatus::interrupted);
   CHECK(session.status_reason == reason_for(signal));
 }
 
@@ -121,7 +121,7 @@ TEST_CASE("a stop signal during a stimulus ends a session with buttons as the op
   check_stopped(child, signal, only_session(database));
   const auto trials = trials_of(database);
   REQUIRE(trials.size() == 1);
-  CHECK(trials[0].outcome == terms::Outcome::aborted);
+  CHECK(trials[0].outcome == core::Outcome::aborted);
   // The stimulus was ramped down before the program ended, so its event is stored.
   const auto stored = store::read_session(database, only_session(database).session_id);
   int stimuli = 0;
@@ -160,7 +160,7 @@ TEST_CASE("a simulated session that is stopped by signals and resumed gives the 
   Child to_the_end(resume(database));
   REQUIRE(to_the_end.ends_within(kWhole_ms));
   CHECK(to_the_end.outcome() == 0);
-  CHECK(only_session(database).status == records::SessionStatus::completed);
+  CHECK(only_session(database).status == core::SessionStatus::completed);
   CHECK(only_session(database).segments == 3);
   Child unbroken(simulated(folder / "unbroken"));
   REQUIRE(unbroken.ends_within(kWhole_ms));
@@ -192,7 +192,7 @@ TEST_CASE("a second signal ends a session at once if its ending hangs", "[stop]"
   CAPTURE(child.said());
   CHECK(child.outcome() == -signal);
   held.execute("ROLLBACK");
-  CHECK(only_session(database).status == records::SessionStatus::running);
+  CHECK(only_session(database).status == core::SessionStatus::running);
 }
 
 TEST_CASE("a session continues after a signal that the starting program has set to be ignored", "[stop]") {
@@ -220,6 +220,6 @@ TEST_CASE("a session ends cleanly even if the program that reads its messages wa
   child.signal(SIGINT);
   REQUIRE(child.ends_within(kPrompt_ms));
   CHECK(child.outcome() == 1);
-  CHECK(only_session(database).status == records::SessionStatus::interrupted);
+  CHECK(only_session(database).status == core::SessionStatus::interrupted);
   CHECK(only_session(database).status_reason == reason_for(SIGINT));
 }

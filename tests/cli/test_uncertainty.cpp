@@ -2,7 +2,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "station/system/read_file.hpp"
+#include "station/core/read_file.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/child.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -32,7 +32,7 @@ TEST_CASE("map says what moves a boundary, and what to measure", "[cli]") {
       output_of({"map", "--rig", rig, "--boundary", "150", "--edge", "p50", "--budget", "--plot", plot});
   CHECK(contains(said, "clamp line           0.2 mm           6.67"));
   CHECK(contains(said, "Of these, measuring the clamp line would help most"));
-  CHECK(contains(turnpoint::system::read_file(plot), "clamp line"));
+  CHECK(contains(turnpoint::core::read_file(plot), "clamp line"));
   const auto json = nlohmann::json::parse(
       output_of({"map", "--rig", rig, "--boundary", "150", "--edge", "p50", "--budget", "--json"}));
   CHECK(json[0]["budget"]["total_mm"] == json[0]["uncertainty_mm"]);
@@ -54,7 +54,7 @@ TEST_CASE("plan and check say how uncertain boundaries are", "[cli]") {
 TEST_CASE("map and plan use the boundaries that were measured on a rig", "[cli]") {
   const TemporaryFolder folder;
   const auto copy = folder / "plate.toml", boundaries = folder / "boundaries.csv";
-  std::ofstream(copy) << turnpoint::system::read_file(rig);
+  std::ofstream(copy) << turnpoint::core::read_file(rig);
   // the boundaries of a plate whose clamp line is 0.25 mm further back, which moves them outward by 8.3 mm
   std::ofstream(boundaries)
       << "frequency_Hz,boundary_mm,sd_mm\n22400,110.8,0.5\n30000,160.3,0.5\n43000,212.1,0.5\n";

@@ -3,9 +3,9 @@
 #include "station/collector/fetch.hpp"
 #include "station/collector/push.hpp"
 #include "station/collector/received.hpp"
+#include "station/core/number.hpp"
 #include "station/store/places.hpp"
 #include "station/store/read.hpp"
-#include "station/text/number.hpp"
 #include "tests/collector/postgres_server.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
@@ -112,7 +112,7 @@ TEST_CASE("the example queries run for a reader, and count what was recorded", "
   start.run_mode = store::RunMode::live;
   start.observer = "";
   start.calibration_text = "format = \"x\"\nmade_on = 2023-02-28\n";
-  start.calibration_id = text::sha256(start.calibration_text);
+  start.calibration_id = core::sha256(start.calibration_text);
   sample::session(folder / "a.sqlite", 10, start);
   REQUIRE(collector::push({folder / "a.sqlite", postgres.as("station_a"), "", "", {}, {}}).complete());
   std::filesystem::copy_file(TURNPOINT_SOURCE_DIR "/station/collector/queries.sql",

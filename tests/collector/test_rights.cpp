@@ -3,10 +3,10 @@
 #include "station/collector/push.hpp"
 #include "station/collector/received.hpp"
 #include "station/collector/tables.hpp"
+#include "station/core/number.hpp"
 #include "station/store/merge.hpp"
 #include "station/store/read.hpp"
 #include "station/store/verify.hpp"
-#include "station/text/number.hpp"
 #include "tests/collector/postgres_server.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
@@ -35,7 +35,7 @@ store::SessionStart at_station(const std::string& station, const std::string& pa
 }
 
 /// The hash in a tombstone of this code with the salt "s".
-std::string hash_of(const std::string& code) { return text::sha256("s/" + code); }
+std::string hash_of(const std::string& code) { return core::sha256("s/" + code); }
 
 /// Sends tombstones with a role, as a program of its own could.
 void withdraw_as(const PostgresServer& postgres, const std::string& role,
@@ -216,7 +216,7 @@ TEST_CASE(
   const auto db = folder / "a.sqlite";
   auto start = sample::start();
   start.calibration_text = "measured";
-  start.calibration_id = text::sha256(start.calibration_text);
+  start.calibration_id = core::sha256(start.calibration_text);
   sample::session(db, 2, start);
   REQUIRE(collector::push({db, postgres.as("station_a"), "", "", {}, {}}).complete());
   const auto row = [&](const std::string& table, const std::string& changes = "{}") {

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "station/simulation/parallel.hpp"
+#include "station/rehearsal/parallel.hpp"
 #include "tests/coverage/table.hpp"
 
 namespace {
@@ -37,7 +37,7 @@ void simulate(const Request& request, const std::string& procedure, std::size_t 
   while (!missing.empty()) {
     const auto part = std::min(kPart, missing.size());
     std::vector<Session> sessions(part);
-    turnpoint::simulation::in_parallel(static_cast<int>(part), request.threads, {}, [&](int i) {
+    turnpoint::rehearsal::in_parallel(static_cast<int>(part), request.threads, {}, [&](int i) {
       const auto seed = missing[static_cast<std::size_t>(i)];
       sessions[static_cast<std::size_t>(i)] =
           design.run(sources()[source], seed, seed <= static_cast<std::uint64_t>(request.references));

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "station/random/draws.hpp"
+#include "station/core/draws.hpp"
+#include "station/rehearsal/rehearsal.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/report/summary.hpp"
-#include "station/simulation/rehearsal.hpp"
 #include "tests/support/reference_posterior.hpp"
 
 namespace coverage {
@@ -27,7 +27,7 @@ double share_right(const Truth& truth, double level_dB) {
 }
 
 Truth drawn_from(const analysis::Prior& prior, std::uint64_t seed) {
-  random::Draws draws({seed, random::Stream::observer, kTruthBlock, 0, 0});
+  core::Draws draws({seed, core::Stream::observer, kTruthBlock, 0, 0});
   const auto within = [&](double low, double high) {
     for (;;) {
       const double at = draws.uniform(), nearest = std::min(at, 1 - at);
@@ -102,18 +102,18 @@ Session Design::run(const Source& source, std::uint64_t seed, bool with_referenc
   Session session;
   session.seed = seed;
   session.truth = source.fixed ? *source.fixed : drawn_from(prior_, seed);
-  random::Draws draws({seed, random::Stream::observer, kAnswerBlock, 0, 0});
+  core::Draws draws({seed, core::Stream::observer, kAnswerBlock, 0, 0});
   auto protocol = protocol_;
   const int procedures = static_cast<int>(protocol.procedures.size());
   for (auto& spec : protocol.procedures) spec.stop.trials = counts.back() / procedures;
-  const auto answer = [&](const trial::TrialSpec&, const observer::Question& question) {
+  const auto answer = [&](const trial::TrialSpec&, const simulation::Question& question) {
     const int right = question.correct.value();
-    observer::Reply reply;
+    simulation::Reply reply;
     reply.choice = draws.uniform() < share_right(session.truth, question.level) ? right : 1 - right;
     reply.response_time_s = 0.5;
     return reply;
   };
-  const auto rehearsal = simulation::rehearse(protocol, 0, seed, {answer, {}});
+  const auto rehearsal = rehearsal::rehearse(protocol, 0, seed, {answer, {}});
   report::SessionData data;
   report::add_trials(rehearsal.blocks, protocol_, data);
   data.replicates = 0;  // no bootstrap, because the bands of the fits are not needed

@@ -3,7 +3,7 @@
 #include <fstream>
 
 #include "station/analysis/psychometric_posterior.hpp"
-#include "station/simulation/parallel.hpp"
+#include "station/rehearsal/parallel.hpp"
 #include "tests/coverage/table.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -17,7 +17,7 @@ std::vector<Session> sessions_of(const std::string& procedure, const Source& sou
                                  int references) {
   const Design design(procedure);
   std::vector<Session> sessions(static_cast<std::size_t>(count));
-  turnpoint::simulation::in_parallel(count, 2, {}, [&](int i) {
+  turnpoint::rehearsal::in_parallel(count, 2, {}, [&](int i) {
     sessions[static_cast<std::size_t>(i)] =
         design.run(source, static_cast<std::uint64_t>(i + 1), i < references, {trials});
   });

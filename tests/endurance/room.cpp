@@ -7,7 +7,7 @@
 namespace endurance {
 
 using namespace turnpoint;
-using drive::AmplifierState;
+using audio::AmplifierState;
 using session::FaultKind;
 using session::Input;
 using session::InputKind;
@@ -109,7 +109,7 @@ std::vector<Input> Room::drain() {
           std::make_move_iterator(std::exchange(inputs_, {}).end())};
 }
 
-std::vector<session::Onset> Room::present(std::span<const drive::PreparedBurst> intervals,
+std::vector<session::Onset> Room::present(std::span<const audio::PreparedBurst> intervals,
                                           std::int64_t earliest_ns) {
   attend();
   const auto onsets = inner_->present(intervals, std::max(earliest_ns, opened_ns_ + kSettle_ns));
@@ -198,7 +198,7 @@ void Room::tell_guard_fault() {
   push(InputKind::fault, guard_.fault().kind, guard_.fault().detail);
 }
 
-void Room::strike_line(const char* what, void (lines::Guard::*change)(std::int64_t, bool) noexcept) {
+void Room::strike_line(const char* what, void (io::Guard::*change)(std::int64_t, bool) noexcept) {
   world_.amplifier.cause(world_ns(), what);
   world_.amplifier.lasts(what);
   if (world_.plant != Plant::deaf_guard) (guard_.*change)(now_ns(), true);
@@ -235,9 +235,9 @@ void Room::strike_chip() {
 void Room::strike(Fault fault) {
   switch (fault) {
     case Fault::amplifier_line:
-      return strike_line("amplifier line", &lines::Guard::fault_line);
+      return strike_line("amplifier line", &io::Guard::fault_line);
     case Fault::stop_pressed:
-      return strike_line("stop pressed", &lines::Guard::stop_line);
+      return strike_line("stop pressed", &io::Guard::stop_line);
     case Fault::converter_gone:
       return strike_device();
     case Fault::lines_gone:

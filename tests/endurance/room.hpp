@@ -5,7 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "station/lines/guard.hpp"
+#include "station/io/guard.hpp"
 #include "station/session/monitor.hpp"
 #include "station/session/stage.hpp"
 #include "tests/endurance/faults.hpp"
@@ -66,29 +66,20 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
   std::optional<Input> wait_until(std::int64_t deadline_ns) override;
   std::vector<Input> drain() override;
   void wait_for(const std::function<bool()>&) override {}
-  std::vector<turnpoint::session::Onset> present(std::span<const turnpoint::drive::PreparedBurst> intervals,
+  std::vector<turnpoint::session::Onset> present(std::span<const turnpoint::audio::PreparedBurst> intervals,
                                                  std::int64_t earliest_ns) override;
-  std::optional<std::int64_t> glide(const turnpoint::drive::ToneSet& to, double seconds) override {
+  std::optional<std::int64_t> glide(const turnpoint::audio::ToneSet& to, double seconds) override {
     return inner_->glide(to, seconds);
   }
   std::int64_t silence(bool awaits_heard) override;
   Refusal arm() override;
   void disarm() override;
   Refusal clear() override;
-  turnpoint::drive::AmplifierState amplifier() const override { return guard_.state(); }
+  turnpoint::audio::AmplifierState amplifier() const override { return guard_.state(); }
   Refusal open_amplifier() override;
   void close_amplifier() override { closing_ = world_.plant != Plant::never_off; }
   const std::vector<std::string>& buttons() const override { return inner_->buttons(); }
   std::string missing() const override { return missing_; }
-  void question(const turnpoint::observer::Question& question,
-                const turnpoint::trial::SimulatedTimes& times) override {
-    inner_->question(question, times);
-  }
-  void adjustment(const turnpoint::observer::Adjustment& adjustment, const turnpoint::trial::TrialSpec& spec,
-                  const turnpoint::trial::SimulatedTimes& times) override {
-    inner_->adjustment(adjustment, spec, times);
-  }
-  void simulate(Input input) override { inner_->simulate(std::move(input)); }
   turnpoint::session::Triggers& triggers() override { return inner_->triggers(); }
   std::optional<turnpoint::session::ClockFit> clock_fit() override { return inner_->clock_fit(); }
   std::string realtime_rights() const override { return "none"; }
@@ -109,7 +100,7 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
   void plan(std::int64_t in_ns, std::function<void()> happens);
   void push(InputKind kind, turnpoint::session::FaultKind fault = {}, const std::string& text = "");
   void strike(Fault fault);
-  void strike_line(const char* what, void (turnpoint::lines::Guard::*change)(std::int64_t, bool) noexcept);
+  void strike_line(const char* what, void (turnpoint::io::Guard::*change)(std::int64_t, bool) noexcept);
   void strike_device();
   void strike_underrun();
   void strike_chip();
@@ -118,7 +109,7 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
   World& world_;
   Disk disk_;
   std::unique_ptr<turnpoint::session::Stage> inner_;
-  turnpoint::lines::Guard guard_;
+  turnpoint::io::Guard guard_;
   std::string missing_;  ///< why the GPIO chip is missing; empty if it is present
   double ns_per_frame_;
   std::int64_t born_ns_;

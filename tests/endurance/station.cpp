@@ -4,14 +4,14 @@
 #include <optional>
 #include <utility>
 
-#include "station/programs/programs.hpp"
+#include "station/core/canonical.hpp"
+#include "station/session/prepare.hpp"
+#include "station/session/programs.hpp"
 #include "station/session/replay.hpp"
 #include "station/session/session_run.hpp"
-#include "station/setup/prepare.hpp"
 #include "station/store/error.hpp"
 #include "station/store/read.hpp"
 #include "station/store/sqlite.hpp"
-#include "station/text/canonical.hpp"
 
 namespace endurance {
 
@@ -26,7 +26,7 @@ constexpr std::int64_t kRest_ns =
     2'400'000'000'000;  // longer than the half hour without stimuli that ends a period of exposure
 
 session::Setup prepare(const std::string& protocol, const std::string& database, std::uint64_t seed) {
-  setup::RunRequest request;
+  session::RunRequest request;
   request.protocol = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol;
   request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
   request.participant = "P01";
@@ -34,19 +34,19 @@ session::Setup prepare(const std::string& protocol, const std::string& database,
   request.observer = "sim";
   request.seed = seed;
   request.headless = true;
-  return setup::prepare(request);
+  return session::prepare(request);
 }
 
 /// Makes the setup behave like a live session: an operator must arm, and the finger's limits apply.
 session::Setup as_live(session::Setup setup) {
   setup.observer.clear();
-  setup.run_mode = terms::RunMode::live;
+  setup.run_mode = core::RunMode::live;
   setup.sound = {{1000, 60}, {80000, 60}};
   return setup;
 }
 
-records::SessionStart start_of(const session::Setup& setup) {
-  records::SessionStart start;
+core::SessionStart start_of(const session::Setup& setup) {
+  core::SessionStart start;
   start.participant = setup.participant;
   start.run_mode = setup.run_mode;
   start.protocol_id = setup.protocol.id;
@@ -54,7 +54,7 @@ records::SessionStart start_of(const session::Setup& setup) {
   start.protocol_path = setup.protocol.path;
   start.protocol_text = setup.protocol.source;
   start.protocol_sha256 = setup.protocol.sha256;
-  start.protocol_canonical = text::canonical(text::parse_toml(setup.protocol.source, setup.protocol.path));
+  start.protocol_canonical = core::canonical(core::parse_toml(setup.protocol.source, setup.protocol.path));
   for (const auto& factor : setup.protocol.factors) start.factor_columns.push_back(factor.name);
   start.rig_name = setup.rig.name;
   start.rig_text = setup.rig.source;
@@ -78,11 +78,11 @@ struct Acknowledgements : session::Monitor {
       : world(w), room(r), session_id(std::move(id)), dead(d) {}
   void trial_begins(const trial::TrialSpec&, const protocol::Block&,
                     const session::PlanAhead::Plans&) override {}
-  void trial_ended(const trial::TrialSpec&, const records::TrialRow& row) override {
+  void trial_ended(const trial::TrialSpec&, const core::TrialRow& row) override {
     if (dead) return;  // the simulated process is dead, so ignore its reports
     world.trials.acknowledged(session_id, row);
     const auto answered_ns = row.onset_ns + static_cast<std::int64_t>(row.response_time_s.value_or(0) * 1e9);
-    world.amplifier.trial_ended(room.world_ns(), row.outcome == terms::Outcome::answered,
+    world.amplifier.trial_ended(room.world_ns(), row.outcome == core::Outcome::answered,
                                 room.world_ns() - room.age_ns() + answered_ns);
   }
 };
@@ -145,15 +145,15 @@ bool Station::live(session::Setup setup) {
   setup.database = database_;
   const auto now_ns = world_.now_ns + world_.wall_offset_ns;
   const double now_s = 1e-9 * static_cast<double>(now_ns);
-  const auto limits = limits::limits_of(setup.rig, setup.run_mode);
+  const auto limits = session::limits_of(setup.rig, setup.run_mode);
   const auto interrupted = fs::exists(database_) ? store::interrupted_session(database_) : std::nullopt;
   const auto segment =
-      records::SegmentStart{std::to_string(lives), interrupted ? "resume" : "start", 0, 0, now_ns};
-  limits::FingerAccount account(
-      limits, limits::read_finger_history(database_, setup.participant, segment, limits.continuous_s), 0,
+      core::SegmentStart{std::to_string(lives), interrupted ? "resume" : "start", 0, 0, now_ns};
+  session::FingerAccount account(
+      limits, session::read_finger_history(database_, setup.participant, segment, limits.continuous_s), 0,
       now_s);
   if (interrupted) setup.resume_session = interrupted->session.session_id;
-  programs::Programs programs(setup.protocol.path);  // this protocol names none
+  session::Programs programs(setup.protocol.path);  // this protocol names none
   std::optional<trial::Director> director;
   session::Earlier earlier;
   if (interrupted) {
@@ -167,17 +167,17 @@ bool Station::live(session::Setup setup) {
   const auto id = session_id_ = log.session().session_id;
   const auto stream = session::stream_of(setup.rig);
   session::Inputs nobody;
-  auto owned = std::make_unique<Room>(
-      world_, disk(), session::virtual_stage(stream, observer::Observer(observer::parse("sim")), nobody),
-      stream.output.rate_Hz);
+  session::SimulatedParticipant participant(simulation::Observer(simulation::parse("sim")));
+  auto owned = std::make_unique<Room>(world_, disk(), session::virtual_stage(stream, participant, nobody),
+                                      stream.output.rate_Hz);
   Room& room = *owned;
   Acknowledgements monitor(world_, room, id, dead_);
   session::SessionRun run(setup, std::move(*director), std::move(log), earlier, std::move(owned),
-                          std::move(account), &room, &monitor);
+                          std::move(account), &participant, &room, &monitor);
   const auto summary = run.run();
   if (summary.reason.find("session's time") != std::string::npos) world_.now_ns += kRest_ns;
-  return !dead_ && (summary.status == records::SessionStatus::completed ||
-                    summary.status == records::SessionStatus::stopped);
+  return !dead_ &&
+         (summary.status == core::SessionStatus::completed || summary.status == core::SessionStatus::stopped);
 }
 
 Station::Ending Station::give_up(const std::string& why) {

@@ -115,7 +115,7 @@ void AmplifierWatch::trial_ended(std::int64_t time_ns, bool answered, std::int64
 namespace {
 
 /// All research data of a trial as text, to compare trials.
-std::string fingerprint(const records::TrialRow& row, bool times) {
+std::string fingerprint(const core::TrialRow& row, bool times) {
   auto text = fmt::format("{}/{} {} {} {} {} {:016x}", row.trial_in_block, store::name(row.type),
                           row.procedure, row.level.value_or(0), store::name(row.outcome),
                           row.response.value_or("-"), row.state_hash);
@@ -129,15 +129,15 @@ std::vector<std::string> that_count(const store::StoredSession& session) {
   std::vector<std::string> trials;
   for (const auto& block : session.blocks)
     for (const auto& trial : block.trials)
-      if (trial.type != terms::TrialType::warmup && trial.outcome != terms::Outcome::fault &&
-          trial.outcome != terms::Outcome::aborted)
+      if (trial.type != core::TrialType::warmup && trial.outcome != core::Outcome::fault &&
+          trial.outcome != core::Outcome::aborted)
         trials.push_back(fingerprint(trial, false));
   return trials;
 }
 
 }  // namespace
 
-void TrialWatch::acknowledged(const std::string& session_id, const records::TrialRow& row) {
+void TrialWatch::acknowledged(const std::string& session_id, const core::TrialRow& row) {
   kept_[{session_id, row.trial_index}] = fingerprint(row, true);
   ++total_;
 }

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "station/records/records.hpp"
+#include "station/core/records.hpp"
 #include "station/session/page.hpp"
 
 namespace endurance {
@@ -63,7 +63,7 @@ class TrialWatch {
  public:
   explicit TrialWatch(Violations& violations) : violations_(violations) {}
 
-  void acknowledged(const std::string& session_id, const turnpoint::records::TrialRow& row);
+  void acknowledged(const std::string& session_id, const turnpoint::core::TrialRow& row);
   /// Call after each death and each end of a session: checks that the database is sound and contains every
   /// acknowledged trial unchanged.
   void check(const std::string& database, const std::string& when);

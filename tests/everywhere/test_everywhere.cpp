@@ -1,11 +1,11 @@
 #include <fstream>
 #include <sstream>
 
-#include "station/drive/synth.hpp"
+#include "station/audio/synth.hpp"
+#include "station/core/number.hpp"
 #include "station/procedure/posterior.hpp"
-#include "station/setup/prepare.hpp"
+#include "station/session/prepare.hpp"
 #include "station/store/read.hpp"
-#include "station/text/number.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -19,14 +19,14 @@ namespace {
 
 template <class Value>
 std::string hash_of(const std::vector<Value>& values) {
-  return text::sha256({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)})
+  return core::sha256({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)})
       .substr(0, 16);
 }
 
 /// Returns a burst of one second with ramps. Two tones glide to two others, and a pulse marks onset and
 /// change.
-drive::Burst burst() {
-  drive::Burst burst;
+audio::Burst burst() {
+  audio::Burst burst;
   burst.start_frame = 1000;
   burst.length_frames = 192000;
   burst.tones.count = 2;
@@ -37,15 +37,15 @@ drive::Burst burst() {
   burst.changes[0].to.count = 2;
   burst.changes[0].to.tones[0] = {29876.54321, 0.3, 0, 0};
   burst.changes[0].to.tones[1] = {33333.33333, 0.35, 0, 0};
-  burst.marker = {drive::MarkerKind::pulse, 1, 0.5, 1000, 192};
+  burst.marker = {audio::MarkerKind::pulse, 1, 0.5, 1000, 192};
   return burst;
 }
 
 template <class Sample>
-std::string rendered(const drive::Burst& burst) {
-  const drive::Format format;
-  drive::Synth synth(format);
-  REQUIRE(synth.start(drive::prepare(burst, format)));
+std::string rendered(const audio::Burst& burst) {
+  const audio::Format format;
+  audio::Synth synth(format);
+  REQUIRE(synth.start(audio::prepare(burst, format)));
   std::vector<Sample> all, block(2 * 384);
   for (std::int64_t frame = 0; frame < 200064; frame += 384) {
     synth.render(frame, std::span<Sample>(block));
@@ -55,9 +55,9 @@ std::string rendered(const drive::Burst& burst) {
 }
 
 /// Runs a simulated session of a shipped protocol, with its files in `folder`, and returns its trials.
-std::vector<records::TrialRow> session_of(const std::string& protocol, const TemporaryFolder& folder,
-                                          const std::string& output) {
-  setup::RunRequest request;
+std::vector<core::TrialRow> session_of(const std::string& protocol, const TemporaryFolder& folder,
+                                       const std::string& output) {
+  session::RunRequest request;
   request.protocol = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol + ".toml";
   request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
   request.participant = "P01";
@@ -65,18 +65,18 @@ std::vector<records::TrialRow> session_of(const std::string& protocol, const Tem
   request.observer = "sim";
   request.seed = 20240229;
   request.headless = true;
-  auto setup = setup::prepare(request);
+  auto setup = session::prepare(request);
   setup.rig.output.uri = output;
   session::Inputs nobody;
   const auto summary = session::run(setup, nullptr, nobody);
-  std::vector<records::TrialRow> trials;
+  std::vector<core::TrialRow> trials;
   for (const auto& block : store::read_session(request.database, summary.session_id).blocks)
     trials.insert(trials.end(), block.trials.begin(), block.trials.end());
   return trials;
 }
 
 /// Returns a hash of the questions and answers, to the last bit.
-std::string decided(const std::vector<records::TrialRow>& trials) {
+std::string decided(const std::vector<core::TrialRow>& trials) {
   std::ostringstream text;
   text << std::hexfloat;
   for (const auto& trial : trials) {
@@ -88,11 +88,11 @@ std::string decided(const std::vector<records::TrialRow>& trials) {
     if (trial.confidence) text << " confidence " << *trial.confidence;
     text << '\n';
   }
-  return text::sha256(text.str()).substr(0, 16);
+  return core::sha256(text.str()).substr(0, 16);
 }
 
 /// Returns a hash of the stimuli and their times, to the last bit.
-std::string driven(const std::vector<records::TrialRow>& trials) {
+std::string driven(const std::vector<core::TrialRow>& trials) {
   std::ostringstream text;
   text << std::hexfloat;
   for (const auto& trial : trials) {
@@ -101,7 +101,7 @@ std::string driven(const std::vector<records::TrialRow>& trials) {
       text << ' ' << tone.frequency_Hz << ' ' << tone.amplitude_um << ' ' << tone.onset_frame;
     text << '\n';
   }
-  return text::sha256(text.str()).substr(0, 16);
+  return core::sha256(text.str()).substr(0, 16);
 }
 
 /// Returns a hash of the mutual information of every stimulus over 20 answers, to the last bit. The

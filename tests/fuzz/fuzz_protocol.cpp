@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (protocol::block_order(protocol, index).empty()) std::abort();
     if (protocol::combinations_of(protocol).empty()) std::abort();
     protocol::advice(protocol);
-  } catch (const text::BadInput& error) {
+  } catch (const core::BadInput& error) {
     if (error.problems().empty()) std::abort();
     for (const auto& problem : error.problems())
       if (problem.what.empty() || problem.place.file != "fuzz.toml") std::abort();

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "station/random/draws.hpp"
-#include "station/system/read_file.hpp"
-#include "station/text/toml.hpp"
+#include "station/core/draws.hpp"
+#include "station/core/read_file.hpp"
+#include "station/core/toml.hpp"
 
-using turnpoint::random::Draws;
+using turnpoint::core::Draws;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
@@ -65,7 +65,7 @@ int main(int argc, char** argv) {
     for (const auto& entry : std::filesystem::directory_iterator(argv[i]))
       if (entry.path().extension() == ".toml") paths.push_back(entry.path().string());
   std::sort(paths.begin(), paths.end());
-  for (const auto& path : paths) seeds.push_back(turnpoint::system::read_file(path));
+  for (const auto& path : paths) seeds.push_back(turnpoint::core::read_file(path));
   if (runs == 0 || seeds.empty()) return std::fprintf(stderr, "usage: fuzz_protocol RUNS FOLDER...\n"), 2;
   for (unsigned long run = 0; run < runs; ++run) {
     Draws draws({run});

@@ -111,7 +111,7 @@ TEST_CASE("a card's force cells are calibrated with dead weights, and a live ses
   };
   const auto reset = [&] {
     const auto keep = fake_pcm().wires;
-    drive::reset_fake_pcm();
+    audio::reset_fake_pcm();
     fake_pcm().loop_delay = 12'345;
     fake_pcm().wires = keep;
     cells.normal_N = cells.lateral_N = 0;
@@ -134,7 +134,7 @@ TEST_CASE("a card's force cells are calibrated with dead weights, and a live ses
     CHECK(finger.speed_mm_s.value() > 80);
     CHECK(finger.speed_mm_s.value() < turn * reach_mm);
     CHECK(finger.strokes.value() >= 1);
-    CHECK(trials.front().proof == terms::Proof::ok);
+    CHECK(trials.front().proof == core::Proof::ok);
   }
   SECTION("a wire that comes off is known in its trial") {
     broken = 1;

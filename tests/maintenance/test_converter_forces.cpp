@@ -13,9 +13,9 @@
 #include <thread>
 #include <vector>
 
-#include "station/calibration/apply.hpp"
-#include "station/calibration/calibration.hpp"
 #include "station/maintenance/force_weights.hpp"
+#include "station/rig/apply.hpp"
+#include "station/rig/calibration.hpp"
 #include "station/session/cell_feed.hpp"
 #include "tests/session/card_session.hpp"
 #include "tests/support/catch.hpp"
@@ -49,7 +49,7 @@ std::array<double, 3> converter_readings(const Load& load, std::int64_t time_ns)
 rig::CellConverter converter_in_rig() { return {"iio:cells", {"voltage0", "voltage1", "voltage2"}}; }
 
 /// Sends samples as fast as they are read.
-struct WeighedConverter : iio::Converter {
+struct WeighedConverter : io::Converter {
   const Load& load;
   std::int64_t time_ns = system::monotonic_ns();
   int until_gap = -1;  ///< number of samples until five are left out
@@ -57,8 +57,8 @@ struct WeighedConverter : iio::Converter {
   std::int64_t step_ns = converter_step_ns;
 
   explicit WeighedConverter(const Load& weights) : load(weights) {}
-  std::vector<iio::Sample> read() override {
-    std::vector<iio::Sample> samples;
+  std::vector<io::Sample> read() override {
+    std::vector<io::Sample> samples;
     for (int k = 0; k < 20; ++k) {
       time_ns += step_ns * (until_gap-- == 0 ? 6 : 1);
       samples.push_back({time_ns, converter_readings(load, dead ? 0 : time_ns), {false, wire_off, false}});
@@ -73,7 +73,7 @@ struct WeighedRoom {
   std::unique_ptr<maintenance::BridgeReader> bridges;
 
   WeighedRoom() {
-    bridges = maintenance::converter_bridges(converter_in_rig(), [this](const iio::Config& config) {
+    bridges = maintenance::converter_bridges(converter_in_rig(), [this](const io::Config& config) {
       CHECK(config.device == "cells");
       auto opened = std::make_unique<WeighedConverter>(load);
       converter = opened.get();
@@ -122,7 +122,7 @@ struct Board {
   }
 };
 
-struct BoardConverter : iio::Converter {
+struct BoardConverter : io::Converter {
   Board& board;
   std::int64_t next_ns;
   explicit BoardConverter(Board& shared) : board(shared), next_ns(board.now_ns) {
@@ -130,9 +130,9 @@ struct BoardConverter : iio::Converter {
     ++board.opened;
   }
 
-  std::vector<iio::Sample> read() override {
+  std::vector<io::Sample> read() override {
     if (board.gone) throw std::system_error(ENODEV, std::generic_category(), "iio:cells: reading");
-    std::vector<iio::Sample> samples;
+    std::vector<io::Sample> samples;
     for (; next_ns + 20 * converter_step_ns <= board.now_ns;) {
       next_ns += converter_step_ns * (1 + board.leave_out.exchange(0));
       samples.push_back({next_ns, converter_readings(board.finger.at(next_ns), next_ns), {}});
@@ -168,7 +168,7 @@ TEST_CASE("force cells on a converter with its own clock are weighed, and a live
   rig.surface.length_m = 1e-3 * converter_length_mm;
   rig.capture->converter = converter_in_rig();
   rig.capture->forces = weighed_cells(rig);
-  card.open_cells = [&board](const iio::Config&) -> std::unique_ptr<iio::Converter> {
+  card.open_cells = [&board](const io::Config&) -> std::unique_ptr<io::Converter> {
     if (board.gone) throw std::runtime_error("iio:cells: there is no such device; there are: none");
     return std::make_unique<BoardConverter>(board);
   };
@@ -196,7 +196,7 @@ TEST_CASE("force cells on a converter with its own clock are weighed, and a live
     CHECK(finger.mu.value() == Approx(Stroking::friction).epsilon(0.02));
     CHECK(finger.speed_mm_s.value() > 80);
     CHECK(finger.speed_mm_s.value() < Stroking::turn * Stroking::reach_mm);
-    CHECK(trials.front().proof == terms::Proof::ok);
+    CHECK(trials.front().proof == core::Proof::ok);
     CHECK(notices().empty());
   }
   SECTION("five lost samples make the forces of their trial unknown, and are in the log") {
@@ -204,7 +204,7 @@ TEST_CASE("force cells on a converter with its own clock are weighed, and a live
     const auto trials = card.runs();
     CHECK(trials.front().finger.sensing == "lost");
     CHECK_FALSE(trials.front().finger.normal_N);
-    CHECK(trials.front().proof == terms::Proof::ok);
+    CHECK(trials.front().proof == core::Proof::ok);
     CHECK(trials.back().finger.sensing == "ok");
     REQUIRE(notices().size() == 1);
     CHECK(notices()[0].value.find("lost 5 samples in 1 gaps; 0 time stamps") != std::string::npos);
@@ -269,8 +269,8 @@ TEST_CASE(
   rig.surface.length_m = 1e-3 * converter_length_mm;
   rig.capture->converter = converter_in_rig();
   const auto made = weighed_cells(rig);
-  const auto read = calibration::load(maintenance::write_forces(rig, made, folder / "made.toml"));
-  const auto used = calibration::applied(read, rig);
+  const auto read = rig::load_calibration(maintenance::write_forces(rig, made, folder / "made.toml"));
+  const auto used = rig::applied(read, rig);
   CHECK(used.capture.value().forces.value().matrix == made.matrix);
   CHECK(used.capture->forces->changes == made.changes);
   CHECK(used.capture->forces->rated_ratio == made.rated_ratio);
@@ -279,13 +279,13 @@ TEST_CASE(
   captured.capture->converter.reset();
   captured.capture->bridges = {2, 3, 4};
   CHECK_THROWS_WITH(
-      calibration::applied(read, captured),
+      rig::applied(read, captured),
       "the force cells of the calibration were on a converter with a clock of its own, those of the "
       "rig are captured by the card; calibrate them again");
   auto with_carrier = read;
   with_carrier.forces->carrier_Hz = 10'525;
   with_carrier.forces->reference_amplitude = 0.4;
-  CHECK_THROWS_WITH(calibration::applied(with_carrier, rig),
+  CHECK_THROWS_WITH(rig::applied(with_carrier, rig),
                     "the force cells of the calibration were captured by the card, those of the rig are on a "
                     "converter with a clock of its own; calibrate them again");
 }

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "station/core/read_file.hpp"
 #include "station/maintenance/disks.hpp"
-#include "station/system/read_file.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -55,7 +55,7 @@ struct Machine {
     write(sources.tool, "#!/bin/sh\necho \"$@\" >> " + (folder / "asked").string() + "\n" + does + "\n");
     fs::permissions(sources.tool, fs::perms::owner_all);
   }
-  std::string asked() const { return system::read_file((folder / "asked").string()); }
+  std::string asked() const { return core::read_file((folder / "asked").string()); }
 };
 
 /// Returns the message of the error that a call throws; "" if it throws none.

@@ -6,14 +6,14 @@
 #include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
-using Status = lines::Finding::Status;
+using Status = io::Finding::Status;
 
 namespace {
 
-std::string english(const texts::Phrase& phrase) { return texts::say(phrase, "en"); }
+std::string english(const core::Phrase& phrase) { return core::say(phrase, "en"); }
 
 /// Parts of a phrase that are the same in every language although they are several words in a row.
-std::vector<std::string> untranslated(const texts::Phrase& phrase) {
+std::vector<std::string> untranslated(const core::Phrase& phrase) {
   static const std::regex words("[A-Za-z]{2,} [a-z]{2,} [a-z]{2,}");
   std::vector<std::string> found;
   if (phrase.key.empty() && std::regex_search(phrase.words, words)) found.push_back(phrase.words);
@@ -43,7 +43,7 @@ TEST_CASE("each finding of the doctor is said in the language of the screen, and
     }
   const auto said = [&](const std::string& name, const char* language) {
     for (const auto& finding : findings)
-      if (english(finding.name) == name) return texts::say(finding.what, language);
+      if (english(finding.name) == name) return core::say(finding.what, language);
     return "no finding " + name;
   };
   CHECK(said("amplifier enable", "en") == "no GPIO chip has a line named no-such-line");
@@ -64,7 +64,7 @@ TEST_CASE("the doctor fails if the machine swaps, and says how to switch swappin
   const auto found = maintenance::check_swap(file);
   CHECK(found.status == Status::failed);
   CHECK(english(found.what) == "on: /var/swap, /dev/zram0");
-  CHECK(texts::say(found.what, "de") == "an: /var/swap, /dev/zram0");
+  CHECK(core::say(found.what, "de") == "an: /var/swap, /dev/zram0");
   CHECK(english(found.mend).find("sudo swapoff -a") != std::string::npos);
   CHECK_FALSE(maintenance::fit_for_use({found}));
   // an unreadable file must not count as "off"

@@ -2,15 +2,15 @@
 
 #include <cmath>
 
-#include "station/calibration/apply.hpp"
+#include "station/core/usage_error.hpp"
 #include "station/maintenance/force_weights.hpp"
-#include "station/terms/usage_error.hpp"
+#include "station/rig/apply.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
 using maintenance::measure_drive_crosstalk;
-using Status = lines::Finding::Status;
+using Status = io::Finding::Status;
 
 namespace {
 
@@ -37,19 +37,19 @@ TEST_CASE("the drive must not change the force of a weight at rest by more than 
   CHECK(maintenance::judged(readings[0]).status == Status::ok);
 
   // Wires that are not shielded, and amplifiers that distort: the force follows the drive.
-  const auto bad = measure_drive_crosstalk(rig, [](plant::Setup& room) {
+  const auto bad = measure_drive_crosstalk(rig, [](simulation::Setup& room) {
     room.wires.crosstalk_V_per_full_scale = 10e-3;
     room.wires.a3_per_V2 = 2e-3;
   });
   CHECK(std::abs(bad.at(0).normal_mN) > 2);
   const auto finding = maintenance::judged(bad[0]);
   CHECK(finding.status == Status::failed);
-  CHECK(texts::say(finding.what, "en").find("at most 1 mN are allowed") != std::string::npos);
+  CHECK(core::say(finding.what, "en").find("at most 1 mN are allowed") != std::string::npos);
   CHECK_FALSE(finding.mend.key.empty());
 
   // A weight that does not rest says nothing about the drive.
   const auto noisy =
-      measure_drive_crosstalk(rig, [](plant::Setup& room) { room.wires.noise_V_per_rtHz = 80e-9; });
+      measure_drive_crosstalk(rig, [](simulation::Setup& room) { room.wires.noise_V_per_rtHz = 80e-9; });
   CHECK(maintenance::judged(noisy.at(0)).what.key == "doctor.drive_restless");
 }
 
@@ -59,5 +59,5 @@ TEST_CASE("the check with a weight needs calibrated force cells on the sound car
   CHECK_THROWS_WITH(measure_drive_crosstalk(uncalibrated),
                     Catch::Matchers::ContainsSubstring("needs calibrated force cells"));
   const auto without = rig::load(measured::with_capture(folder, measured::kPickUps));
-  CHECK_THROWS_AS(measure_drive_crosstalk(without), terms::UsageError);
+  CHECK_THROWS_AS(measure_drive_crosstalk(without), core::UsageError);
 }

@@ -3,12 +3,12 @@
 #include <map>
 #include <random>
 
-#include "station/calibration/apply.hpp"
+#include "station/core/usage_error.hpp"
 #include "station/maintenance/force_weights.hpp"
 #include "station/maintenance/panel_latency.hpp"
-#include "station/plant/cells.hpp"
+#include "station/rig/apply.hpp"
 #include "station/session/simulated_room.hpp"
-#include "station/terms/usage_error.hpp"
+#include "station/simulation/cells.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
 
@@ -20,20 +20,20 @@ using maintenance::WeightStep;
 namespace {
 
 const auto kReady = [](const WeightStep&) { return true; };
-const auto kGiveUp = [](const texts::Phrase&) { return false; };
+const auto kGiveUp = [](const core::Phrase&) { return false; };
 
-/// Returns each cell's ratio of bridge to reference under a load, from the formulas in plant/setup.hpp.
-sensing::Readings readings(const plant::Setup& room, const plant::Load& load) {
+/// Returns each cell's ratio of bridge to reference under a load, from the formulas in simulation/setup.hpp.
+sensing::Readings readings(const simulation::Setup& room, const simulation::Load& load) {
   const auto& w = room.wires;
   const double per_N = room.cells.volt_per_volt_N * w.gain * w.reference_V_at_full_scale / w.full_scale_V;
-  const auto forces = plant::forces_on(room.cells, load);
+  const auto forces = simulation::forces_on(room.cells, load);
   sensing::Readings made{};
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t k = 0; k < 3; ++k) made[c] += per_N * room.cells.crosstalk[c][k] * forces[k];
   return made;
 }
 
-std::string failure(const rig::Rig& rig, const std::function<void(plant::Setup&)>& laboratory) {
+std::string failure(const rig::Rig& rig, const std::function<void(simulation::Setup&)>& laboratory) {
   try {
     weigh(rig, *open_bridges(rig, laboratory), kReady, kGiveUp);
   } catch (const std::exception& error) {
@@ -44,7 +44,7 @@ std::string failure(const rig::Rig& rig, const std::function<void(plant::Setup&)
 
 /// A bridge reader with exact readings. At reading number `fails_at`, a wire is off.
 struct ExactBridges : maintenance::BridgeReader {
-  plant::Setup room;
+  simulation::Setup room;
   int reads = 0, fails_at = -1;
   std::function<void(WeightStep&, int)> mistake = [](auto&, int) {};  ///< a mistake of the operator
   std::function<double(int read)> noise = [](int) { return 0.0; };
@@ -88,7 +88,7 @@ TEST_CASE("dead weights in the simulated room calibrate forces to 0.1 % and posi
     }
   auto made = maintenance::known_calibration(rig);
   made.forces = result.cells;
-  const auto again = calibration::parse(calibration::to_toml(made), "a.toml").forces.value();
+  const auto again = rig::parse_calibration(rig::to_toml(made), "a.toml").forces.value();
   CHECK(again.matrix == result.cells.matrix);
   CHECK(again.changes == result.cells.changes);
   CHECK(again.rated_ratio == result.cells.rated_ratio);
@@ -99,10 +99,10 @@ TEST_CASE("taps on the plate show up to which frequency forces are right", "[mai
   const TemporaryFolder folder;
   const auto rig = rig::load(measured::with_capture(folder, measured::kCells));
   const auto with = [&](double normal_Hz, double lateral_Hz, double damping) {
-    const auto laboratory = [&](plant::Setup& room) {
+    const auto laboratory = [&](simulation::Setup& room) {
       room.cells.normal_Hz = normal_Hz, room.cells.lateral_Hz = lateral_Hz, room.cells.damping = damping;
     };
-    return weigh(rig, *open_bridges(rig, laboratory), kReady, [](const texts::Phrase&) { return true; });
+    return weigh(rig, *open_bridges(rig, laboratory), kReady, [](const core::Phrase&) { return true; });
   };
   const auto usual = with(56, 180, 0.05);
   CHECK(usual.resonance_Hz.value() == Approx(56).epsilon(0.02));
@@ -122,17 +122,17 @@ TEST_CASE("taps on the plate show up to which frequency forces are right", "[mai
 TEST_CASE("what is wrong with the cells or their wires is named", "[maintenance][forces]") {
   const TemporaryFolder folder;
   const auto rig = rig::load(measured::with_capture(folder, measured::kCells));
-  CHECK(failure(rig, [](plant::Setup& room) {
+  CHECK(failure(rig, [](simulation::Setup& room) {
           room.wires.carrier_channel = std::nullopt;
         }).find("the reference on captured channel 0 carries no excitation") != std::string::npos);
-  CHECK(failure(rig, [](plant::Setup& room) {
+  CHECK(failure(rig, [](simulation::Setup& room) {
           room.cells.zero_N[1] = 25;
         }).find("cell b on captured channel 2") != std::string::npos);
-  CHECK(failure(rig, [](plant::Setup& room) {
+  CHECK(failure(rig, [](simulation::Setup& room) {
           room.cells.crosstalk[2] = {0, 0, 0};
         }).find("cell lateral does not respond") != std::string::npos);
   const auto plain = rig::load(measured::with_capture(folder, measured::kPickUps));
-  CHECK_THROWS_AS(open_bridges(plain), terms::UsageError);
+  CHECK_THROWS_AS(open_bridges(plain), core::UsageError);
 }
 
 TEST_CASE("a failed reading can be repeated, steps can be left out, and a moving zero is refused",
@@ -143,8 +143,8 @@ TEST_CASE("a failed reading can be repeated, steps can be left out, and a moving
   bridges.room.cells.span_m = rig.surface.length_m;
   bridges.fails_at = 5;
   std::string why;
-  const auto repeated = weigh(rig, bridges, kReady, [&](const texts::Phrase& reason) {
-    why = texts::say(reason, "en");
+  const auto repeated = weigh(rig, bridges, kReady, [&](const core::Phrase& reason) {
+    why = core::say(reason, "en");
     return true;
   });
   CHECK(why.find("cell b") != std::string::npos);
@@ -157,7 +157,7 @@ TEST_CASE("a failed reading can be repeated, steps can be left out, and a moving
   CHECK(weigh(rig, bridges, some, kGiveUp).steps.size() == 17);
   CHECK_THROWS_AS(weigh(
                       rig, bridges, [](const WeightStep& step) { return step.tare; }, kGiveUp),
-                  terms::UsageError);
+                  core::UsageError);
   bridges.creep_N = 5e-3;
   CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp),
                     Catch::Matchers::ContainsSubstring("the zero of the cells moved"));
@@ -182,7 +182,7 @@ TEST_CASE("a weight that does not agree with the others is named and weighed aga
   };
   std::vector<std::string> remarks;
   const auto asked = [&](const WeightStep& step) {
-    if (!step.remark.empty() && !step.tare) remarks.push_back(texts::say(step.remark, "en"));
+    if (!step.remark.empty() && !step.tare) remarks.push_back(core::say(step.remark, "en"));
     return true;
   };
   const auto why = "50 g at 90 mm does not agree with the other weights: " + said;
@@ -191,7 +191,7 @@ TEST_CASE("a weight that does not agree with the others is named and weighed aga
   } else {
     const auto made = weigh(rig, bridges, asked, kGiveUp);
     REQUIRE(made.repeated.size() == 1);
-    CHECK(texts::say(made.repeated[0].name(), "en") == "50 g at 90 mm");
+    CHECK(core::say(made.repeated[0].name(), "en") == "50 g at 90 mm");
     CHECK(made.steps.size() == 32);
     for (const auto& rest : made.residuals) CHECK(std::abs(rest.position_mm) < 1e-6);
   }
@@ -266,8 +266,8 @@ TEST_CASE("a session measures forces with the calibration that dead weights gave
     for (auto& row : changed.forces->matrix)
       for (double& value : row) value *= factor;
     const auto file = folder / "forces.toml";
-    std::ofstream(file) << calibration::to_toml(changed);
-    setup::RunRequest request;
+    std::ofstream(file) << rig::to_toml(changed);
+    session::RunRequest request;
     request.protocol = measured::shipped("demo");
     request.rig = path;
     request.calibration = file;
@@ -276,7 +276,7 @@ TEST_CASE("a session measures forces with the calibration that dead weights gave
     request.observer = "sim";
     request.seed = 7;
     session::Inputs inputs;
-    const auto summary = session::run(setup::prepare(request), nullptr, inputs);
+    const auto summary = session::run(session::prepare(request), nullptr, inputs);
     double sum = 0, count = 0;
     for (const auto& block : store::read_session(request.database, summary.session_id).blocks)
       for (const auto& trial : block.trials)

@@ -3,14 +3,14 @@
 #include <filesystem>
 #include <string>
 
-#include "station/calibration/apply.hpp"
+#include "station/core/read_file.hpp"
+#include "station/core/usage_error.hpp"
 #include "station/maintenance/guided_series.hpp"
 #include "station/maintenance/panel_latency.hpp"
+#include "station/rig/apply.hpp"
 #include "station/sensing/pick_up.hpp"
 #include "station/session/simulated_room.hpp"
-#include "station/system/read_file.hpp"
 #include "station/system/write_file.hpp"
-#include "station/terms/usage_error.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -52,10 +52,10 @@ TEST_CASE("a sound level read at a tenth of full scale is 20 dB higher at full s
   for (auto& point : points) point.value = 61.5;
   points.back().value.reset();  // a point that was not read is left out
   const auto result = maintenance::finish_series(rig, Series::sound, points);
-  const auto made = calibration::load(result.file);
+  const auto made = rig::load_calibration(result.file);
   REQUIRE(made.sound.size() == points.size() - 1);
   for (const auto& point : made.sound) CHECK(std::abs(point.level_dB - 81.5) < 0.01);
-  CHECK(result.file == calibration::newest_for(rig.path));
+  CHECK(result.file == rig::newest_for(rig.path));
 }
 
 TEST_CASE("a series replaces only its own part of the calibration", "[maintenance]") {
@@ -68,12 +68,12 @@ TEST_CASE("a series replaces only its own part of the calibration", "[maintenanc
   double value = 0.9;
   for (auto& point : friction) point.value = value -= 0.1;
   const auto result = maintenance::finish_series(rig, Series::friction, friction);
-  const auto made = calibration::load(result.file);
+  const auto made = rig::load_calibration(result.file);
   CHECK(made.sound.size() == sound.size());
   REQUIRE(made.friction.has_value());
   REQUIRE(made.friction->points.size() == friction.size() + 1);  // and the surface at rest
   CHECK(std::abs(made.friction->points[1].relative_friction - 0.8) < 1e-6);
-  CHECK(system::read_file(result.csv).find("displacement_um,relative_friction\n0,1\n") == 0);
+  CHECK(core::read_file(result.csv).find("displacement_um,relative_friction\n0,1\n") == 0);
 }
 
 TEST_CASE("boundaries that the physics predicts are fitted without a large change of the surface",
@@ -81,7 +81,7 @@ TEST_CASE("boundaries that the physics predicts are fitted without a large chang
   const TemporaryFolder folder;
   const auto rig = rig_in(folder);
   auto points = maintenance::series_points(rig, Series::boundaries);
-  CHECK_THROWS_AS(maintenance::finish_series(rig, Series::boundaries, points), terms::UsageError);
+  CHECK_THROWS_AS(maintenance::finish_series(rig, Series::boundaries, points), core::UsageError);
   // the comment of the rig file: 76 mm at 22.4 kHz and 226 mm at 48 kHz, by another plate theory
   for (auto& point : points) point.value = 84 + (point.frequency_Hz - 22'400) / 25'600 * 142;
   const auto result = maintenance::finish_series(rig, Series::boundaries, points);
@@ -114,12 +114,12 @@ TEST_CASE("while a tone of a series plays, the pick-ups are read, in um once the
   }
 
   auto made = maintenance::known_calibration(rig);
-  calibration::PickUp pick_up;
+  rig::PickUp pick_up;
   pick_up.response.channel = rig.capture->pick_ups[0];
   pick_up.response.points = {{30e3, 0.1, 0}, {31e3, 0.1, 0}};
-  pick_up.scale = calibration::PickUpScale{calibration::PickUpSensor::patch, 10, 30e3, 0, 0.02};
+  pick_up.scale = rig::PickUpScale{rig::PickUpSensor::patch, 10, 30e3, 0, 0.02};
   made.pick_ups = {pick_up};
-  system::write_file(calibration::file_for(rig.path, calibration::today()), calibration::to_toml(made));
+  system::write_file(rig::file_for(rig.path, rig::today()), rig::to_toml(made));
   play();
   const auto& reading = seen.at(seen.size() / 2).at(0);
   CHECK(std::abs(reading.displacement_um.value() / (10 * reading.amplitude) - 1) < 1e-9);

@@ -2,10 +2,10 @@
 #include <complex>
 #include <fstream>
 
-#include "station/calibration/apply.hpp"
+#include "station/core/usage_error.hpp"
 #include "station/maintenance/pick_up_sweep.hpp"
+#include "station/rig/apply.hpp"
 #include "station/session/simulated_room.hpp"
-#include "station/terms/usage_error.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
 
@@ -20,7 +20,7 @@ constexpr double kFullScalePerUm = 0.1, kUmPerFullScale = 4;
 
 /// Writes the table of an instrument whose readings are wrong by the factor `error` and by this `power` of
 /// frequency.
-std::string table(const TemporaryFolder& folder, const plant::Plant& plant, double error,
+std::string table(const TemporaryFolder& folder, const simulation::Plant& plant, double error,
                   const std::vector<double>& frequencies, double power = 0) {
   const auto path = folder / "vibrometer.csv";
   std::ofstream file(path);
@@ -37,9 +37,9 @@ const std::vector<double> kFrequencies{24e3, 28e3, 32e3, 36e3, 40e3, 44e3};
 std::string refusal(const rig::Rig& rig, const PickUpOptions& options) {
   try {
     calibrate_pick_ups(rig, options);
-  } catch (const terms::UsageError& error) {
+  } catch (const core::UsageError& error) {
     return error.what();
-  } catch (const text::BadInput& error) {
+  } catch (const core::BadInput& error) {
     return error.what();
   }
   return "";
@@ -47,8 +47,8 @@ std::string refusal(const rig::Rig& rig, const PickUpOptions& options) {
 
 /// Runs the demo with a calibration file.
 session::Summary run_with(const TemporaryFolder& folder, const std::string& rig,
-                          const std::string& calibration, std::vector<records::TrialRow>& trials) {
-  setup::RunRequest request;
+                          const std::string& calibration, std::vector<core::TrialRow>& trials) {
+  session::RunRequest request;
   request.protocol = measured::shipped("demo");
   request.rig = rig;
   request.calibration = calibration;
@@ -58,7 +58,7 @@ session::Summary run_with(const TemporaryFolder& folder, const std::string& rig,
   request.seed = 7;
   session::Inputs inputs;
   measured::Pages pages;
-  const auto summary = session::run(setup::prepare(request), &pages, inputs);
+  const auto summary = session::run(session::prepare(request), &pages, inputs);
   for (const auto& block : store::read_session(request.database, summary.session_id).blocks)
     trials.insert(trials.end(), block.trials.begin(), block.trials.end());
   return summary;
@@ -116,30 +116,30 @@ TEST_CASE("a session with the calibration of a sweep is proven, and one with wro
   const auto rig = rig::load(path);
   auto calibration = maintenance::with_pick_ups(rig, calibrate_pick_ups(rig, {}));
   const auto write = [&](const std::string& name) {
-    std::ofstream(folder / name) << calibration::to_toml(calibration);
+    std::ofstream(folder / name) << rig::to_toml(calibration);
     return folder / name;
   };
-  std::vector<records::TrialRow> good, bad, late;
+  std::vector<core::TrialRow> good, bad, late;
   CHECK(run_with(folder, path, write("good.toml"), good).voided == 0);
   REQUIRE(good.size() == 10);
   for (const auto& trial : good) {
-    CHECK(trial.proof == terms::Proof::ok);
+    CHECK(trial.proof == core::Proof::ok);
     CHECK(std::abs(trial.drive_ratio_dB.value()) < 0.05);
   }
   for (auto& pick_up : calibration.pick_ups)
     for (auto& point : pick_up.response.points) point.amplitude *= 1.25;  // change the amplitude by 1.9 dB
-  CHECK(run_with(folder, path, write("loud.toml"), bad).status == records::SessionStatus::interrupted);
+  CHECK(run_with(folder, path, write("loud.toml"), bad).status == core::SessionStatus::interrupted);
   REQUIRE_FALSE(bad.empty());
   for (const auto& trial : bad) {
     INFO(trial.trial_index << " " << name(trial.proof) << " " << name(trial.proof_cause));
-    CHECK(trial.outcome == terms::Outcome::fault);
+    CHECK(trial.outcome == core::Outcome::fault);
     CHECK(trial.drive_ratio_dB.value() == Approx(-1.94).margin(0.05));
   }
   for (auto& pick_up : calibration.pick_ups)
     for (auto& point : pick_up.response.points)
       point.amplitude /= 1.25, point.phase_rad += 0.35;  // change the phase by 20 degrees
   CHECK(run_with(folder, path, write("turned.toml"), late).voided == 0);
-  for (const auto& trial : late) CHECK(trial.proof == terms::Proof::flagged);
+  for (const auto& trial : late) CHECK(trial.proof == core::Proof::flagged);
 }
 
 TEST_CASE("a table that contradicts the sweep, has another unit, or is too short is refused",
@@ -171,21 +171,19 @@ TEST_CASE("a table that contradicts the sweep, has another unit, or is too short
 
 TEST_CASE("an accelerometer needs one frequency, because its sensitivity follows from physics",
           "[maintenance][pickup]") {
-  calibration::PickUp pick_up;
+  rig::PickUp pick_up;
   for (double f = 22e3; f <= 46e3; f += 100) pick_up.response.points.push_back({f, 0.2 * f * f / 9e8, 0});
-  const auto scale =
-      calibration::fit_scale(pick_up, calibration::PickUpSensor::accelerometer, {{30e3, 2}}, 0.03);
+  const auto scale = rig::fit_scale(pick_up, rig::PickUpSensor::accelerometer, {{30e3, 2}}, 0.03);
   CHECK(scale.at(30e3) == Approx(10));
   CHECK(scale.at(42e3) == Approx(10 / 1.96));
   CHECK(scale.sd == Approx(0.03));
-  CHECK_THROWS_AS(calibration::fit_scale(pick_up, calibration::PickUpSensor::patch, {{30e3, 2}}, 0.03),
-                  terms::UsageError);
+  CHECK_THROWS_AS(rig::fit_scale(pick_up, rig::PickUpSensor::patch, {{30e3, 2}}, 0.03), core::UsageError);
 }
 
 TEST_CASE("a pick-up that captures only noise is refused with its channel", "[maintenance][pickup]") {
   const TemporaryFolder folder;
   const auto rig = rig::load(measured::with_capture(folder, measured::kPickUps));
   PickUpOptions options;
-  options.laboratory = [](plant::Setup& room) { room.pickups[1].full_scale_per_um = 1e-7; };
+  options.laboratory = [](simulation::Setup& room) { room.pickups[1].full_scale_per_um = 1e-7; };
   CHECK(refusal(rig, options).find("pick-up on channel 2 captures nothing but noise") != std::string::npos);
 }

@@ -3,13 +3,13 @@
 #include <functional>
 #include <numeric>
 
+#include "station/core/draws.hpp"
 #include "station/procedure/psychometric.hpp"
 #include "station/procedure/trace.hpp"
-#include "station/random/draws.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::procedure;
-namespace rnd = turnpoint::random;
+namespace rnd = turnpoint::core;
 
 namespace {
 

@@ -120,7 +120,7 @@ TEST_CASE("psi-marginal learns about the kept parameters and sums over the nuisa
   for (std::size_t i = 0; i < a.size(); ++i) CHECK(b[i] <= a[i] + 1e-12);
   // The estimate must find the threshold of 10 mm and the slope of 2 of the simulated observer.
   const auto procedure = make_procedure(with, {}, {});
-  turnpoint::random::Draws draws({3, turnpoint::random::Stream::observer, 0, 0, 0});
+  turnpoint::core::Draws draws({3, turnpoint::core::Stream::observer, 0, 0, 0});
   while (const auto proposal = procedure->next()) {
     const double p = probability(Function::weibull, Scale::log10, {10, 2, 1.0 / 3, 0.02}, proposal->level);
     procedure->record(draws.uniform() < p ? Answer::one : Answer::zero);

@@ -1,8 +1,8 @@
 #include <cmath>
 #include <set>
 
+#include "station/core/usage_error.hpp"
 #include "station/procedure/trace.hpp"
-#include "station/terms/usage_error.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::procedure;
@@ -77,7 +77,7 @@ TEST_CASE("a staircase stays inside its limits and stops by its rules", "[proced
   const auto result = trace(spec, {}, "1111101");
   CHECK(result.levels.back() == 12);
   CHECK_FALSE(result.next.has_value());
-  CHECK_THROWS_AS(trace(spec, {}, "11111011"), turnpoint::terms::UsageError);
+  CHECK_THROWS_AS(trace(spec, {}, "11111011"), turnpoint::core::UsageError);
 }
 
 TEST_CASE("on a logarithmic scale steps multiply and the mean of reversals is a mean of logs",

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "station/core/draws.hpp"
 #include "station/procedure/trace.hpp"
-#include "station/random/draws.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::procedure;
@@ -68,7 +68,7 @@ TEST_CASE("accelerated stochastic approximation follows the recursion for any an
   const auto limited = GENERATE(false, true);
   auto spec = approximation(5, 3, target);
   if (limited) spec.min = 2, spec.max = 6;
-  turnpoint::random::Draws draws({17});
+  turnpoint::core::Draws draws({17});
   const auto procedure = make_procedure(spec, {}, {});
   std::vector<int> answers;
   for (int n = 0; n < 300; ++n) {
@@ -86,7 +86,7 @@ TEST_CASE("accelerated stochastic approximation converges on its target, near 0 
   double sum = 0, squares = 0;
   constexpr int kTracks = 200, kTrials = 600;
   for (int track = 0; track < kTracks; ++track) {
-    turnpoint::random::Draws draws({static_cast<std::uint64_t>(track)});
+    turnpoint::core::Draws draws({static_cast<std::uint64_t>(track)});
     const auto procedure = make_procedure(approximation(truth + (track % 2 ? 3 : -3), 8, target), {}, {});
     for (int n = 0; n < kTrials; ++n)
       procedure->record(draws.uniform() < logistic(procedure->next()->level) ? Answer::one : Answer::zero);

@@ -253,8 +253,8 @@ TEST_CASE(
 
 TEST_CASE("95 % of the intervals contain the true values of all parameters, if these come from the prior",
           "[procedure]") {
-  using turnpoint::random::Draws;
-  using turnpoint::random::Stream;
+  using turnpoint::core::Draws;
+  using turnpoint::core::Stream;
   auto spec = criterion();
   spec.second = Second{"place_mm", {{-30, 0, 30}, ""}, 0};
   spec.scale = Scale::dB;

@@ -1,6 +1,6 @@
+#include "station/core/read_file.hpp"
+#include "station/core/toml.hpp"
 #include "station/protocol/protocol.hpp"
-#include "station/system/read_file.hpp"
-#include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 
 // Tests the [analysis] table of a protocol file: every accepted value must have an effect.
@@ -10,7 +10,7 @@ using namespace turnpoint;
 namespace {
 
 std::string source_of(const std::string& name) {
-  return system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
+  return core::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
 }
 
 /// Returns a shipped protocol whose [analysis] table is replaced.
@@ -21,11 +21,11 @@ std::string with_analysis(const std::string& name, const std::string& analysis) 
   return source + "\n[analysis]\n" + analysis + "\n";
 }
 
-std::vector<text::Problem> problems_of(const std::string& source) {
+std::vector<core::Problem> problems_of(const std::string& source) {
   try {
     protocol::parse(source, "p.toml");
     return {};
-  } catch (const text::BadInput& error) {
+  } catch (const core::BadInput& error) {
     return error.problems();
   }
 }
@@ -35,7 +35,7 @@ std::string only_problem(const std::string& source) {
   REQUIRE(problems.size() == 1);
   CHECK(!problems.front().allowed.empty());
   CHECK(problems.front().place.line > 1);
-  return texts::say(problems.front().what, "en");
+  return core::say(problems.front().what, "en");
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ TEST_CASE("the key by accepts one factor with levels, or several", "[protocol]")
   CHECK(only_problem(with_analysis("demo", "by = [\"mark_mm\", \"mark_mm\"]")).find("twice") !=
         std::string::npos);
   for (const auto& problem : problems_of(with_analysis("demo", "by = \"offset_mm\"")))
-    CHECK(text::format(problem).find("offset_mm") != std::string::npos);
+    CHECK(core::format(problem).find("offset_mm") != std::string::npos);
   CHECK(!problems_of(with_analysis("demo", "by = \"offset_mm\"")).empty());
 }
 

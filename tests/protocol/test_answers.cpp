@@ -1,9 +1,9 @@
 #include "station/protocol/answers.hpp"
 
+#include "station/core/read_file.hpp"
+#include "station/core/toml.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/protocol/resolve.hpp"
-#include "station/system/read_file.hpp"
-#include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -12,7 +12,7 @@ using protocol::AnswerKind;
 namespace {
 
 std::string source_of(const std::string& name) {
-  return system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
+  return core::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
 }
 
 protocol::Protocol shipped(const std::string& name) { return protocol::parse(source_of(name), name); }
@@ -124,7 +124,7 @@ TEST_CASE("two answers below and above a cut have a PSE, wherever the cut and th
     CHECK(found.design == protocol::Design::two_sided);
     CHECK(found.rule.positive == 1);
     CHECK(found.rule.cut == Approx(c.cut));
-    CHECK(found.function == terms::Function::normal);
+    CHECK(found.function == core::Function::normal);
     CHECK_FALSE(found.log_axis);
   }
   const auto words = two_answers("low = \"offset_mm < 20\"\nhigh = \"offset_mm > 20\"", "[0.0, 40.0]",
@@ -210,6 +210,6 @@ TEST_CASE("in two intervals the level can decide which scene is right", "[protoc
   CHECK(protocol::in_words(signs.meanings[0], signs) ==
         "PSE and spread of `contrast_dB` around -15 by the interval with `comparison`, cumulative normal");
   CHECK(protocol::scene_of(signs.task, 1) == "comparison");
-  CHECK_THROWS_AS(two("{ comparison = \"contrast_dB > -15\" }"), text::BadInput);
-  CHECK_THROWS_AS(two("{ comparison = \"contrast_dB > 0\", other = \"contrast_dB < 0\" }"), text::BadInput);
+  CHECK_THROWS_AS(two("{ comparison = \"contrast_dB > -15\" }"), core::BadInput);
+  CHECK_THROWS_AS(two("{ comparison = \"contrast_dB > 0\", other = \"contrast_dB < 0\" }"), core::BadInput);
 }

@@ -6,9 +6,9 @@
 #include <map>
 #include <sstream>
 
+#include "station/core/read_file.hpp"
+#include "station/core/toml.hpp"
 #include "station/protocol/protocol.hpp"
-#include "station/system/read_file.hpp"
-#include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -32,11 +32,11 @@ std::map<int, std::string> expected_lines(const std::string& source) {
   return expected;
 }
 
-std::vector<text::Problem> problems_of(const std::string& source) {
+std::vector<core::Problem> problems_of(const std::string& source) {
   try {
     protocol::parse(source, "p.toml");
     return {};
-  } catch (const text::BadInput& error) {
+  } catch (const core::BadInput& error) {
     return error.problems();
   }
 }
@@ -69,7 +69,7 @@ TEST_CASE("each file of the corpus of mistakes is refused at the line of its mis
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() != ".toml") continue;
     ++files;
-    const auto source = system::read_file(entry.path().string());
+    const auto source = core::read_file(entry.path().string());
     INFO(entry.path().filename().string());
     CHECK_FALSE(expected_lines(source).empty());
     CHECK(misreported(source) == "");
@@ -79,7 +79,7 @@ TEST_CASE("each file of the corpus of mistakes is refused at the line of its mis
 
 TEST_CASE("the corpus check notices a file whose mistake was corrected, and a mistake on another line",
           "[protocol]") {
-  auto source = system::read_file((folder / "scene-rove-negative.toml").string());
+  auto source = core::read_file((folder / "scene-rove-negative.toml").string());
   REQUIRE(misreported(source).empty());
   const auto at = source.find("rove_dB = -2.0");
   auto mended = source;

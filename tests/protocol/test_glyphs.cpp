@@ -1,6 +1,6 @@
 #include "station/protocol/glyphs.hpp"
 
-#include "station/system/read_file.hpp"
+#include "station/core/read_file.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -8,7 +8,7 @@ using namespace turnpoint;
 namespace {
 
 std::string source(const std::string& title) {
-  auto text = system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/friction-2ifc.toml");
+  auto text = core::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/friction-2ifc.toml");
   const auto at = text.find("\nen ", text.find("[protocol.title]"));
   const auto inline_at = text.find("title = ");
   const auto line = at != std::string::npos ? at + 1 : inline_at;
@@ -31,7 +31,7 @@ TEST_CASE("a text with characters that no font can draw is named with its line a
   REQUIRE(found.size() == 1);
   CHECK(found[0].place.file == "study.toml");
   CHECK(found[0].place.line > 0);
-  const auto said = texts::say(found[0].what, "en");
+  const auto said = core::say(found[0].what, "en");
   const auto says = [&](const char* words) { return said.find(words) != std::string::npos; };
   CHECK(says("title"));
   CHECK(says("\ud55c (U+D55C), \U0010FF00 (U+10FF00)"));

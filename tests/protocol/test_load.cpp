@@ -3,9 +3,9 @@
 #include <fstream>
 #include <system_error>
 
+#include "station/core/read_file.hpp"
+#include "station/core/toml.hpp"
 #include "station/protocol/protocol.hpp"
-#include "station/system/read_file.hpp"
-#include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -17,7 +17,7 @@ namespace {
 const std::string shipped = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/";
 
 protocol::Protocol with(const std::string& file, const std::string& from, const std::string& to) {
-  auto source = system::read_file(shipped + file);
+  auto source = core::read_file(shipped + file);
   const auto at = source.find(from);
   REQUIRE(at != std::string::npos);
   return protocol::parse(source.replace(at, from.size(), to), "p.toml");
@@ -108,7 +108,7 @@ TEST_CASE("in a Williams square each condition follows each other equally often"
     std::string levels;
     for (int i = 0; i < n; ++i)
       levels += (i ? ", \"" : "\"") + std::string(1, static_cast<char>('a' + i)) + "\"";
-    auto source = system::read_file(shipped + "speed-accuracy.toml");
+    auto source = core::read_file(shipped + "speed-accuracy.toml");
     const auto factor = source.find("[scene.before]");
     source.insert(factor, "[[factor]]\nname = \"order\"\nlevels = [" + levels + "]\n");
     for (std::size_t at; (at = source.find("over = \"instruction\"")) != std::string::npos;)
@@ -149,7 +149,7 @@ TEST_CASE("arithmetic on factors is linear, with the usual precedence", "[protoc
 TEST_CASE("factors can be multiplied, and the extremes of a product are found at the ends of their ranges",
           "[protocol]") {
   const auto source = [](const std::string& expression) {
-    auto text = system::read_file(shipped + "friction-weber.toml");
+    auto text = core::read_file(shipped + "friction-weber.toml");
     const std::string product = "\"reference * (1 - proportion)\"";
     text.replace(text.find(product), product.size(), "\"" + expression + "\"");
     return text;
@@ -169,7 +169,7 @@ TEST_CASE("factors can be multiplied, and the extremes of a product are found at
   // Friction must be below 1. The largest product is 0.85 * (1 + 0.17) in the first case, which is allowed,
   // and 0.85 * (1 + 0.18) in the second, which is not. Only the upper ends of both ranges together show this.
   CHECK_NOTHROW(protocol::parse(source("reference * (1 + 0.37 * proportion)"), "p.toml"));
-  CHECK_THROWS_AS(protocol::parse(source("reference * (1 + 0.41 * proportion)"), "p.toml"), text::BadInput);
+  CHECK_THROWS_AS(protocol::parse(source("reference * (1 + 0.41 * proportion)"), "p.toml"), core::BadInput);
 }
 
 TEST_CASE("for_each makes one procedure for each level, and the block runs all of them", "[protocol]") {
@@ -231,11 +231,11 @@ TEST_CASE("the defaults that were used are named", "[protocol]") {
 }
 
 TEST_CASE("a missing protocol file is bad input", "[protocol]") {
-  CHECK_THROWS_AS(protocol::load("no/such/protocol.toml"), text::BadInput);
+  CHECK_THROWS_AS(protocol::load("no/such/protocol.toml"), core::BadInput);
 }
 
 TEST_CASE("a file with far too many items, keys or bytes is refused within a second", "[protocol]") {
-  const auto demo = system::read_file(shipped + "demo.toml");
+  const auto demo = core::read_file(shipped + "demo.toml");
   std::string factors, values, keys;
   for (int i = 0; i < 100'000; ++i)
     factors += "[[factor]]\nname=\"f" + std::to_string(i) + "\"\nlevels=[1]\n";
@@ -246,7 +246,7 @@ TEST_CASE("a file with far too many items, keys or bytes is refused within a sec
     std::string said;
     try {
       protocol::parse(source, "p.toml");
-    } catch (const text::BadInput& bad) {
+    } catch (const core::BadInput& bad) {
       said = format(bad.problems().front());
     }
 #if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -263,6 +263,6 @@ TEST_CASE("a file with far too many items, keys or bytes is refused within a sec
   says(demo + "[more]\nx = [" + values + "1]\n", "at most 10000");
   says(demo + "[more]\n" + keys + "a = 1\n", "parts");
   const TemporaryFolder folder;
-  std::ofstream(folder / "p.toml") << demo << "# " << std::string(text::most_text_bytes, '#') << "\n";
-  CHECK_THROWS_AS(protocol::load(folder / "p.toml"), text::BadInput);
+  std::ofstream(folder / "p.toml") << demo << "# " << std::string(core::most_text_bytes, '#') << "\n";
+  CHECK_THROWS_AS(protocol::load(folder / "p.toml"), core::BadInput);
 }

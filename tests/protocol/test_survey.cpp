@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "station/core/read_file.hpp"
+#include "station/core/toml.hpp"
 #include "station/protocol/design_advice.hpp"
-#include "station/system/read_file.hpp"
-#include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/quick_rig.hpp"
 
@@ -16,10 +16,10 @@ namespace {
 
 const std::string root = TURNPOINT_SOURCE_DIR;
 
-std::string source(const std::string& name) { return system::read_file(root + "/protocols/" + name); }
+std::string source(const std::string& name) { return core::read_file(root + "/protocols/" + name); }
 rig::Rig simulated() { return rig::load(root + "/deploy/rigs/simulated.toml"); }
 
-std::string all_of(const std::vector<text::Problem>& problems) {
+std::string all_of(const std::vector<core::Problem>& problems) {
   std::string all;
   for (const auto& problem : problems) all += format(problem) + "\n";
   return all;

@@ -2,9 +2,9 @@
 
 #include <set>
 
+#include "station/core/read_file.hpp"
+#include "station/core/toml.hpp"
 #include "station/protocol/survey.hpp"
-#include "station/system/read_file.hpp"
-#include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/quick_rig.hpp"
 
@@ -16,8 +16,7 @@ namespace {
 /// Returns the protocol speed-accuracy with these triggers. Its two conditions are its two instructions.
 protocol::Protocol with(const std::string& triggers) {
   const auto source =
-      system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/speed-accuracy.toml") + "\n" +
-      triggers;
+      core::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/speed-accuracy.toml") + "\n" + triggers;
   return protocol::parse(source, "p.toml");
 }
 
@@ -25,7 +24,7 @@ std::string problem_with(const std::string& triggers) {
   std::string all;
   try {
     with(triggers);
-  } catch (const text::BadInput& bad) {
+  } catch (const core::BadInput& bad) {
     for (const auto& problem : bad.problems()) all += format(problem) + "\n";
   }
   return all;

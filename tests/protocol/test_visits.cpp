@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "station/core/read_file.hpp"
+#include "station/core/toml.hpp"
 #include "station/protocol/interludes.hpp"
 #include "station/protocol/visits.hpp"
-#include "station/system/read_file.hpp"
-#include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -17,7 +17,7 @@ using protocol::Visit;
 namespace {
 
 std::string shipped(const std::string& name) {
-  return system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
+  return core::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
 }
 
 void put(std::string& text, const std::string& before, const std::string& what) {

@@ -4,11 +4,11 @@
 #include <set>
 #include <sstream>
 
+#include "station/core/read_file.hpp"
+#include "station/core/toml.hpp"
 #include "station/protocol/design_advice.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/protocol/survey.hpp"
-#include "station/system/read_file.hpp"
-#include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/quick_rig.hpp"
 
@@ -31,7 +31,7 @@ std::string with_lines(std::string text) {
 
 std::vector<Case> cases_in(const fs::path& path) {
   std::vector<Case> cases;
-  std::istringstream lines(system::read_file(path.string()));
+  std::istringstream lines(core::read_file(path.string()));
   for (std::string line; std::getline(lines, line);) {
     if (line.rfind("## ", 0) == 0) {
       cases.push_back({line.substr(3), "", {}});
@@ -54,7 +54,7 @@ struct Edited {
 
 Edited edited(const Case& wanted) {
   Edited result;
-  auto text = system::read_file(root + "/protocols/" + wanted.base + ".toml");
+  auto text = core::read_file(root + "/protocols/" + wanted.base + ".toml");
   for (const auto& [from, to] : wanted.edits) {
     const auto at = text.find(from);
     INFO("edit: " << from);
@@ -80,13 +80,13 @@ const rig::Rig& quick() {
 }
 
 /// The problems of the file or, if there are none, those found by a survey on a rig.
-std::vector<text::Problem> said_of(const std::string& source) {
+std::vector<core::Problem> said_of(const std::string& source) {
   try {
     auto survey = protocol::survey(protocol::parse(source, "p.toml"), quick());
     auto said = survey.problems;
     said.insert(said.end(), survey.warnings.begin(), survey.warnings.end());
     return said;
-  } catch (const text::BadInput& error) {
+  } catch (const core::BadInput& error) {
     return error.problems();
   }
 }

@@ -2,18 +2,18 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "station/core/read_file.hpp"
+#include "station/rehearsal/rehearsal.hpp"
 #include "station/report/html.hpp"
 #include "station/report/stored_estimates.hpp"
 #include "station/report/stored_trials.hpp"
-#include "station/simulation/rehearsal.hpp"
-#include "station/system/read_file.hpp"
 #include "tests/support/catch.hpp"
 
 namespace turnpoint {
 
 /// The text of a shipped protocol.
 inline std::string shipped(const std::string& name) {
-  return system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
+  return core::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
 }
 
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -25,8 +25,8 @@ inline std::string replaced(std::string text, const std::string& from, const std
 inline report::SessionData data_of(const std::string& source, const std::string& observer = "sim",
                                    int sequence_index = 0) {
   const auto protocol = protocol::parse(source, "p.toml");
-  const auto rehearsal = simulation::rehearse(
-      protocol, sequence_index, 5, simulation::rehearser(observer::Observer(observer::parse(observer))));
+  const auto rehearsal = rehearsal::rehearse(
+      protocol, sequence_index, 5, rehearsal::rehearser(simulation::Observer(simulation::parse(observer))));
   report::SessionData data;
   report::add_trials(rehearsal.blocks, protocol, data);
   report::add_estimates(rehearsal.blocks, protocol, 5, {}, data);

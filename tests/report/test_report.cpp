@@ -3,10 +3,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "station/plot/chart.hpp"
+#include "station/core/number.hpp"
+#include "station/report/chart.hpp"
 #include "station/report/figures.hpp"
 #include "station/report/html.hpp"
-#include "station/text/number.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/diffusion.hpp"
 
@@ -23,7 +23,7 @@ SessionData head() {
   data.run_mode = "simulated";
   data.status = "completed";
   data.facts = {{"Protocol", "speed-accuracy-change 1.0.0"}};
-  data.health = {{texts::plain("Underruns"), texts::plain("0")}};
+  data.health = {{core::plain("Underruns"), core::plain("0")}};
   data.level_label = "Change of friction";
   data.choices = {"Smoother", "Rougher"};
   data.replicates = 200;
@@ -33,8 +33,8 @@ SessionData head() {
 SessionData speed_accuracy(int per_level) {
   auto data = head();
   data.design = Design::two_sided;
-  data.function = terms::Function::normal;
-  random::Draws draws({3, random::Stream::observer, 0, 0, 0});
+  data.function = core::Function::normal;
+  core::Draws draws({3, core::Stream::observer, 0, 0, 0});
   for (const auto& [name, boundary] : {std::pair{"speed", 0.08}, {"accuracy", 0.14}})
     for (int i = 0; i < per_level; ++i)
       for (const double level : {-0.4, -0.2, -0.1, 0.1, 0.2, 0.4}) {
@@ -59,7 +59,7 @@ SessionData staircase_session() {
   data.level_label = "Friction contrast (dB)";
   data.level_unit = "dB";
   data.choices = {"First", "Second"};
-  random::Draws draws({4, random::Stream::observer, 0, 0, 0});
+  core::Draws draws({4, core::Stream::observer, 0, 0, 0});
   double level = -10;
   for (int i = 0; i < 120; ++i) {
     analysis::TrialRecord trial;
@@ -82,9 +82,9 @@ void keep(const std::string& name, const std::string& text) {
     std::ofstream(std::string(folder) + "/" + name) << text;
 }
 
-std::string shown(const std::optional<plot::Figure>& figure) {
+std::string shown(const std::optional<report::Figure>& figure) {
   REQUIRE(figure);
-  const auto svg = plot::render(*figure);
+  const auto svg = report::render(*figure);
   CHECK(svg.find("nan") == std::string::npos);
   return svg;
 }
@@ -134,7 +134,7 @@ TEST_CASE("Degenerate sessions give statements instead of numbers", "[report]") 
   }
   SECTION("timeouts only") {
     data.trials.resize(30);
-    for (auto& trial : data.trials) trial.outcome = terms::Outcome::timeout;
+    for (auto& trial : data.trials) trial.outcome = core::Outcome::timeout;
   }
   const auto summary = summarise(data);
   REQUIRE(summary.fits.size() == 1);
@@ -155,7 +155,7 @@ TEST_CASE("The report draws the vibration of each trial only if a pick-up measur
   const auto summary = summarise(data);
   const auto figure = vibration_figure(summary);
   REQUIRE(figure);
-  const auto& points = std::get<plot::Points>(figure->charts.front().layers.back());
+  const auto& points = std::get<report::Points>(figure->charts.front().layers.back());
   CHECK(points.x == std::vector<double>{1, 2, 3});
   CHECK(points.y == std::vector<double>{0.1, -40, -0.2});
   CHECK(points.open == std::vector<bool>{false, true, false});
@@ -202,12 +202,12 @@ TEST_CASE("If the answers determined the levels, the report states the posterior
   const auto& layers = figure->charts[0].layers;
   const double threshold = summary.fits[0].fit.parameters->threshold;
   CHECK(std::any_of(layers.begin(), layers.end(), [&](const auto& layer) {
-    const auto* rule = std::get_if<plot::Rule>(&layer);
-    return rule != nullptr && rule->direction == plot::Rule::Direction::vertical && rule->at == threshold &&
-           rule->label == "threshold " + text::number(threshold, 3) + " dB";
+    const auto* rule = std::get_if<report::Rule>(&layer);
+    return rule != nullptr && rule->direction == report::Rule::Direction::vertical && rule->at == threshold &&
+           rule->label == "threshold " + core::number(threshold, 3) + " dB";
   }));
   CHECK(std::any_of(layers.begin(), layers.end(), [&](const auto& layer) {
-    const auto* line = std::get_if<plot::Line>(&layer);
+    const auto* line = std::get_if<report::Line>(&layer);
     return line != nullptr && line->x.size() == 2 && line->x[0] == found.threshold->interval.low &&
            line->x[1] == found.threshold->interval.high && line->y[0] == line->y[1];
   }));
@@ -225,7 +225,7 @@ namespace {
 SessionData force_session() {
   auto data = speed_accuracy(6);
   data.conditions = {"speed", "accuracy"};
-  random::Draws draws({5, random::Stream::observer, 0, 0, 0});
+  core::Draws draws({5, core::Stream::observer, 0, 0, 0});
   for (const auto& trial : data.trials) {
     analysis::FingerTrial finger;
     finger.trial_index = trial.trial_index;
@@ -261,7 +261,7 @@ TEST_CASE("The report has the finger's force, speed and friction only if force c
   const auto forces = finger_figure(summary), friction = friction_figure(summary);
   REQUIRE((forces && friction));
   REQUIRE(forces->charts.size() == 2);
-  const auto& accuracy = std::get<plot::Points>(forces->charts[0].layers[1]);
+  const auto& accuracy = std::get<report::Points>(forces->charts[0].layers[1]);
   CHECK(accuracy.name == "accuracy");
   // the figure has at most 40 markers, so with 72 trials each marker is the mean of two
   const double one = *summary.data.finger[36].normal_N, two = *summary.data.finger[37].normal_N;
@@ -269,10 +269,10 @@ TEST_CASE("The report has the finger's force, speed and friction only if force c
   CHECK(accuracy.high.front() == std::max(one, two));
   CHECK(accuracy.low.front() == std::min(one, two));
   CHECK(accuracy.x.front() == 37.5);
-  const auto& shifts = std::get<plot::Points>(friction->charts[0].layers.back());
+  const auto& shifts = std::get<report::Points>(friction->charts[0].layers.back());
   CHECK(shifts.x == std::vector<double>{126, 138, 144, 156, 162, 174});
   CHECK(shifts.low.front() < shifts.y.front());
-  CHECK(std::get<plot::Points>(friction->charts[1].layers[1]).name == "rough side");
+  CHECK(std::get<report::Points>(friction->charts[1].layers[1]).name == "rough side");
   const auto html = to_html(summary);
   CHECK(html.find("<h2>The finger</h2>") != std::string::npos);
   CHECK(html.find("Felt minus planned boundary (mm)") != std::string::npos);
@@ -290,14 +290,14 @@ TEST_CASE("The report has the finger's force, speed and friction only if force c
     trial.trial_index += trial.trial_index < 35 ? 0 : 100;  // an odd number of trials, then another block
   }
   const auto two_blocks = finger_figure(summarise(apart));
-  const auto& means = std::get<plot::Points>(two_blocks->charts[0].layers[0]);
+  const auto& means = std::get<report::Points>(two_blocks->charts[0].layers[0]);
   for (const double x : means.x) CHECK((x <= 35 || x >= 136));
 
   auto few = force_session();
   few.finger.resize(12);
   few.finger[11].trial_index = 30;
   const auto each = finger_figure(summarise(few));
-  const auto& singles = std::get<plot::Points>(each->charts[0].layers[0]);
+  const auto& singles = std::get<report::Points>(each->charts[0].layers[0]);
   CHECK(singles.x.size() == 12);
   CHECK(singles.x.back() == 31);
   CHECK(singles.high == singles.y);

@@ -11,8 +11,8 @@ TEST_CASE("a report has each procedure's own estimate, as it was at the end of t
        {"friction-2ifc", "friction-staircase", "boundary-adaptive", "two-spots-oddity"}) {
     INFO(name);
     const auto protocol = protocol::parse(shipped(name), "p.toml");
-    const auto rehearsal = simulation::rehearse(
-        protocol, 0, 5, simulation::rehearser(observer::Observer(observer::parse("sim"))));
+    const auto rehearsal = rehearsal::rehearse(
+        protocol, 0, 5, rehearsal::rehearser(simulation::Observer(simulation::parse("sim"))));
     report::SessionData data;
     report::add_trials(rehearsal.blocks, protocol, data);
     report::add_estimates(rehearsal.blocks, protocol, 5, {}, data);
@@ -72,9 +72,9 @@ TEST_CASE("the report recomputes the estimates of the method of limits from the 
                     "start_ascending = { uniform = [-30.0, -20.0] }\n\n[[block]]");
   const auto protocol = protocol::parse(source, "p.toml");
   // many trials without an answer: some series end without a midpoint
-  const observer::Observer observer(observer::parse("sim:threshold=5,anticipation=0.4"));
+  const simulation::Observer observer(simulation::parse("sim:threshold=5,anticipation=0.4"));
   for (const std::uint64_t seed : {1, 2, 3}) {
-    const auto rehearsal = simulation::rehearse(protocol, 0, seed, simulation::rehearser(observer));
+    const auto rehearsal = rehearsal::rehearse(protocol, 0, seed, rehearsal::rehearser(observer));
     report::SessionData data;
     report::add_trials(rehearsal.blocks, protocol, data);
     report::add_estimates(rehearsal.blocks, protocol, seed, {}, data);
@@ -136,7 +136,7 @@ TEST_CASE("the threshold along the second dimension is reported, and no curve ov
 TEST_CASE("a procedure with a criterion is reported with it, beside the analysis of yes and no", "[report]") {
   const auto data = data_of(shipped("friction-yes-no"), "sim:threshold=0.1,criterion=1,lapse=0");
   CHECK(data.design == report::Design::yes_no);
-  CHECK(data.function == terms::Function::weibull);
+  CHECK(data.function == core::Function::weibull);
   const auto json = report_of(data);
   REQUIRE(json["fits"].size() == 1);
   double criterion = -10;

@@ -4,9 +4,9 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "station/core/toml.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/report/html.hpp"
-#include "station/text/toml.hpp"
 #include "tests/report/simulated_report.hpp"
 #include "tests/support/catch.hpp"
 
@@ -283,8 +283,8 @@ TEST_CASE("the report counts right answers for each degree of confidence", "[rep
 
 TEST_CASE("what force cells measured is taken from answered trials, with their condition", "[report]") {
   const auto protocol = protocol::parse(shipped("speed-accuracy"), "p.toml");
-  auto rehearsal =
-      simulation::rehearse(protocol, 0, 5, simulation::rehearser(observer::Observer(observer::parse("sim"))));
+  auto rehearsal = rehearsal::rehearse(protocol, 0, 5,
+                                       rehearsal::rehearser(simulation::Observer(simulation::parse("sim"))));
   report::SessionData none;
   report::add_trials(rehearsal.blocks, protocol, none);
   CHECK(none.finger.empty());
@@ -295,7 +295,7 @@ TEST_CASE("what force cells measured is taken from answered trials, with their c
       if (row.finger.sensing != "wire") row.finger.normal_N = 0.5, row.finger.contact_s = 2;
       row.boundary_mm = 150;
       row.finger.boundary_felt_mm = 151.5;
-      expected += !block.start.practice && row.outcome == terms::Outcome::answered ? 1 : 0;
+      expected += !block.start.practice && row.outcome == core::Outcome::answered ? 1 : 0;
     }
   report::SessionData data;
   report::add_trials(rehearsal.blocks, protocol, data);
@@ -335,17 +335,17 @@ namespace {
 
 /// Answers every trial by a rule, as a person does who is always right, always wrong, presses one key or
 /// none.
-report::SessionData answered_by(const std::string& source,
-                                const std::function<std::optional<int>(const observer::Question&)>& choice) {
+report::SessionData answered_by(
+    const std::string& source, const std::function<std::optional<int>(const simulation::Question&)>& choice) {
   const auto protocol = protocol::parse(source, "p.toml");
-  auto sits = simulation::rehearser(observer::Observer(observer::parse("sim:lapse=0")));
-  sits.answer = [&](const trial::TrialSpec&, const observer::Question& question) {
-    observer::Reply reply;
+  auto sits = rehearsal::rehearser(simulation::Observer(simulation::parse("sim:lapse=0")));
+  sits.answer = [&](const trial::TrialSpec&, const simulation::Question& question) {
+    simulation::Reply reply;
     reply.choice = choice(question);
     reply.response_time_s = reply.choice ? 0.6 : 100;
     return reply;
   };
-  const auto rehearsal = simulation::rehearse(protocol, 0, 5, sits);
+  const auto rehearsal = rehearsal::rehearse(protocol, 0, 5, sits);
   report::SessionData data;
   report::add_trials(rehearsal.blocks, protocol, data);
   report::add_estimates(rehearsal.blocks, protocol, 5, {}, data);
@@ -375,7 +375,7 @@ TEST_CASE("the function does not depend on the trials that a participant got", "
 TEST_CASE("levels of 0 on a log axis tell the guess rate and do not stop the report", "[report]") {
   report::SessionData data = data_of(shipped("friction-2ifc"), "sim:lapse=0");
   data.scale = analysis::Scale::log10;
-  data.function = terms::Function::weibull;
+  data.function = core::Function::weibull;
   data.prior.reset();
   int number = 0;
   for (auto& trial : data.trials)
@@ -448,7 +448,7 @@ TEST_CASE("each level factor has its own fit, with its own unit", "[report]") {
 }
 
 TEST_CASE("one key, always right and always wrong: there is a report with reasons", "[report]") {
-  using Choice = std::function<std::optional<int>(const observer::Question&)>;
+  using Choice = std::function<std::optional<int>(const simulation::Question&)>;
   // a rehearsal ends only if trials are answered; sweep.py has a person who never answers
   const Choice choices[] = {[](const auto&) { return 0; },
                             [](const auto& q) { return q.correct.value_or(0); },

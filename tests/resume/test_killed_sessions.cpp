@@ -8,9 +8,9 @@
 #include <optional>
 #include <random>
 
-#include "station/setup/prepare.hpp"
+#include "station/core/read_file.hpp"
+#include "station/session/prepare.hpp"
 #include "station/store/read.hpp"
-#include "station/system/read_file.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
 
@@ -103,7 +103,7 @@ std::vector<Case> chosen() {
 
 /// Writes the protocol with its edits into the folder, and returns its path.
 std::string written(const Case& wanted, const TemporaryFolder& folder) {
-  auto source = system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + wanted.file);
+  auto source = core::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + wanted.file);
   for (const auto& [from, to] : wanted.edits) {
     REQUIRE(source.find(from) != std::string::npos);
     source.replace(source.find(from), from.size(), to);
@@ -114,7 +114,7 @@ std::string written(const Case& wanted, const TemporaryFolder& folder) {
 }
 
 session::Setup prepared(const std::string& protocol, const Case& wanted, const std::string& db) {
-  setup::RunRequest request;
+  session::RunRequest request;
   request.protocol = protocol;
   request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
   request.participant = "P01";
@@ -123,7 +123,7 @@ session::Setup prepared(const std::string& protocol, const Case& wanted, const s
   request.seed = 42;
   request.headless = true;
   request.planned_session = wanted.planned_session;
-  return setup::prepare(request);
+  return session::prepare(request);
 }
 
 /// Begins a session, or continues the interrupted one, and runs it to its end.
@@ -156,16 +156,16 @@ bool killed_on_the_way(const session::Setup& setup, useconds_t after_us) {
   return WIFSIGNALED(status);
 }
 
-std::vector<records::TrialRow> trials_of(const std::string& db, const std::string& id) {
-  std::vector<records::TrialRow> trials;
+std::vector<core::TrialRow> trials_of(const std::string& db, const std::string& id) {
+  std::vector<core::TrialRow> trials;
   for (const auto& block : store::read_session(db, id).blocks)
     for (const auto& trial : block.trials)
-      if (trial.type != terms::TrialType::warmup) trials.push_back(trial);
+      if (trial.type != core::TrialType::warmup) trials.push_back(trial);
   return trials;
 }
 
 /// Compares what a trial presented and its result, but not its times.
-void check_equal(const records::TrialRow& a, const records::TrialRow& b) {
+void check_equal(const core::TrialRow& a, const core::TrialRow& b) {
   CHECK(a.trial_in_block == b.trial_in_block);
   CHECK(a.type == b.type);
   CHECK(a.procedure == b.procedure);
@@ -212,8 +212,8 @@ void check_killed(const Case& wanted) {
     auto raw = sample::raw(db);
     CHECK(raw.text("PRAGMA integrity_check") == "ok");
     for (const auto& session : store::list_sessions(db)) {
-      if (session.status == records::SessionStatus::abandoned) continue;
-      CHECK(session.status == records::SessionStatus::completed);
+      if (session.status == core::SessionStatus::abandoned) continue;
+      CHECK(session.status == core::SessionStatus::completed);
       resumed += session.segments > 1 ? 1 : 0;
       const auto trials = trials_of(db, session.session_id);
       REQUIRE(trials.size() == expected.size());

@@ -1,9 +1,9 @@
 #pragma once
 #include <string>
 
+#include "station/core/read_file.hpp"
+#include "station/core/toml.hpp"
 #include "station/rig/rig.hpp"
-#include "station/system/read_file.hpp"
-#include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 
 namespace turnpoint::rig_sample {
@@ -12,7 +12,7 @@ inline const std::string simulated = std::string(TURNPOINT_SOURCE_DIR) + "/deplo
 
 /// Returns a rig file into which the tests put mistakes.
 inline std::string source() {
-  return system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml");
+  return core::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml");
 }
 
 inline std::string replaced(std::string where, const std::string& from, const std::string& to) {
@@ -26,7 +26,7 @@ inline std::string problems(const std::string& from, const std::string& to) {
   try {
     rig::parse(replaced(source(), from, to), "r.toml");
     return "";
-  } catch (const text::BadInput& error) {
+  } catch (const core::BadInput& error) {
     return error.what();
   }
 }

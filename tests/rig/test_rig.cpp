@@ -31,7 +31,7 @@ TEST_CASE("the simulated rig loads in SI units", "[rig]") {
   CHECK_FALSE(rig.friction.measured);
   CHECK(rig.friction.fingertip_m == Approx(0.01));
   CHECK(rig.limits.displacement_m == Approx(8e-6));
-  CHECK(rig.sha256 == rig::parse(system::read_file(simulated), "elsewhere").sha256);
+  CHECK(rig.sha256 == rig::parse(core::read_file(simulated), "elsewhere").sha256);
 }
 
 TEST_CASE("a rig states the finger that loads its surface, in N s/m, degrees and mm", "[rig]") {
@@ -94,8 +94,8 @@ TEST_CASE("the converter's delay is read in ms, and a negative one is refused", 
                       "r.toml");
   };
   CHECK(with("converter_delay_ms = 0.104").output.converter_delay_s == Approx(0.104e-3));
-  CHECK_THROWS_AS(with("converter_delay_ms = -0.1"), text::BadInput);
-  CHECK_THROWS_AS(with("converter_delay_ms = \"0.1\""), text::BadInput);
+  CHECK_THROWS_AS(with("converter_delay_ms = -0.1"), core::BadInput);
+  CHECK_THROWS_AS(with("converter_delay_ms = \"0.1\""), core::BadInput);
 }
 
 TEST_CASE("all mistakes in a rig file are reported at once, each with its line", "[rig]") {
@@ -105,7 +105,7 @@ TEST_CASE("all mistakes in a rig file are reported at once, each with its line",
   try {
     rig::parse(bad, "r.toml");
     FAIL("the file has three mistakes");
-  } catch (const text::BadInput& error) {
+  } catch (const core::BadInput& error) {
     const std::string all = error.what();
     // the misspelt key causes two problems: it is unknown, and the right key is missing
     CHECK(error.problems().size() == 4);
@@ -157,7 +157,7 @@ TEST_CASE("a plate needs its modulus, a tensioned membrane may leave it out", "[
   auto without = replaced(replaced(source(), "material = \"aluminium\"\n", ""),
                           "modulus_GPa = 69\npoisson = 0.33\n", "");
   without = replaced(without, "temperature_sd_K = 3\n", "");
-  CHECK_THROWS_AS(rig::parse(without, "r.toml"), text::BadInput);
+  CHECK_THROWS_AS(rig::parse(without, "r.toml"), core::BadInput);
   const auto membrane = rig::parse(replaced(without, "tension_Pa = 0 ", "tension_Pa = 1e8 "), "r.toml");
   CHECK_FALSE(membrane.surface.modulus_Pa.has_value());
 }
@@ -214,25 +214,25 @@ TEST_CASE("tables beside the rig file are read, and their rows checked", "[rig]"
     try {
       parsed();
       FAIL("the points were accepted");
-    } catch (const text::BadInput& error) {
+    } catch (const core::BadInput& error) {
       CHECK(contains(error.what(), "decimal commas, so its numbers may not have points"));
     }
   }
   SECTION("a friction that grows with the displacement is refused") {
     write("friction.csv", "displacement_um,relative_friction\n0,0.5\n1,0.6\n");
-    CHECK_THROWS_AS(parsed(), text::BadInput);
+    CHECK_THROWS_AS(parsed(), core::BadInput);
   }
   SECTION("a response that does not cover the band is refused") {
     write("response.csv", "frequency_Hz,um_per_full_scale,phase_deg\n14000,4,0\n50000,2,0\n");
-    CHECK_THROWS_AS(parsed(), text::BadInput);
+    CHECK_THROWS_AS(parsed(), core::BadInput);
   }
   SECTION("a cell that is no number is refused") {
     write("response.csv", "frequency_Hz,um_per_full_scale,phase_deg\n14000,4,0\n60000,two,0\n");
-    CHECK_THROWS_AS(parsed(), text::BadInput);
+    CHECK_THROWS_AS(parsed(), core::BadInput);
   }
 }
 
 TEST_CASE("a rig file that is missing, or is a folder, is bad input", "[rig]") {
-  CHECK_THROWS_AS(rig::load("no/such/rig.toml"), text::BadInput);
-  CHECK_THROWS_AS(rig::load("/tmp"), text::BadInput);
+  CHECK_THROWS_AS(rig::load("no/such/rig.toml"), core::BadInput);
+  CHECK_THROWS_AS(rig::load("/tmp"), core::BadInput);
 }

@@ -8,9 +8,7 @@
 using namespace turnpoint;
 
 namespace {
-std::string schema() {
-  return text::json_schema(rig::rig_keys(), "Turnpoint rig file (friction-rig/1)");
-}
+std::string schema() { return core::json_schema(rig::rig_keys(), "Turnpoint rig file (friction-rig/1)"); }
 }  // namespace
 
 TEST_CASE("the rig schema for editors follows from the declared keys", "[rig]") {
@@ -18,10 +16,10 @@ TEST_CASE("the rig schema for editors follows from the declared keys", "[rig]") 
 }
 
 TEST_CASE("the reference of rig keys on the page follows from the declared keys", "[rig]") {
-  CHECK(tests::generated_part("deploy/rigs/README.md") == text::reference(rig::rig_keys()));
+  CHECK(tests::generated_part("deploy/rigs/README.md") == core::reference(rig::rig_keys()));
 }
 
 TEST_CASE("writes the schema and the reference of rigs", "[.write]") {
   tests::write_source("deploy/rigs/rig.schema.json", schema());
-  tests::write_generated_part("deploy/rigs/README.md", text::reference(rig::rig_keys()));
+  tests::write_generated_part("deploy/rigs/README.md", core::reference(rig::rig_keys()));
 }

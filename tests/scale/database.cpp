@@ -6,12 +6,12 @@
 #include <fstream>
 #include <iterator>
 
+#include "station/core/number.hpp"
 #include "station/store/checksum.hpp"
 #include "station/store/open.hpp"
 #include "station/store/rows.hpp"
 #include "station/store/seal.hpp"
 #include "station/store/session_log.hpp"
-#include "station/text/number.hpp"
 
 using namespace turnpoint;
 using namespace turnpoint::store;
@@ -36,13 +36,13 @@ SessionStart start_of(int session, const std::string& station) {
   start.protocol_version = "1.0.0";
   start.protocol_path = "protocols/demo.toml";
   start.protocol_text = start.protocol_canonical = protocol;
-  start.protocol_sha256 = text::sha256(protocol);
+  start.protocol_sha256 = core::sha256(protocol);
   start.factor_columns = {"offset_mm", "mark_mm"};
   start.level_unit = "mm";
   start.rig_name = "simulated";
   start.rig_path = "deploy/rigs/simulated.toml";
   start.rig_text = rig;
-  start.rig_sha256 = text::sha256(rig);
+  start.rig_sha256 = core::sha256(rig);
   start.seed = static_cast<std::uint64_t>(session);
   start.language = "en";
   start.software_version = "scale";

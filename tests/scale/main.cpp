@@ -15,12 +15,12 @@ using namespace turnpoint;
 namespace {
 
 void begin(const std::string& path) {
-  records::SessionStart start;
+  core::SessionStart start;
   start.participant = "P99999";
   start.station_id = "scale";
   start.protocol_id = "demo";
   auto log = store::SessionLog::begin(path, start, {});
-  log.finish(records::SessionStatus::stopped, "");
+  log.finish(core::SessionStatus::stopped, "");
 }
 
 int run(const std::string& what, int argc, char** argv) {

@@ -3,14 +3,14 @@
 #include <cmath>
 #include <vector>
 
-#include "station/terms/limits.hpp"
+#include "station/core/limits.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::scene;
 
 TEST_CASE("the carrier keeps away from the harmonics of mains", "[scene]") {
   for (const double mains : {50.0, 60.0})
-    CHECK(std::abs(std::remainder(turnpoint::terms::kForceCarrier_Hz, mains)) >= 20);
+    CHECK(std::abs(std::remainder(turnpoint::core::kForceCarrier_Hz, mains)) >= 20);
 }
 
 TEST_CASE("the product of tones that is nearest to the carrier is named", "[scene]") {

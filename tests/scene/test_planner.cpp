@@ -4,9 +4,9 @@
 
 #include "physics/centre_line.hpp"
 #include "physics/edge_feature.hpp"
+#include "station/core/texts.hpp"
 #include "station/scene/sound.hpp"
 #include "station/scene/under_finger.hpp"
-#include "station/texts/texts.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -219,7 +219,7 @@ TEST_CASE("what prevents a plan, and what a tolerance lacks, is said in the lang
     try {
       Planner(simulated()).plan(scene);
     } catch (const Unreachable& refused) {
-      return texts::say(refused.why(), language);
+      return core::say(refused.why(), language);
     }
     return std::string();
   };
@@ -234,9 +234,9 @@ TEST_CASE("what prevents a plan, and what a tolerance lacks, is said in the lang
   strict.tolerance = {1e-9, {}, {}};
   const auto plan = Planner(simulated()).plan(strict);
   REQUIRE_FALSE(plan.inside_tolerance);
-  CHECK(texts::say(plan.beyond_tolerance, "de")
+  CHECK(core::say(plan.beyond_tolerance, "de")
             .find("der Fehler des Modells \u201emodes\u201c kann gr\u00f6\u00dfer sein") == 0);
-  CHECK(texts::say(plan.beyond_tolerance, "en").find("tolerance 1e-06 mm") != std::string::npos);
+  CHECK(core::say(plan.beyond_tolerance, "en").find("tolerance 1e-06 mm") != std::string::npos);
 }
 
 TEST_CASE(

@@ -1,8 +1,8 @@
 #include "station/scene/sound.hpp"
 
 #include "physics/airborne.hpp"
+#include "station/core/limits.hpp"
 #include "station/scene/planner.hpp"
-#include "station/terms/limits.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/quick_rig.hpp"
 
@@ -25,9 +25,9 @@ scene::SoundBound bound_of(const rig::Rig& rig, const std::vector<physics::Tone>
 }  // namespace
 
 TEST_CASE("the limit is 75 dB in the third-octave bands up to 20 kHz and 110 dB above", "[scene][sound]") {
-  CHECK(terms::allowed_sound_dB(20000) == 75);
-  CHECK(terms::allowed_sound_dB(22399) == 75);
-  CHECK(terms::allowed_sound_dB(22400) == 110);
+  CHECK(core::allowed_sound_dB(20000) == 75);
+  CHECK(core::allowed_sound_dB(22399) == 75);
+  CHECK(core::allowed_sound_dB(22400) == 110);
 }
 
 TEST_CASE("the powers of tones in one third-octave band add up, but not those of tones in different bands",

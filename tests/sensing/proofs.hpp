@@ -7,16 +7,16 @@
 #include <random>
 #include <vector>
 
-#include "station/drive/synth.hpp"
+#include "station/audio/synth.hpp"
 #include "station/sensing/interval_proof.hpp"
 #include "tests/sensing/room.hpp"
 #include "tests/support/catch.hpp"
 
 namespace turnpoint::sensing {
 
-inline drive::Burst burst_of(std::vector<drive::Tone> tones, std::int64_t length = 76800,
+inline audio::Burst burst_of(std::vector<audio::Tone> tones, std::int64_t length = 76800,
                              std::int64_t ramp = 960) {
-  drive::Burst burst;
+  audio::Burst burst;
   burst.start_frame = 123'456'789'012;
   burst.length_frames = length;
   burst.ramp.frames = ramp;
@@ -25,14 +25,14 @@ inline drive::Burst burst_of(std::vector<drive::Tone> tones, std::int64_t length
   return burst;
 }
 
-inline drive::Burst three_tones() {
+inline audio::Burst three_tones() {
   return burst_of({{25000.5, 0.3, 0.2, 0}, {30321.7, 0.25, 1.9, 0}, {36543.2, 0.2, -2.5, 0}});
 }
 
 /// Tones at least 1 kHz apart between 22 and 46 kHz. Phases are random, and levels are random within 10 dB.
-inline drive::Burst random_burst(std::mt19937_64& random, int tones, double steady_s) {
+inline audio::Burst random_burst(std::mt19937_64& random, int tones, double steady_s) {
   std::uniform_real_distribution<double> uniform(0, 1);
-  std::vector<drive::Tone> made;
+  std::vector<audio::Tone> made;
   const double room_Hz = 24000.0 - 1000.0 * (tones - 1);
   std::vector<double> places;
   for (int i = 0; i < tones; ++i) places.push_back(room_Hz * uniform(random));
@@ -45,9 +45,9 @@ inline drive::Burst random_burst(std::mt19937_64& random, int tones, double stea
   return burst;
 }
 
-inline IntervalPlan plan_of(const Room& room, const drive::Burst& burst) {
+inline IntervalPlan plan_of(const Room& room, const audio::Burst& burst) {
   IntervalPlan plan;
-  plan.burst = drive::prepare(burst, {room.rate_Hz, 2, 24});
+  plan.burst = audio::prepare(burst, {room.rate_Hz, 2, 24});
   plan.rate_Hz = room.rate_Hz;
   plan.capture_channels = room.channels;
   for (const SimplePickUp& pick_up : room.pick_ups) plan.pick_ups.push_back(calibrated(pick_up));
@@ -55,7 +55,7 @@ inline IntervalPlan plan_of(const Room& room, const drive::Burst& burst) {
   return plan;
 }
 
-inline IntervalResult proven(const Room& room, const drive::Burst& burst,
+inline IntervalResult proven(const Room& room, const audio::Burst& burst,
                              std::optional<bool> in_contact = false,
                              const IntervalPlan* other_plan = nullptr) {
   IntervalProof proof(other_plan != nullptr ? *other_plan : plan_of(room, burst));

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "station/drive/burst.hpp"
+#include "station/audio/burst.hpp"
 #include "station/sensing/capture_block.hpp"
 #include "station/sensing/pick_up.hpp"
 
@@ -65,7 +65,7 @@ inline std::int32_t converted(double value) {
 }
 
 /// Returns the gain of a burst with raised-cosine ramps at the time t (s) since its start.
-inline long double gate(const drive::Burst& burst, int rate_Hz, long double t) {
+inline long double gate(const audio::Burst& burst, int rate_Hz, long double t) {
   // The synthesiser computes the ramp at the middle of each frame.
   const long double at = t * rate_Hz + 0.5L, ramp = static_cast<long double>(burst.ramp.frames),
                     left = static_cast<long double>(burst.length_frames) - at;
@@ -77,7 +77,7 @@ inline long double gate(const drive::Burst& burst, int rate_Hz, long double t) {
 }
 
 /// Returns captured frames [first, first + count) of a room in which the burst is played.
-inline std::vector<std::int32_t> captured(const Room& room, const drive::Burst& burst, std::int64_t first,
+inline std::vector<std::int32_t> captured(const Room& room, const audio::Burst& burst, std::int64_t first,
                                           std::int64_t count) {
   const auto channels = static_cast<std::size_t>(room.channels);
   std::vector<std::int32_t> samples(static_cast<std::size_t>(count) * channels);
@@ -93,7 +93,7 @@ inline std::vector<std::int32_t> captured(const Room& room, const drive::Burst& 
       double value = 0;
       if (envelope > 0) {
         for (int i = 0; i < burst.tones.count; ++i) {
-          const drive::Tone& tone = burst.tones.tones[static_cast<std::size_t>(i)];
+          const audio::Tone& tone = burst.tones.tones[static_cast<std::size_t>(i)];
           const auto f = static_cast<long double>(tone.frequency_Hz) * room.frequency_factor;
           const auto h = pick_up.response(tone.frequency_Hz);
           value += tone.amplitude * std::abs(h) *

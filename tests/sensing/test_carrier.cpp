@@ -5,7 +5,7 @@
 #include <complex>
 #include <stdexcept>
 
-#include "station/terms/usage_error.hpp"
+#include "station/core/usage_error.hpp"
 #include "tests/sensing/bridge_signal.hpp"
 #include "tests/support/catch.hpp"
 
@@ -246,7 +246,7 @@ TEST_CASE("impossible wiring of the bridges is refused", "[sensing]") {
   const auto refused = [](auto change) {
     auto options = bridge_options();
     change(options);
-    CHECK_THROWS_AS(BridgeDemodulator(options), terms::UsageError);
+    CHECK_THROWS_AS(BridgeDemodulator(options), core::UsageError);
   };
   refused([](BridgeOptions& o) { o.rate_Hz = 44100; });
   refused([](BridgeOptions& o) { o.carrier_Hz = 500; });

@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "station/terms/usage_error.hpp"
+#include "station/core/usage_error.hpp"
 #include "tests/sensing/cells.hpp"
 #include "tests/sensing/studies.hpp"
 #include "tests/support/catch.hpp"
@@ -133,8 +133,8 @@ TEST_CASE("weights without a pull along the surface are not enough", "[sensing]"
   std::vector<DeadWeight> all;
   for (const double place : {20.0, 80.0, 140.0})
     for (const double force : {0.2, 1.0}) all.push_back({force, 0, place, cells.readings(force, 0, place)});
-  CHECK_THROWS_AS(fit_weights(all), terms::UsageError);
-  CHECK_THROWS_AS(fit_weights({all[0], all[1]}), terms::UsageError);
+  CHECK_THROWS_AS(fit_weights(all), core::UsageError);
+  CHECK_THROWS_AS(fit_weights({all[0], all[1]}), core::UsageError);
   all.push_back({1, 0.5, 80, cells.readings(1, 0.5, 80)});
   CHECK_NOTHROW(fit_weights(all));
 }

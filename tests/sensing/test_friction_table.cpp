@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "station/terms/usage_error.hpp"
+#include "station/core/usage_error.hpp"
 #include "tests/sensing/studies.hpp"
 #include "tests/support/catch.hpp"
 
@@ -174,8 +174,8 @@ TEST_CASE(
   strokes = good;
   for (auto& stroke : strokes)
     if (stroke.displacement_m == levels_m[3] && spoiled < 4) stroke.friction = 0, ++spoiled;
-  CHECK_THROWS_AS(friction_table(strokes, 1, 10), terms::UsageError);
-  CHECK_THROWS_AS(friction_table({}, 1, 10), terms::UsageError);
+  CHECK_THROWS_AS(friction_table(strokes, 1, 10), core::UsageError);
+  CHECK_THROWS_AS(friction_table({}, 1, 10), core::UsageError);
 }
 
 TEST_CASE("every level comes equally often, each between strokes at rest", "[sensing]") {

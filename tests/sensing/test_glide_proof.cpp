@@ -9,13 +9,13 @@
 
 using namespace turnpoint;
 using namespace turnpoint::sensing;
-using terms::Proof;
-using terms::ProofCause;
+using core::Proof;
+using core::ProofCause;
 
 namespace {
 
 constexpr int kRate_Hz = 192000;
-constexpr drive::Format kFormat{kRate_Hz, 1, 24};
+constexpr audio::Format kFormat{kRate_Hz, 1, 24};
 
 /// Resonances every 1.5 kHz.
 struct Plate {
@@ -54,14 +54,14 @@ struct Lab {
   double quality = 60;
   int delay_frames = 700;
   std::function<double(std::int64_t)> gain_at = [](std::int64_t) { return 1.0; };  ///< by frame of the burst
-  std::optional<drive::Burst> played = {};  ///< what is really played, if it is not what was planned
-  std::vector<std::pair<std::int64_t, drive::Change>> live = {};  ///< when each live change is sent
+  std::optional<audio::Burst> played = {};  ///< what is really played, if it is not what was planned
+  std::vector<std::pair<std::int64_t, audio::Change>> live = {};  ///< when each live change is sent
   std::int64_t told_late_frames = 0;  ///< by how much later the proof learns of it
 };
 
-IntervalPlan plan_of(const Lab& lab, const drive::Burst& burst) {
+IntervalPlan plan_of(const Lab& lab, const audio::Burst& burst) {
   IntervalPlan plan;
-  plan.burst = drive::prepare(burst, kFormat);
+  plan.burst = audio::prepare(burst, kFormat);
   plan.capture_channels = 1;
   plan.delay_frames = lab.delay_frames;
   Transfer transfer{0, {}, {}};
@@ -75,9 +75,9 @@ IntervalPlan plan_of(const Lab& lab, const drive::Burst& burst) {
 }
 
 /// Plays the burst in the laboratory and proves it, block by block.
-IntervalResult proven_in(const Lab& lab, const drive::Burst& burst, std::optional<bool> in_contact = false) {
-  drive::Synth synth(kFormat);
-  auto played = drive::prepare(lab.played.value_or(burst), kFormat);
+IntervalResult proven_in(const Lab& lab, const audio::Burst& burst, std::optional<bool> in_contact = false) {
+  audio::Synth synth(kFormat);
+  auto played = audio::prepare(lab.played.value_or(burst), kFormat);
   played.id = 1;
   auto control = played;
   REQUIRE(synth.start(played));
@@ -91,7 +91,7 @@ IntervalResult proven_in(const Lab& lab, const drive::Burst& burst, std::optiona
   std::size_t sent = 0, told = 0, place = 0;
   for (std::int64_t frame = 0; !proof.complete(); frame += block) {
     while (sent < lab.live.size() && lab.live[sent].first < frame + block) {
-      REQUIRE(synth.change(1, drive::prepare_change(lab.live[sent].second, control, kFormat)));
+      REQUIRE(synth.change(1, audio::prepare_change(lab.live[sent].second, control, kFormat)));
       ++sent;
     }
     for (; told < lab.live.size() && lab.live[told].first + lab.told_late_frames < frame + block; ++told)
@@ -108,11 +108,11 @@ IntervalResult proven_in(const Lab& lab, const drive::Burst& burst, std::optiona
   return proof.result(in_contact);
 }
 
-drive::Change change_to(const drive::Burst& burst, std::int64_t at, std::int64_t frames) {
+audio::Change change_to(const audio::Burst& burst, std::int64_t at, std::int64_t frames) {
   return {at, frames, burst.tones};
 }
 
-drive::Burst gliding(const drive::Burst& from, const drive::Burst& to, std::int64_t frames) {
+audio::Burst gliding(const audio::Burst& from, const audio::Burst& to, std::int64_t frames) {
   auto burst = from;
   burst.start_frame = 10'000;
   burst.length_frames = 96'000;
@@ -204,8 +204,8 @@ TEST_CASE("a stop during a glide leaves what was played before it proven", "[sen
   const auto burst = gliding(kBefore, kAfter, 9'600);
   Lab lab;
   IntervalProof proof(plan_of(lab, burst));
-  drive::Synth synth(kFormat);
-  REQUIRE(synth.start(drive::prepare(burst, kFormat)));
+  audio::Synth synth(kFormat);
+  REQUIRE(synth.start(audio::prepare(burst, kFormat)));
   Plate plate(lab.quality);
   std::vector<double> out(110'000);
   synth.render(0, std::span(out));

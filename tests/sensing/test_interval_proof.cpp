@@ -7,8 +7,8 @@
 
 using namespace turnpoint;
 using namespace turnpoint::sensing;
-using terms::Proof;
-using terms::ProofCause;
+using core::Proof;
+using core::ProofCause;
 
 TEST_CASE("an interval that vibrates as planned is proven", "[sensing][proof]") {
   const IntervalResult proof = proven(Room{}, three_tones());
@@ -278,9 +278,9 @@ TEST_CASE("both sets of tones of a burst with a change are proven as the synthes
   burst.changes[0].at_frame = 40'000;
   burst.changes[0].frames = 9600;
   burst.changes[0].to = burst_of({{26000.5, 0.2, 0, 0}, {30321.7, 0.3, 0, 0}, {35000.1, 0.1, 0.4, 0}}).tones;
-  const drive::Format format{192000, 1, 24};
-  drive::Synth synth(format);
-  REQUIRE(synth.start(drive::prepare(burst, format)));
+  const audio::Format format{192000, 1, 24};
+  audio::Synth synth(format);
+  REQUIRE(synth.start(audio::prepare(burst, format)));
   std::vector<std::int32_t> samples(120'000);
   synth.render(0, std::span(samples));
   Room room;

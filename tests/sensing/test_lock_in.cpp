@@ -3,7 +3,7 @@
 #include <cstring>
 #include <vector>
 
-#include "station/drive/sine.hpp"
+#include "station/audio/sine.hpp"
 #include "station/sensing/lock_in.hpp"
 #include "tests/sensing/room.hpp"
 #include "tests/support/catch.hpp"
@@ -21,7 +21,7 @@ struct Point {
 };
 
 FollowedTone followed(double frequency_Hz, double phase_rad, std::int64_t origin, int rate_Hz) {
-  return {{drive::phase_of_angle(phase_rad), drive::phase_increment(frequency_Hz, rate_Hz), 0, 0, 0}, origin};
+  return {{audio::phase_of_angle(phase_rad), audio::phase_increment(frequency_Hz, rate_Hz), 0, 0, 0}, origin};
 }
 
 std::vector<Point> points_of(LockIn& lock_in, const Room& room, std::span<const std::int32_t> samples,
@@ -35,8 +35,8 @@ std::vector<Point> points_of(LockIn& lock_in, const Room& room, std::span<const 
   return points;
 }
 
-drive::Burst two_tones() {
-  drive::Burst burst;
+audio::Burst two_tones() {
+  audio::Burst burst;
   burst.start_frame = 1'000'000'007;
   burst.length_frames = 60000;
   burst.ramp.frames = 960;
@@ -168,7 +168,7 @@ TEST_CASE("a lock-in follows a tone that glides", "[sensing]") {
   // The tone glides from 30 to 32 kHz in 0.2 s; its phase is 2 pi (f t + slope t^2 / 2).
   constexpr int rate = 192000;
   constexpr std::int64_t frames = 38400, origin = 5'000'000'000;
-  const std::uint64_t from = drive::phase_increment(30000, rate), to = drive::phase_increment(32000, rate);
+  const std::uint64_t from = audio::phase_increment(30000, rate), to = audio::phase_increment(32000, rate);
   const std::uint64_t curvature = (to - from) / frames;
   std::vector<std::int32_t> samples(frames);
   for (std::int64_t n = 0; n < frames; ++n) {

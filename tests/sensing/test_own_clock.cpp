@@ -21,8 +21,8 @@ constexpr std::int64_t start_ns = 5'000'000'000'000;
 
 /// Playback at 192 kHz, 0.3 promille too fast, whose frame 0 leaves the converter 2 s before the first
 /// sample.
-drive::ClockFit playback() {
-  drive::ClockFit fit;
+audio::ClockFit playback() {
+  audio::ClockFit fit;
   fit.time_ns = start_ns - 2'000'000'000;
   fit.ns_per_frame = 1e9 / 192'000 / 1.0003;
   fit.pairs = 1024;

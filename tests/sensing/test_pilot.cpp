@@ -3,7 +3,7 @@
 #include <random>
 #include <vector>
 
-#include "station/drive/synth.hpp"
+#include "station/audio/synth.hpp"
 #include "station/sensing/pilot.hpp"
 #include "tests/sensing/room.hpp"
 #include "tests/support/catch.hpp"
@@ -127,9 +127,9 @@ TEST_CASE("a pilot with lost frames gives no delay", "[sensing][pilot]") {
 
 TEST_CASE("the synthesiser plays the pilot that the listener knows", "[sensing][pilot]") {
   const Pilot pilot;
-  const drive::Format format{pilot.rate_Hz, 1, 24};
-  drive::Synth synth(format);
-  REQUIRE(synth.start(drive::prepare(pilot_burst(pilot, 50), format)));
+  const audio::Format format{pilot.rate_Hz, 1, 24};
+  audio::Synth synth(format);
+  REQUIRE(synth.start(audio::prepare(pilot_burst(pilot, 50), format)));
   std::vector<double> samples(2100);
   synth.render(0, std::span(samples));
   double largest = 0;

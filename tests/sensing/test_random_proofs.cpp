@@ -8,15 +8,15 @@
 
 using namespace turnpoint;
 using namespace turnpoint::sensing;
-using terms::Proof;
-using terms::ProofCause;
+using core::Proof;
+using core::ProofCause;
 
 namespace {
 
-double planned_rms(const Room& room, const drive::Burst& burst) {
+double planned_rms(const Room& room, const audio::Burst& burst) {
   double square = 0;
   for (int i = 0; i < burst.tones.count; ++i) {
-    const drive::Tone& tone = burst.tones.tones[static_cast<std::size_t>(i)];
+    const audio::Tone& tone = burst.tones.tones[static_cast<std::size_t>(i)];
     square += std::norm(tone.amplitude * room.pick_ups[0].response(tone.frequency_Hz)) / 2;
   }
   return std::sqrt(square);

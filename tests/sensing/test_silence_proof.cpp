@@ -12,8 +12,8 @@
 
 using namespace turnpoint;
 using namespace turnpoint::sensing;
-using terms::Proof;
-using terms::ProofCause;
+using core::Proof;
+using core::ProofCause;
 
 namespace {
 

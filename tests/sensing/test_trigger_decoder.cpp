@@ -3,8 +3,8 @@
 #include <random>
 #include <vector>
 
-#include "station/drive/synth.hpp"
-#include "station/drive/trigger_code.hpp"
+#include "station/audio/synth.hpp"
+#include "station/audio/trigger_code.hpp"
 #include "station/sensing/trigger_decoder.hpp"
 #include "tests/sensing/room.hpp"
 #include "tests/support/catch.hpp"
@@ -145,15 +145,15 @@ TEST_CASE("a code is found in noise 10 dB below it, and at 0.05 of full scale", 
 
 TEST_CASE("the drive plays the codes that its documentation describes, at the frames of the events",
           "[sensing][trigger]") {
-  drive::Burst burst;
+  audio::Burst burst;
   burst.start_frame = 1234;
   burst.length_frames = 40000;
   burst.change_count = 2;
   burst.changes[0].at_frame = 8001, burst.changes[1].at_frame = 20003;
   burst.changes[0].frames = burst.changes[1].frames = 10;
-  burst.marker = {drive::MarkerKind::code, 1, 0.5, 0, bit, {17, 0, 255}};
-  drive::Synth synth({rate, 2, 24});
-  REQUIRE(synth.start(drive::prepare(burst, {rate, 2, 24})));
+  burst.marker = {audio::MarkerKind::code, 1, 0.5, 0, bit, {17, 0, 255}};
+  audio::Synth synth({rate, 2, 24});
+  REQUIRE(synth.start(audio::prepare(burst, {rate, 2, 24})));
   std::vector<double> marker(50000);
   for (std::size_t k = 0; k + 500 <= marker.size(); k += 500) {
     std::vector<double> block(1000);
@@ -176,19 +176,19 @@ TEST_CASE("the drive plays the codes that its documentation describes, at the fr
 }
 
 TEST_CASE("codes that would run into each other or past the burst are refused", "[sensing][trigger]") {
-  drive::Burst burst;
+  audio::Burst burst;
   burst.length_frames = 20000;
   burst.change_count = 1;
   burst.changes[0].at_frame = 15 * bit;
   burst.changes[0].frames = 10;
-  burst.marker = {drive::MarkerKind::code, 1, 0.5, 0, bit, {1, 2}};
-  CHECK_NOTHROW(drive::prepare(burst, {rate, 2, 24}));
+  burst.marker = {audio::MarkerKind::code, 1, 0.5, 0, bit, {1, 2}};
+  CHECK_NOTHROW(audio::prepare(burst, {rate, 2, 24}));
   burst.changes[0].at_frame = 15 * bit - 1;
-  CHECK_THROWS_AS(drive::prepare(burst, {rate, 2, 24}), drive::BurstRefused);
+  CHECK_THROWS_AS(audio::prepare(burst, {rate, 2, 24}), audio::BurstRefused);
   burst.marker.codes = {0, 2};
-  CHECK_NOTHROW(drive::prepare(burst, {rate, 2, 24}));
+  CHECK_NOTHROW(audio::prepare(burst, {rate, 2, 24}));
   burst.changes[0].at_frame = 20000 - 14 * bit + 1;
-  CHECK_THROWS_AS(drive::prepare(burst, {rate, 2, 24}), drive::BurstRefused);
+  CHECK_THROWS_AS(audio::prepare(burst, {rate, 2, 24}), audio::BurstRefused);
 }
 
 TEST_CASE("a code with a wrong bit is not found", "[sensing][trigger]") {

@@ -1,5 +1,5 @@
 #pragma once
-// Sessions on the simulated sound card of tests/drive, with the station's real stream and output. All
+// Sessions on the simulated sound card of tests/audio, with the station's real stream and output. All
 // times are on the card's clock.
 #include <algorithm>
 #include <atomic>
@@ -10,16 +10,16 @@
 #include <thread>
 #include <utility>
 
-#include "station/drive/alsa_capture.hpp"
-#include "station/drive/device_stream.hpp"
-#include "tests/drive/fake_pcm.hpp"
+#include "station/audio/alsa_capture.hpp"
+#include "station/audio/device_stream.hpp"
+#include "tests/audio/fake_pcm.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace turnpoint::card_session {
 
-using drive::fake_pcm;
+using audio::fake_pcm;
 
 struct Buffer {
   int period_frames, periods;
@@ -32,25 +32,25 @@ inline void use_card(rig::Rig& rig, const Buffer& buffer) {
   rig.marker = rig::Marker{};
 }
 
+using core::FaultKind;
 using session::InputKind;
 using session::PageKind;
-using terms::FaultKind;
 
 constexpr std::int64_t kRate_Hz = 192000;
 
 /// A real stream that advances each time the session polls it. The session then takes as long as the card
 /// plays.
-struct SteppedStream : drive::DeviceStream {
-  SteppedStream(const drive::StreamConfig& config, const bool& holds, const std::function<void()>& then)
+struct SteppedStream : audio::DeviceStream {
+  SteppedStream(const audio::StreamConfig& config, const bool& holds, const std::function<void()>& then)
       : DeviceStream(config), holding(holds), after_step(then) {}
 
-  std::optional<drive::Event> poll() override {
+  std::optional<audio::Event> poll() override {
     step();
     after_step();
     if (fake_pcm().now > 300 * kRate_Hz)
       throw std::runtime_error("the session did not end within 300 s of the card's time");
     auto event = DeviceStream::poll();
-    if (event && event->kind == drive::EventKind::burst_heard) {
+    if (event && event->kind == audio::EventKind::burst_heard) {
       held.push_back(*event);
       event.reset();
     }
@@ -62,24 +62,24 @@ struct SteppedStream : drive::DeviceStream {
 
   const bool& holding;  ///< while true, the stream delays its reports of what was played
   const std::function<void()> after_step;
-  std::deque<drive::Event> held;
+  std::deque<audio::Event> held;
 };
 
 /// A real capture that is read whenever the stream has advanced. It waits for the station's sensing thread,
 /// which runs in real time while the card's time runs faster.
-struct SteppedCapture : drive::DeviceCapture {
+struct SteppedCapture : audio::DeviceCapture {
   using DeviceCapture::DeviceCapture;
 
   void follow() {
     const auto& card = fake_pcm();
-    if (card.capture_state != drive::FakePcm::State::running || card.captured - card.taken >= card.period) {
+    if (card.capture_state != audio::FakePcm::State::running || card.captured - card.taken >= card.period) {
       step();
       const auto now = counters();
       put = now.frames - now.lost_frames;
     }
     while (put - got > backlog_frames) std::this_thread::yield();
   }
-  const drive::CapturedBlock* take() noexcept override {
+  const audio::CapturedBlock* take() noexcept override {
     const auto* block = DeviceCapture::take();
     if (block != nullptr) got = block->first_frame + block->count / fake_pcm().capture_channels;
     return block;
@@ -91,10 +91,10 @@ struct SteppedCapture : drive::DeviceCapture {
 };
 
 /// An amplifier that follows the guard's rules on the card's clock. It has no thread of its own.
-struct RuledAmplifier : drive::Amplifier {
-  using Answer = std::optional<lines::Guard::Refusal>;
+struct RuledAmplifier : audio::Amplifier {
+  using Answer = std::optional<io::Guard::Refusal>;
   static Refusal refusal(const Answer& why) {
-    return why ? Refusal(terms::Fault{why->kind, ""}) : std::nullopt;
+    return why ? Refusal(core::Fault{why->kind, ""}) : std::nullopt;
   }
   Refusal arm() override { return refusal(guard.arm(system::monotonic_ns())); }
   void disarm() noexcept override { guard.disarm(); }
@@ -108,12 +108,12 @@ struct RuledAmplifier : drive::Amplifier {
   void audio_alive() noexcept override { guard.audio_alive(system::monotonic_ns()); }
   void session_alive() noexcept override { guard.session_alive(system::monotonic_ns()); }
   void page_alive(std::int64_t time_ns) noexcept override { guard.page_alive(time_ns); }
-  drive::AmplifierState state() const noexcept override { return guard.state(); }
-  drive::AmplifierFault fault() const override {
+  audio::AmplifierState state() const noexcept override { return guard.state(); }
+  audio::AmplifierFault fault() const override {
     return {{guard.fault().kind, detail}, guard.fault().time_ns};
   }
   std::int64_t reaction_ns() const noexcept override { return -1; }
-  lines::Guard guard;
+  io::Guard guard;
   std::string detail;  ///< of the last call of trip()
 };
 
@@ -130,13 +130,13 @@ struct CardSession {
   std::function<void(const session::Page&)> reacts = [](const auto&) {};
   std::function<void()> stepped = [] {};  ///< called whenever the card's time has advanced
   /// opens the converter of force cells that the card does not capture
-  std::function<std::unique_ptr<iio::Converter>(const iio::Config&)> open_cells = iio::open;
+  std::function<std::unique_ptr<io::Converter>(const io::Config&)> open_cells = io::open;
   std::vector<FaultKind> faults;
   std::vector<std::string> details;
   session::Summary summary;
 
   CardSession() {
-    drive::reset_fake_pcm();
+    audio::reset_fake_pcm();
     use_card(setup.rig, {384, 4});
   }
 
@@ -161,7 +161,7 @@ struct CardSession {
   SteppedCapture* capture = nullptr;
   const RuledAmplifier* amplifier = nullptr;
 
-  std::vector<records::TrialRow> runs() {
+  std::vector<core::TrialRow> runs() {
     session::Devices devices;
     auto ruled = std::make_unique<RuledAmplifier>();
     amplifier = ruled.get();
@@ -170,13 +170,13 @@ struct CardSession {
       const auto now_ns = system::monotonic_ns();
       return system::Clocks{now_ns, now_ns, now_ns};
     };
-    devices.open_capture = [this](const drive::OutputConfig& config) {
+    devices.open_capture = [this](const audio::OutputConfig& config) {
       auto opened = std::make_unique<SteppedCapture>(config);
       capture = opened.get();
       return opened;
     };
     devices.open_cells = open_cells;
-    devices.open_stream = [this](const drive::StreamConfig& config) {
+    devices.open_stream = [this](const audio::StreamConfig& config) {
       return std::make_unique<SteppedStream>(config, holding, [this] {
         if (capture != nullptr) capture->follow();
         stepped();
@@ -200,7 +200,7 @@ struct CardSession {
       later(reading_s, [this, page] { room.cooperate(page); });
     };
     summary = session::run(setup, &room, room.inputs, std::move(devices));
-    CHECK(summary.status == records::SessionStatus::completed);
+    CHECK(summary.status == core::SessionStatus::completed);
     return live_room::trials_of(setup.database, summary);
   }
 };

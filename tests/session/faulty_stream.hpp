@@ -8,62 +8,62 @@
 #include <utility>
 #include <vector>
 
-#include "station/drive/engine.hpp"
+#include "station/audio/engine.hpp"
 
 /// Faults that a FaultyStream reports in addition to those of the real stream.
 struct Misfortunes {
   std::mutex mutex;
-  std::optional<turnpoint::drive::Event> event;
+  std::optional<turnpoint::audio::Event> event;
   std::atomic<std::int64_t> clipped{0};
   /// The audio thread has not rendered anything since the session started, so the drive has begun no
   /// stimulus.
   std::atomic<bool> stalled{false};
 
-  void happen(turnpoint::drive::Event what) {
+  void happen(turnpoint::audio::Event what) {
     const std::lock_guard lock(mutex);
     event = what;
   }
 };
 
-class FaultyStream : public turnpoint::drive::Stream {
+class FaultyStream : public turnpoint::audio::Stream {
  public:
-  using Burst = turnpoint::drive::Burst;
+  using Burst = turnpoint::audio::Burst;
   FaultyStream(std::unique_ptr<Stream> real, Misfortunes& misfortunes)
       : real_(std::move(real)), misfortunes_(misfortunes) {}
 
-  std::optional<turnpoint::drive::Event> poll() override {
+  std::optional<turnpoint::audio::Event> poll() override {
     const std::lock_guard lock(misfortunes_.mutex);
     if (auto event = std::exchange(misfortunes_.event, std::nullopt)) return event;
     auto event = real_->poll();
-    while (event && event->kind == turnpoint::drive::EventKind::burst_heard && misfortunes_.stalled)
+    while (event && event->kind == turnpoint::audio::EventKind::burst_heard && misfortunes_.stalled)
       event = real_->poll();
     return event;
   }
-  turnpoint::drive::Counters counters() const override {
+  turnpoint::audio::Counters counters() const override {
     auto counters = real_->counters();
     counters.saturated += misfortunes_.clipped;
     return counters;
   }
 
   std::uint32_t schedule(const Burst& burst) override { return real_->schedule(burst); }
-  std::vector<turnpoint::drive::Scheduled> schedule_together(
-      std::span<const turnpoint::drive::PreparedBurst> bursts) override {
+  std::vector<turnpoint::audio::Scheduled> schedule_together(
+      std::span<const turnpoint::audio::PreparedBurst> bursts) override {
     return real_->schedule_together(bursts);
   }
-  void change(std::uint32_t burst, const turnpoint::drive::Change& change) override {
+  void change(std::uint32_t burst, const turnpoint::audio::Change& change) override {
     real_->change(burst, change);
   }
-  void stop(std::uint32_t burst, const turnpoint::drive::Ramp& ramp,
+  void stop(std::uint32_t burst, const turnpoint::audio::Ramp& ramp,
             std::optional<std::int64_t> frame) override {
     real_->stop(burst, ramp, frame);
   }
   std::int64_t earliest_frame() const override { return misfortunes_.stalled ? 0 : real_->earliest_frame(); }
-  turnpoint::drive::ClockFit clock() override { return real_->clock(); }
+  turnpoint::audio::ClockFit clock() override { return real_->clock(); }
   std::optional<std::int64_t> time_of(std::int64_t frame) override { return real_->time_of(frame); }
   std::optional<std::int64_t> frame_at(std::int64_t time_ns) override { return real_->frame_at(time_ns); }
-  std::optional<turnpoint::drive::MeasuredRate> measured_rate() override { return real_->measured_rate(); }
+  std::optional<turnpoint::audio::MeasuredRate> measured_rate() override { return real_->measured_rate(); }
   turnpoint::system::Rights rights() const override { return real_->rights(); }
-  const turnpoint::drive::StreamConfig& config() const override { return real_->config(); }
+  const turnpoint::audio::StreamConfig& config() const override { return real_->config(); }
 
  private:
   std::unique_ptr<Stream> real_;

@@ -65,7 +65,7 @@ procedures = ["levels"]
 /// then push inputs and change lines.
 struct Room : session::Display {
   session::Inputs inputs;
-  std::shared_ptr<lines::SimulatedLines> lines = std::make_shared<lines::SimulatedLines>(SharedLines::count);
+  std::shared_ptr<io::SimulatedLines> lines = std::make_shared<io::SimulatedLines>(SharedLines::count);
   std::vector<session::Page> pages;
   std::function<void(const session::Page&)> reacts;
   int stimuli = 0;
@@ -97,11 +97,11 @@ struct Room : session::Display {
     session::Devices devices;
     devices.amplifier = guarded(lines);
     devices.buttons =
-        lines::open_buttons(lines::ButtonsConfig{}, lines::ContactConfig{}, session::handlers_for(inputs));
+        io::open_buttons(io::ButtonsConfig{}, io::ContactConfig{}, session::handlers_for(inputs));
     return devices;
   }
 
-  std::vector<lines::SimulatedLines::Driven> enables() const {
+  std::vector<io::SimulatedLines::Driven> enables() const {
     auto driven = lines->driven();
     std::erase_if(driven, [](const auto& change) { return change.line != SharedLines::enable; });
     return driven;
@@ -115,8 +115,8 @@ struct Room : session::Display {
 
 /// Says whether a machine that is too busy causes this fault by itself: it left one of the station's threads
 /// without processor time for 0.1 s or more.
-inline bool machine_was_busy(terms::FaultKind kind) {
-  using terms::FaultKind;
+inline bool machine_was_busy(core::FaultKind kind) {
+  using core::FaultKind;
   return kind == FaultKind::audio_silent || kind == FaultKind::session_silent ||
          kind == FaultKind::stimulus_missed;
 }
@@ -127,21 +127,20 @@ inline session::Setup live_setup(const std::string& database, const std::string&
   setup.protocol = protocol::parse(protocol_text(device), "live.toml");
   setup.participant = "P01";
   setup.database = database;
-  setup.run_mode = terms::RunMode::live;
+  setup.run_mode = core::RunMode::live;
   setup.language = "en";
   return setup;
 }
 
-inline std::vector<records::EventRow> events_of(const std::string& database, const session::Summary& summary,
-                                                const std::string& kind) {
+inline std::vector<core::EventRow> events_of(const std::string& database, const session::Summary& summary,
+                                             const std::string& kind) {
   auto events = store::read_session(database, summary.session_id).events;
   std::erase_if(events, [&](const auto& event) { return event.kind != kind; });
   return events;
 }
 
-inline std::vector<records::TrialRow> trials_of(const std::string& database,
-                                                const session::Summary& summary) {
-  std::vector<records::TrialRow> all;
+inline std::vector<core::TrialRow> trials_of(const std::string& database, const session::Summary& summary) {
+  std::vector<core::TrialRow> all;
   for (const auto& block : store::read_session(database, summary.session_id).blocks)
     all.insert(all.end(), block.trials.begin(), block.trials.end());
   return all;

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <string>
 
-#include "station/drive/prepared_burst.hpp"
+#include "station/audio/prepared_burst.hpp"
 
 namespace turnpoint::many_tones {
 
@@ -67,9 +67,9 @@ inline std::string rig_text() {
 
 /// Returns true if the burst was accepted only because its peak was rendered: the bound on its peak is above
 /// full scale.
-inline bool peak_was_rendered(const drive::PreparedBurst& burst) {
-  const auto limit = drive::SynthLimits{}.peak;
-  return drive::peak_bound(burst)[2] > limit && burst.peak[2] <= limit;
+inline bool peak_was_rendered(const audio::PreparedBurst& burst) {
+  const auto limit = audio::SynthLimits{}.peak;
+  return audio::peak_bound(burst)[2] > limit && burst.peak[2] <= limit;
 }
 
 }  // namespace turnpoint::many_tones

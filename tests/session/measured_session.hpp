@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "station/session/prepare.hpp"
 #include "station/session/session.hpp"
 #include "station/session/simulated_room.hpp"
-#include "station/setup/prepare.hpp"
 #include "station/store/read.hpp"
 #include "station/store/stored_signals.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -42,7 +42,7 @@ struct Saboteur : session::Monitor {
                     const session::PlanAhead::Plans&) override {
     before(trials);
   }
-  void trial_ended(const trial::TrialSpec&, const records::TrialRow&) override { after(trials++); }
+  void trial_ended(const trial::TrialSpec&, const core::TrialRow&) override { after(trials++); }
 };
 
 /// Remembers the fault pages of a session.
@@ -57,29 +57,29 @@ struct Pages : session::Display {
 
 struct Ran {
   session::Summary summary;
-  std::vector<records::TrialRow> trials;
+  std::vector<core::TrialRow> trials;
   std::vector<std::string> faults;
   /// texts of the pages after a trial, except for those that say whether an answer was right
   std::vector<std::string> messages;
-  std::vector<records::EventRow> events;
+  std::vector<core::EventRow> events;
   std::vector<store::StoredSignal> raw;  ///< what was captured in void trials
 };
 
 /// A function that changes the simulated laboratory before each trial, for example by adding faults.
-using Sabotage = std::function<void(int trial, plant::Plant& plant)>;
+using Sabotage = std::function<void(int trial, simulation::Plant& plant)>;
 
 struct How {
   std::string capture = kPickUps;
   bool repaired = true;  ///< true if each fault is repaired after one trial
   std::string observer = "sim";
-  std::function<void(plant::Setup&)> room = {};  ///< changes the simulated laboratory before the session
+  std::function<void(simulation::Setup&)> room = {};  ///< changes the simulated laboratory before the session
 };
 
 /// Asks for a simulated session of a protocol file on a rig with these capture channels.
-inline setup::RunRequest request_in(const TemporaryFolder& folder, const std::string& protocol,
-                                    const std::string& capture = kCells,
-                                    const std::string& observer = "sim") {
-  setup::RunRequest request;
+inline session::RunRequest request_in(const TemporaryFolder& folder, const std::string& protocol,
+                                      const std::string& capture = kCells,
+                                      const std::string& observer = "sim") {
+  session::RunRequest request;
   request.protocol = protocol;
   request.rig = with_capture(folder, capture);
   request.participant = "P01";
@@ -93,7 +93,7 @@ inline setup::RunRequest request_in(const TemporaryFolder& folder, const std::st
 inline Ran run(const std::string& protocol, const Sabotage& sabotage, const How& how = {}) {
   TemporaryFolder folder;
   const auto request = request_in(folder, protocol, how.capture, how.observer);
-  const auto setup = setup::prepare(request);
+  const auto setup = session::prepare(request);
   auto room = std::make_unique<session::SimulatedRoom>(setup.rig, how.room);
   Saboteur saboteur;
   auto& plant = room->plant();
@@ -108,7 +108,7 @@ inline Ran run(const std::string& protocol, const Sabotage& sabotage, const How&
   const auto stored = store::read_session(request.database, ran.summary.session_id);
   ran.events = stored.events;
   store::Database database(request.database, store::Database::Access::read_only);
-  store::SignalReader reader(database, ran.summary.session_id, records::kRawStream);
+  store::SignalReader reader(database, ran.summary.session_id, core::kRawStream);
   while (const auto signal = reader.next()) ran.raw.push_back(*signal);
   for (const auto& block : stored.blocks)
     ran.trials.insert(ran.trials.end(), block.trials.begin(), block.trials.end());

@@ -10,14 +10,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include "station/desk/live_view.hpp"
+#include "station/core/number.hpp"
 #include "station/procedure/adjustment.hpp"
+#include "station/session/prepare.hpp"
+#include "station/session/resume.hpp"
 #include "station/session/session.hpp"
-#include "station/setup/prepare.hpp"
-#include "station/setup/resume.hpp"
 #include "station/store/read.hpp"
-#include "station/text/number.hpp"
 #include "station/trial/slider.hpp"
+#include "station/view/live_view.hpp"
 #include "tests/session/faulty_stream.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
@@ -49,18 +49,18 @@ struct Pages : session::Display {
 
 session::Setup setup_in(const Folder& folder, const std::string& observer) {
   const std::string source = TURNPOINT_SOURCE_DIR;
-  setup::RunRequest request;
+  session::RunRequest request;
   request.protocol = source + "/protocols/boundary-adjustment.toml";
   request.rig = source + "/tests/support/thin_plate.toml";
   request.participant = "P01";
   request.database = (folder.path / "a.sqlite").string();
   request.observer = observer;
   request.seed = 7;
-  return setup::prepare(request);
+  return session::prepare(request);
 }
 
-std::vector<records::TrialRow> trials_of(const session::Setup& setup, const std::string& session) {
-  std::vector<records::TrialRow> all;
+std::vector<core::TrialRow> trials_of(const session::Setup& setup, const std::string& session) {
+  std::vector<core::TrialRow> all;
   for (const auto& block : store::read_session(setup.database, session).blocks)
     for (const auto& trial : block.trials) all.push_back(trial);
   return all;
@@ -93,12 +93,12 @@ TEST_CASE("a protocol file with a slider gives rows with each setting and the mo
   session::Inputs inputs;
   Pages pages;
   const auto summary = session::run(setup, &pages, inputs);
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   const auto trials = trials_of(setup, summary.session_id);
   REQUIRE(trials.size() == 18);
   double sum = 0;
   for (const auto& trial : trials) {
-    CHECK(trial.outcome == terms::Outcome::answered);
+    CHECK(trial.outcome == core::Outcome::answered);
     REQUIRE(trial.response);
     const double setting = std::stod(*trial.response);
     sum += setting;
@@ -145,10 +145,10 @@ TEST_CASE("an interrupted adjustment continues with the same settings", "[sessio
   cut.left = 40;
   CHECK_THROWS(session::run(setup, &cut, inputs));
   std::ostringstream messages;
-  const auto resumed = setup::prepare_resume({setup.database, "", "resume", true}, messages);
+  const auto resumed = session::prepare_resume({setup.database, "", "resume", true}, messages);
   REQUIRE(resumed);
   const auto summary = session::run(*resumed, nullptr, inputs);
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   REQUIRE(summary.estimates.size() == 1);
 }
 
@@ -156,13 +156,13 @@ namespace {
 
 /// A real stream that records the tones of each glide.
 struct KeptStream : FaultyStream {
-  KeptStream(std::unique_ptr<Stream> real, Misfortunes& misfortunes, std::vector<drive::ToneSet>& kept)
+  KeptStream(std::unique_ptr<Stream> real, Misfortunes& misfortunes, std::vector<audio::ToneSet>& kept)
       : FaultyStream(std::move(real), misfortunes), glides(kept) {}
-  void change(std::uint32_t burst, const drive::Change& change) override {
+  void change(std::uint32_t burst, const audio::Change& change) override {
     glides.push_back(change.to);
     FaultyStream::change(burst, change);
   }
-  std::vector<drive::ToneSet>& glides;
+  std::vector<audio::ToneSet>& glides;
 };
 
 /// A tone that was played, or that the operator's page shows.
@@ -170,7 +170,7 @@ struct Tone {
   double frequency_Hz = 0, full_scale = 0;
 };
 
-Tone read_tone(const desk::LiveState& state) {
+Tone read_tone(const view::LiveState& state) {
   for (const auto& [label, value] : state.scene)
     if (label == "Tone")
       return {1e3 * std::strtod(value.c_str(), nullptr),
@@ -182,7 +182,7 @@ Tone read_tone(const desk::LiveState& state) {
 /// slider move on. The session never waits for the view, which is drawn slowly under a sanitizer.
 struct Operator : session::Monitor {
   explicit Operator(const session::Setup& setup)
-      : view(setup.protocol, setup.rig, [this](const desk::LiveState& state) { look(state); }) {}
+      : view(setup.protocol, setup.rig, [this](const view::LiveState& state) { look(state); }) {}
 
   void trial_begins(const trial::TrialSpec& spec, const protocol::Block& block,
                     const session::PlanAhead::Plans& plans) override {
@@ -193,7 +193,7 @@ struct Operator : session::Monitor {
     expect(Awaited::follow);
     view.surface_follows(spec, plan);
   }
-  void trial_ended(const trial::TrialSpec&, const records::TrialRow&) override {}
+  void trial_ended(const trial::TrialSpec&, const core::TrialRow&) override {}
 
   /// Makes the first move of a trial, as soon as the view has shown its beginning.
   void begin_moving() {
@@ -213,7 +213,7 @@ struct Operator : session::Monitor {
     const std::lock_guard lock(mutex);
     awaited = what;
   }
-  void look(const desk::LiveState& state) {
+  void look(const view::LiveState& state) {
     const std::lock_guard lock(mutex);
     if (awaited == Awaited::nothing) return;
     if (awaited == Awaited::follow) headings.push_back(state.heading);
@@ -228,7 +228,7 @@ struct Operator : session::Monitor {
   std::mutex mutex;
   Awaited awaited = Awaited::nothing;
   bool begin_asked = false;
-  desk::LiveView view;  // This must be the last member, because its thread writes to the others.
+  view::LiveView view;  // This must be the last member, because its thread writes to the others.
 };
 
 }  // namespace
@@ -255,14 +255,14 @@ TEST_CASE("while the slider moves, the operator's page shows the tone that is pl
     if (page.kind == session::PageKind::adjust && !page.answers_open) return sees.begin_moving();
     room.cooperate(page);
   };
-  std::vector<drive::ToneSet> played;
+  std::vector<audio::ToneSet> played;
   Misfortunes none;
   auto devices = room.devices();
-  devices.open_stream = [&](const drive::StreamConfig& config) {
-    return std::make_unique<KeptStream>(drive::open_realtime(config), none, played);
+  devices.open_stream = [&](const audio::StreamConfig& config) {
+    return std::make_unique<KeptStream>(audio::open_realtime(config), none, played);
   };
   const auto summary = session::run(setup, &room, room.inputs, std::move(devices), &sees);
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   const auto trials = live_room::trials_of(setup.database, summary);
   REQUIRE(trials.size() == 2);
   REQUIRE(sees.begun.size() == 2);
@@ -274,7 +274,7 @@ TEST_CASE("while the slider moves, the operator's page shows the tone that is pl
     CHECK(sees.followed[k].frequency_Hz == Approx(played[k].tones[0].frequency_Hz).epsilon(1e-5));
     CHECK(sees.followed[k].full_scale == Approx(played[k].tones[0].amplitude).epsilon(5e-3));
     frequencies.insert(sees.followed[k].frequency_Hz);
-    CHECK(sees.headings[k].find("now " + text::number(moves[k % moves.size()])) != std::string::npos);
+    CHECK(sees.headings[k].find("now " + core::number(moves[k % moves.size()])) != std::string::npos);
   }
   CHECK(frequencies.size() == moves.size());
   for (std::size_t i = 0; i < 2; ++i) {

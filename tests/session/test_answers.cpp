@@ -46,7 +46,7 @@ TEST_CASE("a typed number is stored as the answer, and one outside of the range 
     type(12.3);
   };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   const auto trials = trials_of(setup.database, summary);
   REQUIRE(trials.size() == 2);
   CHECK(trials[0].response == "12.3");
@@ -71,7 +71,7 @@ TEST_CASE("confidence is stored with its answer; a stop before it leaves no tria
     CHECK(page.answers.size() == 3);
     CHECK(page.text == "Sure?");
     room.press(0);  // a press of a response button is not accepted as a confidence
-    room.push(asked++ == 0 ? InputKind::answer : InputKind::stop, 2, terms::kConfidenceGuard_ns);
+    room.push(asked++ == 0 ? InputKind::answer : InputKind::stop, 2, core::kConfidenceGuard_ns);
   };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
   const auto trials = trials_of(setup.database, summary);
@@ -79,6 +79,6 @@ TEST_CASE("confidence is stored with its answer; a stop before it leaves no tria
   CHECK(trials[0].response == "left");
   CHECK(trials[0].confidence == 3);
   CHECK(trials[0].confidence_time_s.value_or(-1) >= 0);
-  CHECK(trials[1].outcome == terms::Outcome::aborted);
+  CHECK(trials[1].outcome == core::Outcome::aborted);
   CHECK_FALSE(trials[1].confidence);
 }

@@ -6,8 +6,8 @@ using namespace turnpoint;
 
 namespace {
 
-drive::Burst one_second() {
-  drive::Burst burst;
+audio::Burst one_second() {
+  audio::Burst burst;
   burst.length_frames = 192000;
   return burst;
 }
@@ -20,7 +20,7 @@ TEST_CASE("a burst gets the rig's marker, which never lasts longer than the burs
   marker.duration_s = 2e-3;
   auto burst = one_second();
   session::mark(burst, marker, 192000);
-  CHECK(burst.marker.kind == drive::MarkerKind::tone);
+  CHECK(burst.marker.kind == audio::MarkerKind::tone);
   CHECK(burst.marker.frames == 384);
   CHECK(burst.marker.frequency_Hz == 5000);
   marker.duration_s = 1.5;

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "station/drive/device_stream.hpp"
+#include "station/audio/device_stream.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/rig/rig.hpp"
 #include "station/session/plan_ahead.hpp"
@@ -30,7 +30,7 @@ rig::Rig marked_rig(int period_frames, int periods) {
   return rig;
 }
 
-void steps(drive::DeviceStream& stream, int count) {
+void steps(audio::DeviceStream& stream, int count) {
   for (int k = 0; k < count; ++k) stream.step();
 }
 
@@ -60,12 +60,12 @@ TEST_CASE(
   for (const auto* name : {"friction-2ifc", "two-spots-oddity"})
     for (const auto& buffer : kBuffers) {
       INFO(name << ", " << buffer.periods << " periods of " << buffer.period_frames);
-      drive::reset_fake_pcm();
+      audio::reset_fake_pcm();
       fake_pcm().recorded_channel = 1;
       const auto rig = marked_rig(buffer.period_frames, buffer.periods);
       const auto protocol = protocol::load(source + "/protocols/" + name + ".toml");
       Trial trial(rig, protocol);
-      drive::DeviceStream stream(session::stream_of(rig));
+      audio::DeviceStream stream(session::stream_of(rig));
       steps(stream, 4);
       const auto& bursts = trial.plans.take(trial.spec).bursts;
       std::vector<session::Presented> presented;
@@ -89,13 +89,13 @@ TEST_CASE(
     "[session][card]") {
   for (const auto& buffer : kBuffers) {
     INFO(buffer.periods << " periods of " << buffer.period_frames);
-    drive::reset_fake_pcm();
+    audio::reset_fake_pcm();
     fake_pcm().recorded_channel = 1;
     auto rig = rig::parse(many_tones::rig_text(), "rig.toml");
     use_card(rig, buffer);
     const auto protocol = protocol::parse(many_tones::protocol_text(), "many.toml");
     Trial trial(rig, protocol);
-    drive::DeviceStream stream(session::stream_of(rig));
+    audio::DeviceStream stream(session::stream_of(rig));
     steps(stream, 4);
     const auto& bursts = trial.plans.take(trial.spec).bursts;
     REQUIRE(bursts.size() == 2);
@@ -115,12 +115,12 @@ TEST_CASE(
 
 TEST_CASE("a stop between two intervals cancels the second, so that nothing of it is played",
           "[session][card]") {
-  drive::reset_fake_pcm();
+  audio::reset_fake_pcm();
   fake_pcm().recorded_channel = 1;
   const auto rig = marked_rig(384, 4);
   const auto protocol = protocol::load(source + "/protocols/friction-2ifc.toml");
   Trial trial(rig, protocol);
-  drive::DeviceStream stream(session::stream_of(rig));
+  audio::DeviceStream stream(session::stream_of(rig));
   steps(stream, 4);
   std::vector<session::Presented> presented;
   session::schedule(stream, trial.plans.take(trial.spec).bursts, 0, presented);
@@ -134,17 +134,17 @@ TEST_CASE(
     "if the converter is lost, nothing is scheduled, and the surface counts as silent from now at the "
     "earliest",
     "[session][card]") {
-  drive::reset_fake_pcm();
+  audio::reset_fake_pcm();
   const auto rig = marked_rig(384, 4);
   const auto protocol = protocol::load(source + "/protocols/friction-2ifc.toml");
   Trial trial(rig, protocol);
-  drive::DeviceStream stream(session::stream_of(rig));
+  audio::DeviceStream stream(session::stream_of(rig));
   steps(stream, 4);
   const auto& bursts = trial.plans.take(trial.spec).bursts;
   std::vector<session::Presented> presented;
   const auto onset = session::schedule(stream, bursts, 0, presented).front();
   while (stream.counters().heard < presented.front().start_frame + 20'000) stream.step();
-  fake_pcm().fail(drive::FakePcm::State::gone);
+  fake_pcm().fail(audio::FakePcm::State::gone);
   fake_pcm().present = false;
   steps(stream, 3);
   // The surface counts as silent only from now on, so that the trial's record includes the stimulus up to
@@ -171,14 +171,14 @@ TEST_CASE(
       fake_pcm().before_call = [&, due = fake_pcm().now + after] {
         if (lost_at > 0 || fake_pcm().now < due) return;
         lost_at = fake_pcm().now;
-        fake_pcm().fail(drive::FakePcm::State::gone);
+        fake_pcm().fail(audio::FakePcm::State::gone);
         fake_pcm().present = false;
         card.later(2, [] { fake_pcm().present = true; });
       };
   };
   const auto trials = card.runs();
   REQUIRE(trials.size() == 3);
-  CHECK(trials[0].outcome == terms::Outcome::fault);
+  CHECK(trials[0].outcome == core::Outcome::fault);
   const auto stimuli = live_room::events_of(card.setup.database, card.summary, "stimulus");
   REQUIRE(stimuli.size() == 3);
   // Compare the recorded duration of stimulation, in frames from the onset, with what the card really played.
@@ -210,8 +210,8 @@ TEST_CASE(
   };
   const auto trials = card.runs();
   REQUIRE(trials.size() == 3);
-  CHECK(trials[0].outcome == terms::Outcome::answered);
-  CHECK(trials[1].outcome == terms::Outcome::fault);
+  CHECK(trials[0].outcome == core::Outcome::answered);
+  CHECK(trials[1].outcome == core::Outcome::fault);
   CHECK(trials[2].level == trials[1].level);
   CHECK(card.details.back() == "the converter does not report whether a stimulus was played");
   const auto stimuli = live_room::events_of(card.setup.database, card.summary, "stimulus");
@@ -226,13 +226,13 @@ TEST_CASE("a converter that does not report its position gets no stimulus", "[se
   CardSession card;
   card.reacts = [&](const session::Page& page) {
     // After the restart the station needs new positions of the card, but the card reports none.
-    if (page.kind == PageKind::instructions) fake_pcm().fail(drive::FakePcm::State::xrun);
+    if (page.kind == PageKind::instructions) fake_pcm().fail(audio::FakePcm::State::xrun);
     if (page.kind == PageKind::instructions) fake_pcm().stamps = false;
     if (page.kind == PageKind::fault) fake_pcm().stamps = true;
   };
   const auto trials = card.runs();
   REQUIRE(trials.size() == 3);
-  CHECK(trials[0].outcome == terms::Outcome::fault);
+  CHECK(trials[0].outcome == core::Outcome::fault);
   CHECK(card.details.back() == "the converter does not report which frame it is playing");
   CHECK(live_room::events_of(card.setup.database, card.summary, "stimulus").size() == 2);
 }
@@ -253,7 +253,7 @@ TEST_CASE("late reports about a repeated trial do not count for the next one", "
   };
   const auto trials = card.runs();
   REQUIRE(trials.size() == 4);
-  CHECK(trials[0].outcome == terms::Outcome::aborted);
-  CHECK(trials[1].outcome == terms::Outcome::fault);
-  CHECK(trials[2].outcome == terms::Outcome::answered);
+  CHECK(trials[0].outcome == core::Outcome::aborted);
+  CHECK(trials[1].outcome == core::Outcome::fault);
+  CHECK(trials[2].outcome == core::Outcome::answered);
 }

@@ -1,4 +1,4 @@
-#include "station/drive/trigger_code.hpp"
+#include "station/audio/trigger_code.hpp"
 #include "tests/session/card_session.hpp"
 
 // Tests live sessions on the simulated sound card, whose capture returns what was played, delayed and
@@ -6,8 +6,8 @@
 
 using namespace turnpoint;
 using namespace turnpoint::card_session;
-using terms::Proof;
-using terms::ProofCause;
+using core::Proof;
+using core::ProofCause;
 
 TEST_CASE(
     "a session on a card proves its stimuli from what the card captures, whatever the delay of the loop",
@@ -17,7 +17,7 @@ TEST_CASE(
   const auto trials = card.runs();
   REQUIRE(trials.size() == 2);
   for (const auto& trial : trials) {
-    CHECK(trial.outcome == terms::Outcome::answered);
+    CHECK(trial.outcome == core::Outcome::answered);
     CHECK(trial.proof == Proof::ok);
     CHECK(std::abs(trial.drive_ratio_dB.value()) < 0.01);
     CHECK(std::abs(trial.onset_error_us.value()) < 30);
@@ -43,7 +43,7 @@ TEST_CASE("a stimulus of half the amplitude is void, and the next one is proven"
   };
   const auto trials = card.runs();
   REQUIRE(trials.size() == 3);
-  CHECK(trials[0].outcome == terms::Outcome::fault);
+  CHECK(trials[0].outcome == core::Outcome::fault);
   CHECK(trials[0].proof == Proof::refused);
   CHECK(trials[0].proof_cause == ProofCause::half);
   CHECK(trials[0].drive_ratio_dB.value() == Approx(-6.02).margin(0.1));
@@ -60,14 +60,14 @@ TEST_CASE("a trial whose capture has a gap is void, and a new pilot aligns the n
     if (page.kind != PageKind::stimulus || card.room.stimuli != 1) return;
     card.later(0.1, [unknown] {
       if (unknown)
-        fake_pcm().capture_state = drive::FakePcm::State::xrun;
+        fake_pcm().capture_state = audio::FakePcm::State::xrun;
       else
         fake_pcm().taken -= 5'000;  // as if the station had left 5000 more frames unread
     });
   };
   const auto trials = card.runs();
   REQUIRE(trials.size() == 3);
-  CHECK(trials[0].outcome == terms::Outcome::fault);
+  CHECK(trials[0].outcome == core::Outcome::fault);
   CHECK(trials[0].proof == Proof::lost);
   CHECK(trials[0].proof_cause == ProofCause::gap);
   const auto notices = live_room::events_of(card.setup.database, card.summary, "notice");
@@ -89,7 +89,7 @@ TEST_CASE("if the pilot is not heard, no stimulus is presented, and the page nam
   };
   const auto trials = card.runs();
   REQUIRE(trials.size() == 3);
-  CHECK(trials[0].outcome == terms::Outcome::fault);
+  CHECK(trials[0].outcome == core::Outcome::fault);
   CHECK(card.faults.back() == FaultKind::capture);
   CHECK(card.details.back() == "the pilot on output channel 2 was not heard on captured channel 0");
   CHECK(live_room::events_of(card.setup.database, card.summary, "stimulus").size() == 2);
@@ -102,11 +102,11 @@ TEST_CASE("after the playback was restarted, a new pilot aligns the capture", "[
   card.add_capture(12'345);
   card.reacts = [&](const session::Page& page) {
     if (page.kind == PageKind::stimulus && card.room.stimuli == 1)
-      card.later(0.1, [] { fake_pcm().fail(drive::FakePcm::State::xrun); });
+      card.later(0.1, [] { fake_pcm().fail(audio::FakePcm::State::xrun); });
   };
   const auto trials = card.runs();
   REQUIRE(trials.size() == 3);
-  CHECK(trials[0].outcome == terms::Outcome::fault);
+  CHECK(trials[0].outcome == core::Outcome::fault);
   CHECK(trials[1].proof == Proof::ok);
   CHECK(trials[2].proof == Proof::ok);
 }
@@ -117,7 +117,7 @@ TEST_CASE("without a calibration of the pick-ups, trials count and are unproven"
   const auto trials = card.runs();
   REQUIRE(trials.size() == 2);
   for (const auto& trial : trials) {
-    CHECK(trial.outcome == terms::Outcome::answered);
+    CHECK(trial.outcome == core::Outcome::answered);
     CHECK(trial.proof == Proof::unproven);
   }
 }
@@ -139,8 +139,8 @@ TEST_CASE("trigger codes that the card plays are read back, and other codes on t
     captured[2] = played[1] / 2;
     if (stray < 0) return;
     const auto half_bit = stray++ / 96;
-    if (half_bit < drive::trigger_half_bits)
-      captured[2] += drive::trigger_wave(drive::trigger_pattern(77), static_cast<int>(half_bit)) * (1 << 28);
+    if (half_bit < audio::trigger_half_bits)
+      captured[2] += audio::trigger_wave(audio::trigger_pattern(77), static_cast<int>(half_bit)) * (1 << 28);
   };
   card.reacts = [&](const session::Page& page) {
     if (page.kind == PageKind::stimulus && card.room.stimuli == 2) card.later(0.1, [&] { stray = 0; });
@@ -172,7 +172,7 @@ TEST_CASE("a surface that vibrates while the amplifier is off trips the guard, a
                                               std::span<std::int32_t> captured) mutable {
     wires(played, captured);
     const double cycles = 27e3 / kRate_Hz * static_cast<double>(n++ % kRate_Hz);
-    if (stays_on && card.amplifier->state() != drive::AmplifierState::enabled)
+    if (stays_on && card.amplifier->state() != audio::AmplifierState::enabled)
       captured[1] += static_cast<std::int32_t>(0x1p31 * level * std::sin(2 * M_PI * cycles));
   };
   card.reacts = [&](const session::Page& page) {
@@ -184,6 +184,6 @@ TEST_CASE("a surface that vibrates while the amplifier is off trips the guard, a
     if (card.faults[k] == FaultKind::sounding)
       CHECK(card.details[k] == "a tone of 27.0 kHz at -46 dB of full drive");
   CHECK(std::count_if(trials.begin(), trials.end(), [](const auto& trial) {
-          return trial.outcome == terms::Outcome::answered && trial.proof == Proof::ok;
+          return trial.outcome == core::Outcome::answered && trial.proof == Proof::ok;
         }) == 2);
 }

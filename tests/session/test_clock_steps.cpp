@@ -55,10 +55,10 @@ struct SetClock {
     const auto summary = session::run(setup, &room, room.inputs, std::move(devices));
     for (const auto& page : room.pages)
       if (page.kind == PageKind::fault &&
-          page.fault != terms::FaultKind::disarmed)  // before the session is armed
+          page.fault != core::FaultKind::disarmed)  // before the session is armed
         CHECK(machine_was_busy(page.fault));
     const auto trials = trials_of(setup.database, summary);
-    if (!trials.empty() && trials.front().outcome == terms::Outcome::fault) return std::nullopt;
+    if (!trials.empty() && trials.front().outcome == core::Outcome::fault) return std::nullopt;
     check(summary);
     std::vector<std::string> notices;
     for (const auto& event : events_of(setup.database, summary, "notice"))
@@ -67,7 +67,7 @@ struct SetClock {
   }
 
   void check(const session::Summary& summary) {
-    CHECK(summary.status == records::SessionStatus::completed);
+    CHECK(summary.status == core::SessionStatus::completed);
     // the deadline is neither earlier nor later
     const double waited_s = 1e-9 * static_cast<double>(missed_ns - stimulus_ns);
     CHECK(waited_s > kDeadline_s - 0.5);
@@ -81,12 +81,12 @@ struct SetClock {
   void check_trials(const session::Summary& summary) {
     const auto trials = trials_of(setup.database, summary);
     REQUIRE(trials.size() >= 2);
-    CHECK(trials.front().outcome == terms::Outcome::timeout);
+    CHECK(trials.front().outcome == core::Outcome::timeout);
     int answered = 0;
     for (std::size_t i = 0; i < trials.size(); ++i) {
       CHECK(trials[i].trial_index == static_cast<int>(i));
       if (i > 0) CHECK(trials[i].onset_ns > trials[i - 1].onset_ns);
-      if (trials[i].outcome != terms::Outcome::answered) continue;
+      if (trials[i].outcome != core::Outcome::answered) continue;
       ++answered;
       CHECK(std::ranges::any_of(presses_ns, [&](std::int64_t pressed_ns) {
         const double pressed_s = 1e-9 * static_cast<double>(pressed_ns - trials[i].onset_ns);

@@ -40,8 +40,8 @@ const char* const kThermometers =
     "[temperature]\nplate = \"hwmon:lm75@1-0048/temp1\"\nframe = \"hwmon:lm75@1-0049/temp1\"\n";
 
 struct DriftRun {
-  std::vector<records::TrialRow> trials;
-  std::vector<records::EventRow> events;
+  std::vector<core::TrialRow> trials;
+  std::vector<core::EventRow> events;
   rig::Rig rig;
   /// factor by which the resonances of the simulated surface have really changed at the end
   double resonance = 1;
@@ -50,14 +50,14 @@ struct DriftRun {
 /// Runs the demo protocol in a simulated room that is warmer by `warmth_K` from the third trial on.
 DriftRun run_warm(double warmth_K, Sensors& sensors, const std::string& extra = "") {
   TemporaryFolder folder;
-  setup::RunRequest request;
+  session::RunRequest request;
   request.protocol = shipped("demo");
   request.rig = with_capture(folder, kPickUps + extra);
   request.participant = "P01";
   request.database = folder / "a.sqlite";
   request.observer = "sim";
   request.seed = 7;
-  auto setup = setup::prepare(request);
+  auto setup = session::prepare(request);
   setup.thermometers = sensors.folder.path;
   auto room = std::make_unique<session::SimulatedRoom>(setup.rig);
   auto& plant = room->plant();
@@ -65,7 +65,7 @@ DriftRun run_warm(double warmth_K, Sensors& sensors, const std::string& extra = 
   Saboteur saboteur;
   saboteur.before = [&](int trial) {
     if (trial != 2 || warmth_K == 0) return;
-    plant.add({plant::FaultKind::warmer, plant.frames() + 1, plant::kNever, warmth_K, 0});
+    plant.add({simulation::FaultKind::warmer, plant.frames() + 1, simulation::kNever, warmth_K, 0});
     sensors.set("hwmon0", 23 + warmth_K);
   };
   DriftRun ran;
@@ -168,7 +168,7 @@ TEST_CASE("after 10 K, corrected frequencies put each boundary where it was plan
   const auto surface = rig::surface_of(warm.rig);
   for (std::size_t k = 0; k < warm.trials.size(); ++k) {
     const auto& trial = warm.trials[k];
-    CHECK(trial.outcome == terms::Outcome::answered);
+    CHECK(trial.outcome == core::Outcome::answered);
     for (std::size_t t = 0; t < trial.tones.size(); ++t) {
       // The warm plate has the boundary of a tone where a cold plate has that of the tone's frequency divided
       // by `resonance`, the factor by which warming changes the resonances.
@@ -182,6 +182,6 @@ TEST_CASE("after 10 K, corrected frequencies put each boundary where it was plan
       else
         CHECK(off_mm < 0.05);
     }
-    if (trial.trial_index > 2) CHECK(trial.proof == terms::Proof::ok);
+    if (trial.trial_index > 2) CHECK(trial.proof == core::Proof::ok);
   }
 }

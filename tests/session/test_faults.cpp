@@ -17,13 +17,13 @@
 
 using namespace turnpoint;
 using namespace turnpoint::live_room;
-using terms::FaultKind;
+using core::FaultKind;
 
 namespace {
 
 /// Lines whose enable output stops working when the test says so.
 struct BrokenLines : SharedLines {
-  BrokenLines(const std::shared_ptr<lines::SimulatedLines>& shared, std::atomic<bool>& broken_)
+  BrokenLines(const std::shared_ptr<io::SimulatedLines>& shared, std::atomic<bool>& broken_)
       : SharedLines(shared), broken(broken_) {}
   std::optional<bool> read_back(int index) override {
     return broken ? std::optional(false) : SharedLines::read_back(index);
@@ -48,14 +48,14 @@ struct Mishap {
 
   session::Devices devices() {
     auto devices = room.devices();
-    devices.amplifier = lines::guard_amplifier(
+    devices.amplifier = io::guard_amplifier(
         [this] {
           static_cast<void>(room.lines->level(0));
           return std::make_unique<BrokenLines>(room.lines, enable_broken);
         },
         {SharedLines::enable, SharedLines::heartbeat, SharedLines::fault, SharedLines::stop});
-    devices.open_stream = [this](drive::StreamConfig config) {
-      return std::make_unique<FaultyStream>(drive::open_realtime(config), misfortunes);
+    devices.open_stream = [this](audio::StreamConfig config) {
+      return std::make_unique<FaultyStream>(audio::open_realtime(config), misfortunes);
     };
     devices.clocks = [this] {
       auto clocks = system::read_clocks();
@@ -85,7 +85,7 @@ struct Mishap {
     return std::ranges::count_if(room.pages, [&](const session::Page& page) {
       if (page.kind == PageKind::stimulus) ++stimuli;
       if (page.kind != PageKind::fault || stimuli < 2) return false;
-      INFO(terms::name(page.fault) << ": " << page.detail);
+      INFO(core::name(page.fault) << ": " << page.detail);
       CHECK(machine_was_busy(page.fault));
       return true;
     });
@@ -95,20 +95,20 @@ struct Mishap {
   session::Page runs(session::Devices with) {
     room.reacts = [this](const auto& page) { react(page); };
     const auto summary = session::run(setup, &room, room.inputs, std::move(with));
-    CHECK(summary.status == records::SessionStatus::completed);
+    CHECK(summary.status == core::SessionStatus::completed);
     const auto trials = trials_of(setup.database, summary);
-    const auto voided = std::ranges::count(trials, terms::Outcome::fault, &records::TrialRow::outcome);
+    const auto voided = std::ranges::count(trials, core::Outcome::fault, &core::TrialRow::outcome);
     REQUIRE(static_cast<std::ptrdiff_t>(trials.size()) == 2 + voided);
     const auto later = later_faults();
     CHECK(voided >= 1);
     CHECK(voided <= 1 + later);
-    CHECK(trials[0].outcome == terms::Outcome::fault);
+    CHECK(trials[0].outcome == core::Outcome::fault);
     CHECK(trials[1].level == trials[0].level);
     REQUIRE_FALSE(faults.empty());
     CHECK(low_when_shown == static_cast<int>(faults.size()));
     const auto logged = events_of(setup.database, summary, "fault");
     REQUIRE_FALSE(logged.empty());
-    CHECK(logged.front().value.find(terms::name(faults.front().fault)) == 0);
+    CHECK(logged.front().value.find(core::name(faults.front().fault)) == 0);
     return faults.front();
   }
   session::Page runs() { return runs(devices()); }
@@ -165,9 +165,9 @@ TEST_CASE("lost GPIO lines cause a fault page", "[session][live][fault]") {
 TEST_CASE("a silent audio thread causes a fault page", "[session][live][fault][threads]") {
   Mishap mishap;
   auto devices = mishap.devices();
-  devices.open_stream = [](drive::StreamConfig config) {
+  devices.open_stream = [](audio::StreamConfig config) {
     config.amplifier = nullptr;  // instead of the stream, the test reports that the audio thread is alive
-    return drive::open_realtime(config);
+    return audio::open_realtime(config);
   };
   mishap.audio = std::make_unique<std::jthread>(
       [&amplifier = *devices.amplifier, &lives = mishap.audio_lives](const std::stop_token& stop) {
@@ -206,7 +206,7 @@ TEST_CASE("a suspended machine causes a fault page", "[session][live][fault]") {
 
 TEST_CASE("the loss of the sound device causes a fault page", "[session][live][fault]") {
   Mishap mishap;
-  mishap.strikes = [&] { mishap.misfortunes.happen({drive::EventKind::device_lost, 0, 0, 0, -ENODEV}); };
+  mishap.strikes = [&] { mishap.misfortunes.happen({audio::EventKind::device_lost, 0, 0, 0, -ENODEV}); };
   const auto page = mishap.runs();
   CHECK(page.fault == FaultKind::converter_gone);
   CHECK(page.detail == "No such device");
@@ -215,9 +215,9 @@ TEST_CASE("the loss of the sound device causes a fault page", "[session][live][f
 TEST_CASE("a wrong rate causes a fault page, and arming is refused until the device was reopened",
           "[session][live][fault]") {
   Mishap mishap;
-  mishap.strikes = [&] { mishap.misfortunes.happen({drive::EventKind::rate_wrong, 0, 0, 96'000'000, 0}); };
+  mishap.strikes = [&] { mishap.misfortunes.happen({audio::EventKind::rate_wrong, 0, 0, 96'000'000, 0}); };
   mishap.operator_repairs = [&] {
-    if (mishap.faults.size() == 3) mishap.misfortunes.happen({drive::EventKind::device_back, 0, 0, 0, 0});
+    if (mishap.faults.size() == 3) mishap.misfortunes.happen({audio::EventKind::device_back, 0, 0, 0, 0});
   };
   const auto page = mishap.runs();
   CHECK(page.fault == FaultKind::converter_rate);
@@ -239,7 +239,7 @@ TEST_CASE("an amplifier that nobody has armed causes a fault page", "[session][l
   mishap.strikes = [&] { mishap.room.push(InputKind::disarm); };
   mishap.room.reacts = [&](const auto& page) { mishap.react(page); };
   const auto summary = session::run(mishap.setup, &mishap.room, mishap.room.inputs, mishap.devices());
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   CHECK(mishap.room.pages.front().fault == FaultKind::disarmed);  // the first page, before the first arming
   REQUIRE_FALSE(mishap.faults.empty());
   CHECK(mishap.faults.front().fault == FaultKind::disarmed);
@@ -247,7 +247,7 @@ TEST_CASE("an amplifier that nobody has armed causes a fault page", "[session][l
 
 TEST_CASE("a stimulus that came too late causes a fault page", "[session][live][fault]") {
   Mishap mishap;
-  mishap.strikes = [&] { mishap.misfortunes.happen({drive::EventKind::burst_missed, 1, 0, 0, 0}); };
+  mishap.strikes = [&] { mishap.misfortunes.happen({audio::EventKind::burst_missed, 1, 0, 0, 0}); };
   mishap.room.reacts = [&](const auto& page) { mishap.react(page); };
   const auto summary = session::run(mishap.setup, &mishap.room, mishap.room.inputs, mishap.devices());
   CHECK(summary.voided == 1);
@@ -274,7 +274,7 @@ TEST_CASE("a limit of the rig is shown on a page; the session ends there, with t
   mishap.setup.rig.limits.session_minutes = 2.5 / 60;
   mishap.room.reacts = [&](const auto& page) { mishap.room.cooperate(page); };
   const auto summary = session::run(mishap.setup, &mishap.room, mishap.room.inputs, mishap.devices());
-  CHECK(summary.status == records::SessionStatus::interrupted);
+  CHECK(summary.status == core::SessionStatus::interrupted);
   const auto& pages = mishap.room.pages;
   const auto page = std::find_if(pages.begin(), pages.end(),
                                  [](const auto& shown) { return shown.fault == FaultKind::limits; });

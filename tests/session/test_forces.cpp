@@ -29,12 +29,13 @@ std::string demo_with(const TemporaryFolder& folder,
 
 TEST_CASE("force cells measure the finger in each trial, and the stimuli are still proven",
           "[session][forces]") {
-  plant::Truth truth;
-  const auto ran = run(shipped("demo"), [&](int, plant::Plant& plant) { truth = plant.truth(); }, {kCells});
+  simulation::Truth truth;
+  const auto ran =
+      run(shipped("demo"), [&](int, simulation::Plant& plant) { truth = plant.truth(); }, {kCells});
   REQUIRE(ran.trials.size() == 10);
   for (const auto& trial : ran.trials) {
-    CHECK(trial.outcome == terms::Outcome::answered);
-    CHECK(trial.proof == terms::Proof::ok);
+    CHECK(trial.outcome == core::Outcome::answered);
+    CHECK(trial.proof == core::Proof::ok);
     const auto& finger = trial.finger;
     CHECK(finger.sensing == "ok");
     CHECK(finger.contact_s.value() > 0.5);
@@ -57,7 +58,7 @@ TEST_CASE("the step of friction is felt where the plan puts it, on average to 0.
   // the simulated participant answers late, because an answer ends the stimulus
   how.observer = "sim:residual=18";
   const auto ran = run(
-      protocol, [](int, plant::Plant&) {}, how);
+      protocol, [](int, simulation::Plant&) {}, how);
   REQUIRE(ran.trials.size() == 20);
   std::vector<double> shift_mm;
   for (const auto& trial : ran.trials) {
@@ -89,7 +90,7 @@ TEST_CASE("the felt boundary is measured at the planned level of friction, here 
   How how{kCells};
   how.observer = "sim:residual=18";
   const auto ran = run(
-      protocol, [](int, plant::Plant&) {}, how);
+      protocol, [](int, simulation::Plant&) {}, how);
   REQUIRE(ran.trials.size() == 5);
   // The margin excludes the place half-way up the step, which is some 4 mm away.
   for (const auto& trial : ran.trials)
@@ -97,13 +98,14 @@ TEST_CASE("the felt boundary is measured at the planned level of friction, here 
 }
 
 TEST_CASE("a trial whose forces are not known says why", "[session][forces]") {
-  using plant::FaultKind;
+  using simulation::FaultKind;
   const auto [kind, why] = GENERATE(std::pair{FaultKind::no_reference, std::string("wire")},
                                     std::pair{FaultKind::broken_bridge, std::string("wire")},
                                     std::pair{FaultKind::dead_bridge, std::string("wire")});
   const auto ran = run(shipped("demo"),
-                       [kind = kind](int trial, plant::Plant& plant) {
-                         if (trial == 3) plant.add({kind, plant.frames() + 192000, plant::kNever, {}, 0});
+                       [kind = kind](int trial, simulation::Plant& plant) {
+                         if (trial == 3)
+                           plant.add({kind, plant.frames() + 192000, simulation::kNever, {}, 0});
                        },
                        {kCells});
   INFO(why);
@@ -116,8 +118,8 @@ TEST_CASE("a trial whose forces are not known says why", "[session][forces]") {
 
 TEST_CASE("something that lies on the surface before a trial is reported", "[session][forces]") {
   const auto ran = run(shipped("demo"),
-                       [](int trial, plant::Plant& plant) {
-                         plant.set_load(trial == 4 ? plant::Load{0.05, 0, 0.1} : plant::Load{});
+                       [](int trial, simulation::Plant& plant) {
+                         plant.set_load(trial == 4 ? simulation::Load{0.05, 0, 0.1} : simulation::Load{});
                        },
                        {kCells});
   for (const auto& trial : ran.trials)
@@ -125,7 +127,7 @@ TEST_CASE("something that lies on the surface before a trial is reported", "[ses
 }
 
 TEST_CASE("without force cells nothing is said about the finger", "[session][forces]") {
-  const auto ran = run(shipped("demo"), [](int, plant::Plant&) {});
+  const auto ran = run(shipped("demo"), [](int, simulation::Plant&) {});
   for (const auto& trial : ran.trials) {
     CHECK(trial.finger.sensing.empty());
     CHECK_FALSE(trial.finger.contact_s.has_value());
@@ -144,7 +146,7 @@ TEST_CASE("a trial with another movement than the protocol asks for is repeated,
   How how{kCells};
   how.observer = "sim:residual=4";
   const auto ran = run(
-      protocol, [](int, plant::Plant&) {}, how);
+      protocol, [](int, simulation::Plant&) {}, how);
   REQUIRE(ran.trials.size() == 25);
   CHECK(ran.summary.answered == 5);
   for (std::size_t i = 0; i < ran.trials.size(); ++i) {
@@ -152,7 +154,7 @@ TEST_CASE("a trial with another movement than the protocol asks for is repeated,
     CHECK(trial.finger.sensing == "slow");
     CHECK(trial.finger.speed_in_window.value() < 0.1);
     CHECK_FALSE(trial.finger.normal_in_window.has_value());
-    CHECK(trial.outcome == (i % 5 == 4 ? terms::Outcome::answered : terms::Outcome::fault));
+    CHECK(trial.outcome == (i % 5 == 4 ? core::Outcome::answered : core::Outcome::fault));
     CHECK(trial.response.has_value() == (i % 5 == 4));
     CHECK(trial.level == ran.trials[i / 5 * 5].level);
   }
@@ -172,7 +174,7 @@ TEST_CASE("a trial with the movement that the protocol asks for counts", "[sessi
   How how{kCells};
   how.observer = "sim:residual=4";
   const auto ran = run(
-      protocol, [](int, plant::Plant&) {}, how);
+      protocol, [](int, simulation::Plant&) {}, how);
   REQUIRE(ran.trials.size() == 5);
   for (const auto& trial : ran.trials) {
     CHECK(trial.finger.sensing == "ok");
@@ -184,6 +186,6 @@ TEST_CASE("a trial with the movement that the protocol asks for counts", "[sessi
 TEST_CASE("a rig without force cells refuses a protocol that asks for a movement", "[session][forces]") {
   TemporaryFolder folder;
   const auto protocol = demo_with(folder, {{"[timing]", "[sensing]\nstrokes = 1\n[timing]"}});
-  CHECK_THROWS_WITH(run(protocol, [](int, plant::Plant&) {}),
+  CHECK_THROWS_WITH(run(protocol, [](int, simulation::Plant&) {}),
                     Catch::Matchers::ContainsSubstring("the rig has no force cells"));
 }

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "station/desk/live_view.hpp"
+#include "station/view/live_view.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
 
@@ -13,7 +13,7 @@ using namespace measured;
 namespace {
 
 struct Watched {
-  std::vector<desk::FingerGauges> gauges;
+  std::vector<view::FingerGauges> gauges;
   int pages_with_bars = 0;
 };
 
@@ -26,14 +26,14 @@ struct Participant : session::Display {
 Watched watch_demo(const std::string& capture) {
   const TemporaryFolder folder;
   const auto request = request_in(folder, shipped("demo"), capture);
-  const auto setup = setup::prepare(request);
+  const auto setup = session::prepare(request);
   Watched watched;
   Participant participant;
   session::Inputs inputs;
   {
-    desk::LiveView view(
-        setup.protocol, setup.rig, [](const desk::LiveState&) {}, "en",
-        [&](desk::FingerGauges gauges) { watched.gauges.push_back(std::move(gauges)); });
+    view::LiveView view(
+        setup.protocol, setup.rig, [](const view::LiveState&) {}, "en",
+        [&](view::FingerGauges gauges) { watched.gauges.push_back(std::move(gauges)); });
     session::run(setup, &participant, inputs, std::make_unique<session::SimulatedRoom>(setup.rig), &view);
   }
   watched.pages_with_bars = participant.pages_with_bars;

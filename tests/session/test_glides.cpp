@@ -7,8 +7,8 @@
 
 using namespace turnpoint;
 using namespace measured;
-using terms::Proof;
-using terms::ProofCause;
+using core::Proof;
+using core::ProofCause;
 
 namespace {
 
@@ -63,9 +63,9 @@ procedures = ["levels"]
 /// ms before the onset, and captures what is played 400 frames later.
 constexpr std::int64_t kToChange = 24'960 + 153'600;
 
-void halve(plant::Plant& plant, std::int64_t from, std::int64_t frames) {
+void halve(simulation::Plant& plant, std::int64_t from, std::int64_t frames) {
   plant.add(
-      {plant::FaultKind::transducer_half, plant.frames() + from, plant.frames() + from + frames, {}, 0});
+      {simulation::FaultKind::transducer_half, plant.frames() + from, plant.frames() + from + frames, {}, 0});
 }
 
 }  // namespace
@@ -77,14 +77,14 @@ TEST_CASE("an amplitude that drops while one scene glides to the next is found i
       changing(folder, GENERATE("zone = { friction = \"0.75 - 0.75 * step\" }", "boundary_mm = 165.0"));
   const auto fault = GENERATE(true, false);
   CAPTURE(protocol, fault);
-  const auto ran = run(protocol, [&](int trial, plant::Plant& plant) {
+  const auto ran = run(protocol, [&](int trial, simulation::Plant& plant) {
     if (trial == 1 && fault) halve(plant, kToChange + 8'000, 3'000);
   });
   REQUIRE(ran.trials.size() == (fault ? 5u : 4u));
   for (const auto& trial : ran.trials) {
     CAPTURE(trial.trial_index, trial.drive_ratio_dB.value_or(99), name(trial.proof_cause));
     if (fault && &trial == &ran.trials[1]) {
-      CHECK(trial.outcome == terms::Outcome::fault);
+      CHECK(trial.outcome == core::Outcome::fault);
       CHECK(trial.proof != Proof::ok);
       CHECK(name(trial.proof_cause) == std::string("level"));
       CHECK(trial.drive_ratio_dB.value() < -3);
@@ -102,7 +102,7 @@ TEST_CASE("an amplitude that drops while one scene glides to the next is found i
 
 TEST_CASE("an adjustment is proven although the surface glides with the slider", "[session][proof][glide]") {
   const auto fault = GENERATE(false, true);
-  const auto ran = run(shipped("boundary-adjustment"), [&](int trial, plant::Plant& plant) {
+  const auto ran = run(shipped("boundary-adjustment"), [&](int trial, simulation::Plant& plant) {
     if (trial == 2 && fault) halve(plant, 400'000, 9'600);
   });
   REQUIRE(ran.trials.size() == (fault ? 19u : 18u));
@@ -110,11 +110,11 @@ TEST_CASE("an adjustment is proven although the surface glides with the slider",
     const auto& trial = ran.trials[k];
     CAPTURE(k, name(trial.proof), name(trial.proof_cause), trial.drive_ratio_dB.value_or(99));
     if (fault && k == 2) {
-      CHECK(trial.outcome == terms::Outcome::fault);
+      CHECK(trial.outcome == core::Outcome::fault);
       CHECK(trial.proof != Proof::ok);
       continue;
     }
-    CHECK(trial.outcome == terms::Outcome::answered);
+    CHECK(trial.outcome == core::Outcome::answered);
     CHECK(trial.proof == Proof::ok);
     REQUIRE(trial.tones.size() == 2);
     for (const auto& tone : trial.tones) CHECK(std::abs(tone.measured_dB.value()) < 0.1);

@@ -125,7 +125,7 @@ std::array<double, 2> friction_of(const std::vector<double>& normal, const std::
 void run_guided(Session& made, const std::string& guidance) {
   TemporaryFolder folder;
   const auto request = request_in(folder, two_intervals(folder, guidance));
-  const auto setup = setup::prepare(request);
+  const auto setup = session::prepare(request);
   session::Inputs inputs;
   const auto summary = session::run(setup, &made.watcher, inputs,
                                     std::make_unique<session::SimulatedRoom>(setup.rig), nullptr);

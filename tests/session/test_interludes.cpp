@@ -5,10 +5,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "station/setup/prepare.hpp"
-#include "station/setup/resume.hpp"
+#include "station/core/read_file.hpp"
+#include "station/session/prepare.hpp"
+#include "station/session/resume.hpp"
 #include "station/store/verify.hpp"
-#include "station/system/read_file.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -80,7 +80,7 @@ std::string around(std::string text) {
 std::vector<std::string> answers_in(const std::string& database, const std::string& session) {
   std::vector<std::string> all;
   const auto stored = store::read_session(database, session);
-  for (const auto* event : records::standing_answers(stored.events))
+  for (const auto* event : core::standing_answers(stored.events))
     for (const auto& answer : event->answers)
       all.push_back(answer.questionnaire + "." + answer.item + "@" + std::to_string(answer.occasion) + "=" +
                     answer.answer);
@@ -134,12 +134,12 @@ TEST_CASE("a questionnaire branches, Back withdraws an answer, and every answer 
   // years), mood 4; later 2.5.
   Person person({0, 0, 12, -1, -1, 1, 3, 2.5});
   const auto summary = session::run(setup, &person, person.inputs, person.devices());
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   CHECK(answers_in(setup.database, summary.session_id) ==
         std::vector<std::string>{"form.consent@0=agree", "you.hand@0=right", "you.mood@0=4",
                                  "awake.screening@0=passed", "then.hard@1=2.5"});
-  CHECK(events_of(setup.database, summary, records::kBackEvent).size() == 2);
-  CHECK(events_of(setup.database, summary, records::kAnswerEvent).size() == 7);
+  CHECK(events_of(setup.database, summary, core::kBackEvent).size() == 2);
+  CHECK(events_of(setup.database, summary, core::kAnswerEvent).size() == 7);
   CHECK(store::verify(setup.database).good());
   CHECK(trials_of(setup.database, summary).size() == 2);
 }
@@ -159,7 +159,7 @@ TEST_CASE("an answer that the item does not allow, and a response button, answer
     react(page);
   };
   const auto summary = session::run(setup, &person, person.inputs, person.devices());
-  CHECK(summary.status == records::SessionStatus::interrupted);
+  CHECK(summary.status == core::SessionStatus::interrupted);
   const auto stands = answers_in(setup.database, summary.session_id);
   REQUIRE(stands.size() >= 2);
   CHECK(stands[0] == "form.consent@0=agree");
@@ -172,7 +172,7 @@ TEST_CASE("a refused consent and a screening that is not passed end the session 
   const bool refuses = GENERATE(true, false);
   Person person(refuses ? std::vector<double>{1} : std::vector<double>{0, 1, 0});
   const auto summary = session::run(setup, &person, person.inputs, person.devices());
-  CHECK(summary.status == records::SessionStatus::stopped);
+  CHECK(summary.status == core::SessionStatus::stopped);
   CHECK(summary.reason.find(refuses ? "refused" : "not passed") != std::string::npos);
   CHECK(summary.trials == 0);
   const std::string farewell = refuses ? "Goodbye, and thanks." : "Come again when you feel better.";
@@ -194,7 +194,7 @@ TEST_CASE("an example is presented as often as the participant wishes", "[sessio
     react(page);
   };
   const auto summary = session::run(setup, &person, person.inputs, person.devices());
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   const auto examples = events_of(setup.database, summary, "example");
   REQUIRE(examples.size() == 3);
   // Each example lasts 0.3 s and begins 0.8 s after its button was pressed.
@@ -214,7 +214,7 @@ TEST_CASE("a session killed at any question goes on with the next one", "[sessio
   const TemporaryFolder folder;
   const auto path = folder / "visit.toml";
   std::ofstream(path) << around(protocol_text("buttons"));
-  setup::RunRequest request;
+  session::RunRequest request;
   request.protocol = path;
   request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
   request.participant = "P01";
@@ -222,8 +222,8 @@ TEST_CASE("a session killed at any question goes on with the next one", "[sessio
   request.observer = "sim";
   request.seed = 3;  // with this seed, the simulated participant gives a mood that passes the screening
   session::Inputs inputs;
-  const auto whole = session::run(setup::prepare(request), nullptr, inputs);
-  REQUIRE(whole.status == records::SessionStatus::completed);
+  const auto whole = session::run(session::prepare(request), nullptr, inputs);
+  REQUIRE(whole.status == core::SessionStatus::completed);
   const auto expected = answers_in(request.database, whole.session_id);
   REQUIRE(expected.size() >= 5);
   for (int page = 1; page <= 12; ++page) {
@@ -231,16 +231,16 @@ TEST_CASE("a session killed at any question goes on with the next one", "[sessio
     request.database = folder / ("cut" + std::to_string(page) + ".sqlite");
     Cut cut(page);
     try {
-      session::run(setup::prepare(request), &cut, inputs);
+      session::run(session::prepare(request), &cut, inputs);
     } catch (const std::runtime_error&) {
     }
     std::ostringstream messages;
-    const auto again = setup::prepare_resume({request.database, "", ""}, messages);
+    const auto again = session::prepare_resume({request.database, "", ""}, messages);
     if (!again) continue;  // the process was killed at the first page, so no question has been answered yet
     const auto resumed = session::run(*again, nullptr, inputs);
-    CHECK(resumed.status == records::SessionStatus::completed);
+    CHECK(resumed.status == core::SessionStatus::completed);
     CHECK(answers_in(request.database, resumed.session_id) == expected);
-    CHECK(events_of(request.database, resumed, records::kAnswerEvent).size() == expected.size());
+    CHECK(events_of(request.database, resumed, core::kAnswerEvent).size() == expected.size());
     CHECK(store::verify(request.database).good());
   }
 }

@@ -3,13 +3,13 @@
 #include <fstream>
 #include <map>
 
-#include "station/drive/prepared_burst.hpp"
+#include "station/audio/prepared_burst.hpp"
+#include "station/core/read_file.hpp"
 #include "station/rig/rig.hpp"
+#include "station/session/prepare.hpp"
 #include "station/session/session.hpp"
 #include "station/session/stage.hpp"
-#include "station/setup/prepare.hpp"
 #include "station/store/read.hpp"
-#include "station/system/read_file.hpp"
 #include "tests/session/many_tones.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -30,11 +30,11 @@ std::string shipped(const std::string& protocol) {
   return std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol + ".toml";
 }
 
-std::vector<records::TrialRow> session_of(const std::string& protocol, const Buffer& buffer, double delay_s,
-                                          const std::string& rig = std::string(TURNPOINT_SOURCE_DIR) +
-                                                                   "/tests/support/thin_plate.toml") {
+std::vector<core::TrialRow> session_of(const std::string& protocol, const Buffer& buffer, double delay_s,
+                                       const std::string& rig = std::string(TURNPOINT_SOURCE_DIR) +
+                                                                "/tests/support/thin_plate.toml") {
   const TemporaryFolder folder;
-  setup::RunRequest request;
+  session::RunRequest request;
   request.protocol = protocol;
   request.rig = rig;
   request.participant = "P01";
@@ -42,21 +42,21 @@ std::vector<records::TrialRow> session_of(const std::string& protocol, const Buf
   request.observer = "sim";
   request.seed = 5;
   request.headless = true;
-  auto setup = setup::prepare(request);
+  auto setup = session::prepare(request);
   setup.rig.output.period_frames = buffer.period_frames;
   setup.rig.output.periods = buffer.periods;
   setup.rig.output.converter_delay_s = delay_s;
   session::Inputs nobody;
   const auto summary = session::run(setup, nullptr, nobody);
-  REQUIRE(summary.status == records::SessionStatus::completed);
-  std::vector<records::TrialRow> trials;
+  REQUIRE(summary.status == core::SessionStatus::completed);
+  std::vector<core::TrialRow> trials;
   for (const auto& block : store::read_session(request.database, summary.session_id).blocks)
     trials.insert(trials.end(), block.trials.begin(), block.trials.end());
   return trials;
 }
 
 /// Returns the first frame of each interval of a trial.
-std::map<int, std::int64_t> onsets(const records::TrialRow& trial) {
+std::map<int, std::int64_t> onsets(const core::TrialRow& trial) {
   std::map<int, std::int64_t> first;
   for (const auto& tone : trial.tones) first.try_emplace(tone.interval_index, tone.onset_frame);
   return first;
@@ -126,7 +126,7 @@ TEST_CASE("simulated sessions include the latency of the rig's buffer", "[sessio
   int later = 0;
   for (std::size_t i = 0; i < short_.size(); ++i) {
     REQUIRE(short_[i].tones.size() == long_[i].tones.size());
-    const auto since = [](const records::TrialRow& trial) {
+    const auto since = [](const core::TrialRow& trial) {
       return trial.tones.back().onset_frame - trial.tones.front().onset_frame;
     };
     if (short_[i].tones.back().scene_index == 0) continue;
@@ -141,18 +141,19 @@ TEST_CASE("on the virtual clock, a trial that follows an aborted one waits until
   const auto stream =
       session::stream_of(rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml"));
   // Three intervals at almost full scale, so that nothing else can be played at the same time.
-  drive::Burst interval;
+  audio::Burst interval;
   interval.length_frames = 192000;
   interval.ramp.frames = 3840;
   interval.tones.count = 1;
   interval.tones.tones[0] = {30000, 0.9, 0, 0};
-  std::vector<drive::PreparedBurst> intervals;
+  std::vector<audio::PreparedBurst> intervals;
   for (int i = 0; i < 3; ++i, interval.start_frame += 288000)
-    intervals.push_back(drive::prepare(interval, drive::format_of(stream.output), stream.limits));
+    intervals.push_back(audio::prepare(interval, audio::format_of(stream.output), stream.limits));
   for (const double aborted_after_s : {0.0, 0.001, 0.03, 0.5, 1.2, 1.6, 3.99, 4.2}) {
     INFO("aborted " << aborted_after_s << " s after the first onset");
     session::Inputs nobody;
-    const auto stage = session::virtual_stage(stream, observer::Observer(observer::parse("sim")), nobody);
+    session::SimulatedParticipant participant(simulation::Observer(simulation::parse("sim")));
+    const auto stage = session::virtual_stage(stream, participant, nobody);
     const auto first = stage->present(intervals, 0);
     REQUIRE(first.size() == 3);
     while (stage->wait_until(first[0].time_ns + static_cast<std::int64_t>(aborted_after_s * 1e9))) {
@@ -177,20 +178,20 @@ TEST_CASE("pages of ABX and match-to-sample call the intervals by the letters of
                                     {"match-to-sample", {"X", "A", "B"}},
                                     {"oddity", {}}}) {
     const TemporaryFolder folder;
-    auto source = system::read_file(shipped("friction-abx"));
+    auto source = core::read_file(shipped("friction-abx"));
     source.replace(source.find("\"abx\""), 5, '"' + kind + '"');
     if (kind == "oddity")
       source.replace(source.find("{ id = \"second\""), 0,
                      "{ id = \"x\", label = { en = \"X\", de = \"X\", ja = \"X\" } },\n");
     std::ofstream(folder / "p.toml") << source;
-    setup::RunRequest request;
+    session::RunRequest request;
     request.protocol = folder / "p.toml";
     request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
     request.participant = "P01";
     request.database = folder / "a.sqlite";
     request.observer = "sim";
     request.headless = true;
-    const auto setup = setup::prepare(request);
+    const auto setup = session::prepare(request);
     Pages pages;
     session::Inputs nobody;
     session::run(setup, &pages, nobody);

@@ -8,9 +8,10 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "station/calibration/apply.hpp"
-#include "station/drive/alsa_device.hpp"
+#include "station/audio/alsa_device.hpp"
+#include "station/core/limits.hpp"
 #include "station/maintenance/calibrate.hpp"
+#include "station/rig/apply.hpp"
 #include "station/sensing/carrier.hpp"
 #include "station/sensing/force_calibration.hpp"
 #include "station/session/self_test.hpp"
@@ -19,7 +20,6 @@
 #include "station/store/open.hpp"
 #include "station/store/signal_code.hpp"
 #include "station/store/stored_signals.hpp"
-#include "station/terms/limits.hpp"
 #include "tests/session/library_card.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
@@ -120,7 +120,7 @@ rig::ForceCells cells_of(double length_mm) {
     }
   rig::ForceCells cells;
   cells.matrix = sensing::fit_weights(weights).calibration.matrix();
-  cells.carrier_Hz = terms::kForceCarrier_Hz;
+  cells.carrier_Hz = core::kForceCarrier_Hz;
   cells.reference_amplitude = kReference * session::kCarrier;
   cells.rated_ratio.fill(10 * kPerN);
   return cells;
@@ -178,12 +178,12 @@ TEST_CASE("a live session reads its force cells through alsa-lib, and stores wha
   };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
   CAPTURE(faults);
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   const auto trials = live_room::trials_of(setup.database, summary);
   REQUIRE(trials.size() == 2);
   for (const auto& trial : trials) {
-    CHECK(trial.outcome == terms::Outcome::answered);
-    CHECK(trial.proof == terms::Proof::ok);
+    CHECK(trial.outcome == core::Outcome::answered);
+    CHECK(trial.proof == core::Proof::ok);
     if (finger.wire_off) {
       CHECK(trial.finger.sensing != "ok");
       CHECK_FALSE(trial.finger.normal_N);
@@ -216,31 +216,31 @@ TEST_CASE("the mixer's levels belong to a calibration", "[session][alsa][mixer]"
                    {Kind::level, "Meter", {3, 4}, true}};
   auto rig = rig::load(TURNPOINT_SOURCE_DIR "/deploy/rigs/raspberry-pi-aluminium.toml");
   rig.output.uri = "alsa:looped";
-  CHECK(drive::card_switch(rig.output.uri, "Auto Mute Switch") == false);
-  CHECK_FALSE(drive::card_switch(rig.output.uri, "Headphone Switch"));
-  CHECK_FALSE(drive::mixer_levels("alsa:absent"));
-  CHECK_FALSE(drive::mixer_levels("sim:"));
+  CHECK(audio::card_switch(rig.output.uri, "Auto Mute Switch") == false);
+  CHECK_FALSE(audio::card_switch(rig.output.uri, "Headphone Switch"));
+  CHECK_FALSE(audio::mixer_levels("alsa:absent"));
+  CHECK_FALSE(audio::mixer_levels("sim:"));
 
   // What a calibration writes comes back from the file, and the rig then has it.
-  calibration::Calibration calibration;
+  rig::Calibration calibration;
   calibration.rig_name = rig.name, calibration.rig_sha256 = rig.sha256;
-  calibration.made_on = calibration::today();
+  calibration.made_on = rig::today();
   const auto path = folder / "calibration.toml";
   maintenance::write_calibration(calibration, rig, path);
-  const auto made = calibration::load(path);
+  const auto made = rig::load_calibration(path);
   const std::map<std::string, std::string> levels{{"Digital Playback Volume", "207, 207"},
                                                   {"Auto Mute Switch", "off"},
                                                   {"Output", "Phones"},
                                                   {"Mic,1", "10, 12"}};
   CHECK(made.mixer == levels);
-  const auto calibrated = calibration::applied(made, rig);
+  const auto calibrated = rig::applied(made, rig);
   const auto check = [&] { return session::row_of(session::judged(session::read_mixer(calibrated))); };
   card.controls.back().values = {90, 90};  // a meter may move
-  CHECK(check().verdict == records::Verdict::passed);
-  CHECK(session::judged(session::read_mixer(rig)).verdict == records::Verdict::not_possible);
+  CHECK(check().verdict == core::Verdict::passed);
+  CHECK(session::judged(session::read_mixer(rig)).verdict == core::Verdict::not_possible);
 
   SECTION("another card that captures counts, even if its mixer is equal") {
-    CHECK(drive::card_of("alsa:plughw:CARD=X,DEV=1") == drive::card_of("alsa:hw:CARD=X,DEV=0"));
+    CHECK(audio::card_of("alsa:plughw:CARD=X,DEV=1") == audio::card_of("alsa:hw:CARD=X,DEV=0"));
     auto two = rig;
     two.capture = rig::Capture{"alsa:another", 5, {1}, 0, 2, {}};
     const auto both = session::mixer_levels(two);
@@ -251,7 +251,7 @@ TEST_CASE("the mixer's levels belong to a calibration", "[session][alsa][mixer]"
   }
   SECTION("a level that was changed is named with both values") {
     card.controls[0].values = {207, 180};
-    CHECK(check().verdict == records::Verdict::failed);
+    CHECK(check().verdict == core::Verdict::failed);
     CHECK(check().what == "the control \"Digital Playback Volume\" of the sound card is at 207, 180; during the "
                           "calibration it was at 207, 207");
   }
@@ -271,10 +271,10 @@ TEST_CASE("the mixer's levels belong to a calibration", "[session][alsa][mixer]"
     CHECK_THROWS_WITH(maintenance::write_calibration(made, rig, path),
                       Catch::Matchers::ContainsSubstring("Digital Playback Volume") &&
                           Catch::Matchers::ContainsSubstring("set it back"));
-    CHECK(calibration::load(path).mixer == levels);
+    CHECK(rig::load_calibration(path).mixer == levels);
     // A new calibration takes the new levels.
     maintenance::write_calibration(calibration, rig, path);
-    CHECK(calibration::load(path).mixer.at("Digital Playback Volume") == "1, 1");
+    CHECK(rig::load_calibration(path).mixer.at("Digital Playback Volume") == "1, 1");
   }
   card.controls.clear();
 }

@@ -4,9 +4,9 @@
 #include <thread>
 #include <utility>
 
-#include "station/lines/watched_lines.hpp"
-#include "station/setup/prepare.hpp"
-#include "station/text/problem.hpp"
+#include "station/core/problem.hpp"
+#include "station/io/watched_lines.hpp"
+#include "station/session/prepare.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -25,7 +25,7 @@ TEST_CASE("a live session runs from the operator's arming to answers by buttons,
   Room room;
   room.reacts = [&room](const auto& page) { room.cooperate(page); };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   CHECK(room.pages.front().kind == PageKind::fault);  // the first page asks the operator to arm
   CHECK(room.pages.front().amplifier == "disarmed");
   CHECK(room.heartbeats() > 20);
@@ -33,7 +33,7 @@ TEST_CASE("a live session runs from the operator's arming to answers by buttons,
   REQUIRE(trials.size() == 2);
   for (const auto& trial : trials) {
     CHECK(trial.response == "left");
-    CHECK(trial.outcome == terms::Outcome::answered);
+    CHECK(trial.outcome == core::Outcome::answered);
     CHECK(trial.clock_slope_ns_per_frame.has_value());
   }
   // The amplifier must be enabled once for each trial, in silence before its stimulus, and be switched off
@@ -101,13 +101,13 @@ TEST_CASE(
     room.cooperate(page);
   };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   const auto trials = trials_of(setup.database, summary);
   REQUIRE(trials.size() == 3);
-  CHECK(trials[0].outcome == terms::Outcome::fault);
+  CHECK(trials[0].outcome == core::Outcome::fault);
   CHECK(trials[1].level == trials[0].level);
   CHECK(trials[1].trial_in_block == trials[0].trial_in_block);
-  CHECK(trials[1].outcome == terms::Outcome::answered);
+  CHECK(trials[1].outcome == core::Outcome::answered);
   const auto enables = room.enables();
   REQUIRE(enables.size() == 6);
   CHECK(enables[1].level == 0);
@@ -135,11 +135,11 @@ TEST_CASE(
     room.cooperate(page);
   };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   CHECK(refused >= 2);
   const auto trials = trials_of(setup.database, summary);
   REQUIRE(trials.size() == 3);
-  CHECK(trials[0].outcome == terms::Outcome::fault);
+  CHECK(trials[0].outcome == core::Outcome::fault);
   CHECK(trials[1].level == trials[0].level);
   CHECK(events_of(setup.database, summary, "arm").back().value == "armed");
   CHECK_FALSE(room.lines->level(SharedLines::enable));
@@ -165,7 +165,7 @@ TEST_CASE("faults that occur while a fault page is shown are cleared together wi
     room.cooperate(page);
   };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   const auto is = [](PageKind kind) { return [kind](const auto& page) { return page.kind == kind; }; };
   const auto paused = std::find_if(room.pages.begin(), room.pages.end(), is(PageKind::paused));
   REQUIRE(paused != room.pages.end());
@@ -176,7 +176,7 @@ TEST_CASE("continuing before the lost buttons are back shows the fault page agai
   const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
-  const auto buttons = std::make_shared<lines::SimulatedLines>(2);
+  const auto buttons = std::make_shared<io::SimulatedLines>(2);
   int told = 0;
   room.reacts = [&](const auto& page) {
     if (page.kind == PageKind::stimulus && room.stimuli == 1) return buttons->remove();
@@ -193,18 +193,18 @@ TEST_CASE("continuing before the lost buttons are back shows the fault page agai
     room.cooperate(page);
   };
   auto devices = room.devices();
-  lines::WatchedLines plan;
+  io::WatchedLines plan;
   plan.lines = 2;
   plan.button_rules.refractory_ns = 0;
   plan.names = {"left", "right"};
-  devices.buttons = lines::watch_lines(opener(buttons), plan, session::handlers_for(room.inputs));
+  devices.buttons = io::watch_lines(opener(buttons), plan, session::handlers_for(room.inputs));
   const auto summary = session::run(setup, &room, room.inputs, std::move(devices));
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   CHECK(told >= 3);
   const auto trials = trials_of(setup.database, summary);
   REQUIRE(trials.size() == 3);
-  CHECK(trials[0].outcome == terms::Outcome::fault);
-  CHECK(trials[1].outcome == terms::Outcome::answered);
+  CHECK(trials[0].outcome == core::Outcome::fault);
+  CHECK(trials[1].outcome == core::Outcome::answered);
   CHECK(trials[1].response == trials[2].response);
   CHECK(events_of(setup.database, summary, "notice").back().value ==
         "panel: the lost device is connected again");
@@ -223,7 +223,7 @@ TEST_CASE("disarming by the operator makes the trial void, and arming again cont
     room.cooperate(page);
   };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   CHECK(summary.voided == 1);
   CHECK(summary.answered == 2);
 }
@@ -250,7 +250,7 @@ TEST_CASE("contacts of a finger are logged with their place", "[session][live]")
   auto devices = room.devices();
   auto* panel = devices.buttons.get();
   room.reacts = [&](const auto& page) {
-    if (page.kind == PageKind::stimulus) panel->simulate(touch::Contact{system::monotonic_ns(), true, 0.25});
+    if (page.kind == PageKind::stimulus) panel->simulate(io::Contact{system::monotonic_ns(), true, 0.25});
     room.cooperate(page);
   };
   const auto summary = session::run(setup, &room, room.inputs, std::move(devices));
@@ -305,7 +305,7 @@ TEST_CASE("a session that has used up its time stops and gives the reason", "[se
   Room room;
   room.reacts = [&](const auto& page) { room.cooperate(page); };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
-  CHECK(summary.status == records::SessionStatus::interrupted);
+  CHECK(summary.status == core::SessionStatus::interrupted);
   CHECK(summary.reason.find("session's time") != std::string::npos);
 }
 
@@ -320,7 +320,7 @@ TEST_CASE("a live session refuses a low tone without a measured sound level befo
   Room room;
   room.reacts = [&](const auto& page) { room.cooperate(page); };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
-  CHECK(summary.status == records::SessionStatus::interrupted);
+  CHECK(summary.status == core::SessionStatus::interrupted);
   CHECK(summary.reason.find("without a measured sound level") != std::string::npos);
   CHECK(room.stimuli == 0);
   CHECK(room.enables().empty());
@@ -330,19 +330,19 @@ TEST_CASE(
     "a session plays through alsa-lib's null device if the rig allows its plug-ins, but not through a "
     "resampler",
     "[session][live][alsa]") {
-  ::setenv("ALSA_CONFIG_PATH", TURNPOINT_SOURCE_DIR "/tests/drive/asound.conf", 1);
+  ::setenv("ALSA_CONFIG_PATH", TURNPOINT_SOURCE_DIR "/tests/audio/asound.conf", 1);
   const TemporaryFolder folder;
-  setup::RunRequest request;
+  session::RunRequest request;
   request.participant = "P01";
   request.database = folder / "a.sqlite";
   auto setup = live_setup(folder / "a.sqlite");
   setup.rig.output.uri = "alsa:to_file";
   setup.rig.output.allow_plugin = {"null", "file"};
-  setup.run_mode = terms::RunMode::simulated;
+  setup.run_mode = core::RunMode::simulated;
   setup.observer = "sim";
   session::Inputs inputs;
   const auto summary = session::run(setup, nullptr, inputs);
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   CHECK(summary.answered == 2);
   setup.rig.output.uri = "alsa:rated";  // negative control: a resampler is still refused
   CHECK_THROWS(session::run(setup, nullptr, inputs));

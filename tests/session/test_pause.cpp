@@ -62,7 +62,7 @@ TEST_CASE("a pause on the page of instructions is shown at once, and the instruc
           "[session][pause]") {
   PausingRoom room;
   const auto summary = room.run([](const auto& page) { return page.kind == PageKind::instructions; });
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   CHECK(summary.answered == 2);
   CHECK(room.answered_by() == PageKind::paused);
   CHECK(room.pages[room.asked_at + 1].kind == PageKind::instructions);
@@ -77,7 +77,7 @@ TEST_CASE("a pause in a break is shown at once, and the time of the break contin
   const auto summary = room.run([remaining_s](const auto& page) {
     return page.kind == PageKind::rest && (page.remaining_s > 0) == (remaining_s > 0);
   });
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   CHECK(room.answered_by() == PageKind::paused);
   const auto& after = room.pages[room.asked_at + 1];
   CHECK(after.kind == PageKind::rest);
@@ -91,9 +91,9 @@ TEST_CASE("a pause while the row of a trial is being stored comes before the nex
     explicit Storing(PausingRoom& in) : room(in) {}
     void trial_begins(const trial::TrialSpec&, const protocol::Block&,
                       const session::PlanAhead::Plans&) override {}
-    void trial_ended(const trial::TrialSpec&, const records::TrialRow& row) override {
+    void trial_ended(const trial::TrialSpec&, const core::TrialRow& row) override {
       // A machine that stalls makes a trial void; then a fault page comes first.
-      if (!room.asked && row.outcome == terms::Outcome::answered) room.ask();
+      if (!room.asked && row.outcome == core::Outcome::answered) room.ask();
     }
   };
   PausingRoom room;
@@ -133,7 +133,7 @@ TEST_CASE("a pause that comes together with a fault is not forgotten when the fa
     room.push(InputKind::fault);
     return true;
   });
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   CHECK(room.answered_by() == PageKind::fault);
   CHECK(room.pages[room.asked_at + 1].kind == PageKind::paused);
 }

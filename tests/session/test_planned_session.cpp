@@ -9,29 +9,29 @@
 #include <string>
 #include <vector>
 
-#include "station/desk/report_data.hpp"
+#include "station/core/problem.hpp"
+#include "station/core/read_file.hpp"
+#include "station/core/usage_error.hpp"
 #include "station/procedure/procedure.hpp"
 #include "station/session/planned_session.hpp"
-#include "station/setup/prepare.hpp"
-#include "station/setup/resume.hpp"
+#include "station/session/prepare.hpp"
+#include "station/session/resume.hpp"
 #include "station/store/read.hpp"
-#include "station/system/read_file.hpp"
-#include "station/terms/usage_error.hpp"
-#include "station/text/problem.hpp"
+#include "station/view/report_data.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/quick_rig.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
-using records::SessionStatus;
+using core::SessionStatus;
 
 namespace {
 
 const std::string kRoot = TURNPOINT_SOURCE_DIR;
 
-setup::RunRequest training_for(const std::string& participant, const std::string& database) {
-  setup::RunRequest request;
+session::RunRequest training_for(const std::string& participant, const std::string& database) {
+  session::RunRequest request;
   request.protocol = kRoot + "/protocols/friction-training.toml";
   request.rig = kRoot + "/tests/support/thin_plate.toml";
   request.participant = participant;
@@ -41,9 +41,9 @@ setup::RunRequest training_for(const std::string& participant, const std::string
   return request;
 }
 
-session::Summary run(const setup::RunRequest& request) {
+session::Summary run(const session::RunRequest& request) {
   session::Inputs inputs;
-  return session::run(setup::prepare(request), nullptr, inputs);
+  return session::run(session::prepare(request), nullptr, inputs);
 }
 
 /// A setup for a pilot session of the training, without a database.
@@ -58,7 +58,7 @@ session::Setup training(int min_days, protocol::Unfinished incomplete = protocol
 
 store::SessionRecord on_day(const std::string& date, int number,
                             SessionStatus status = SessionStatus::completed,
-                            terms::RunMode mode = terms::RunMode::pilot) {
+                            core::RunMode mode = core::RunMode::pilot) {
   store::SessionRecord session;
   session.start.started_local = date + "T23:59:59+0100";
   session.start.planned_session = number;
@@ -86,11 +86,10 @@ TEST_CASE("the next session is the first one that was not completed", "[session]
   CHECK(next({on_day("2026-11-01", 1, SessionStatus::interrupted)}) == 1);
   CHECK(next({on_day("2026-11-01", 1), on_day("2026-11-02", 2, SessionStatus::stopped)}) == 2);
   CHECK(next({on_day("2026-11-01", 2)}) == 1);  // the first session was left out, so it comes next
-  CHECK(next({on_day("2026-11-01", 1, SessionStatus::completed, terms::RunMode::simulated)}) == 1);
+  CHECK(next({on_day("2026-11-01", 1, SessionStatus::completed, core::RunMode::simulated)}) == 1);
   const auto over = next_session(
       setup, {on_day("2026-11-01", 1), on_day("2026-11-02", 2), on_day("2026-11-03", 3)}, "2026-11-24");
-  CHECK(texts::say(over.problem, "en") ==
-        "participant P01 has completed all 3 sessions of friction-training");
+  CHECK(core::say(over.problem, "en") == "participant P01 has completed all 3 sessions of friction-training");
 
   const auto counted = training(0, protocol::Unfinished::count);
   CHECK(next_session(counted, {on_day("2026-11-01", 1, SessionStatus::interrupted)}, "2026-11-24").number ==
@@ -106,11 +105,11 @@ TEST_CASE("a session that comes too early is refused with the date from which it
   for (const auto* day : {"2024-02-27", "2024-02-28"}) {
     const auto refused = next_session(setup, earlier, day);
     CHECK(refused.number == 2);
-    CHECK(texts::say(refused.problem, "en") ==
+    CHECK(core::say(refused.problem, "en") ==
           "participant P01 had session 1 on 2024-02-27, and the protocol asks for at least 2 days between "
           "sessions: "
           "session 2 is allowed from 2024-02-29");
-    CHECK(texts::say(refused.allowed, "en").find("--early") != std::string::npos);
+    CHECK(core::say(refused.allowed, "en").find("--early") != std::string::npos);
     REQUIRE(refused.too_early);
     CHECK(refused.too_early->participant == setup.participant);
     CHECK(refused.too_early->number == 2);
@@ -120,7 +119,7 @@ TEST_CASE("a session that comes too early is refused with the date from which it
     CHECK(refused.too_early->min_days == 2);
   }
   CHECK(next_session(setup, earlier, "2024-02-29").problem.empty());
-  CHECK(texts::say(next_session(setup, {on_day("2023-12-31", 1)}, "2024-01-01").problem, "en")
+  CHECK(core::say(next_session(setup, {on_day("2023-12-31", 1)}, "2024-01-01").problem, "en")
             .find("2024-01-02") != std::string::npos);
   CHECK(next_session(setup, {on_day("2024-02-20", 1), on_day("2024-02-27", 2)}, "2024-02-28").number == 3);
   CHECK_FALSE(
@@ -134,8 +133,8 @@ TEST_CASE("a session that comes too early is refused with the date from which it
   CHECK(next_session(setup, earlier, "2024-02-29").overruled.empty());
 
   setup.early.clear();
-  setup.run_mode = terms::RunMode::simulated;
-  const auto simulated = on_day("2024-02-27", 1, SessionStatus::completed, terms::RunMode::simulated);
+  setup.run_mode = core::RunMode::simulated;
+  const auto simulated = on_day("2024-02-27", 1, SessionStatus::completed, core::RunMode::simulated);
   CHECK(next_session(setup, {simulated}, "2024-02-27").problem.empty());
   CHECK(next_session(setup, {simulated}, "2024-02-27").number == 2);
 }
@@ -145,12 +144,12 @@ TEST_CASE("the operator can choose another session", "[session]") {
   setup.planned_session = 3;
   CHECK(next_session(setup, {}, "2026-11-24").number == 3);
   setup.planned_session = 4;
-  CHECK(texts::say(next_session(setup, {}, "2026-11-24").problem, "en") ==
+  CHECK(core::say(next_session(setup, {}, "2026-11-24").problem, "en") ==
         "--planned-session 4: the protocol plans 3 sessions");
   CHECK_FALSE(next_session(setup, {}, "2026-11-24").too_early);
   setup.planned_session = 1;
   setup.protocol.sessions.reset();
-  CHECK(texts::say(next_session(setup, {}, "2026-11-24").problem, "en") ==
+  CHECK(core::say(next_session(setup, {}, "2026-11-24").problem, "en") ==
         "the protocol friction-training plans no sessions");
 }
 
@@ -176,15 +175,15 @@ TEST_CASE("two participants of two groups go through their sessions, and group a
           for (const auto& [name, value] : trial.factors)
             if (name == "training") CHECK(std::get<std::string>(value) == group);
     }
-  CHECK_THROWS_AS(run(training_for("A", db)), text::BadInput);
+  CHECK_THROWS_AS(run(training_for("A", db)), core::BadInput);
   // A participant whose code is typed later is refused when the session begins, before anything is stored.
-  auto setup = setup::prepare([&] {
-    auto request = training_for(setup::kCodeToCome, db);
+  auto setup = session::prepare([&] {
+    auto request = training_for(session::kCodeToCome, db);
     return request;
   }());
   setup.participant = "A";
   session::Inputs inputs;
-  CHECK_THROWS_AS(session::run(setup, nullptr, inputs), terms::UsageError);
+  CHECK_THROWS_AS(session::run(setup, nullptr, inputs), core::UsageError);
   CHECK(store::list_sessions(db).size() == 6);
 }
 
@@ -223,7 +222,7 @@ namespace {
 /// Writes a study of two sessions with 14 trials of one staircase, which continues, and returns its path.
 std::string continuing_study(const TemporaryFolder& folder, const std::string& version = "1.0.0",
                              const std::string& more = "continues = true") {
-  auto source = system::read_file(kRoot + "/protocols/friction-training.toml");
+  auto source = core::read_file(kRoot + "/protocols/friction-training.toml");
   source.resize(source.find("[[procedure]]"));
   source = replaced(source, "version = \"1.0.0\"", "version = \"" + version + "\"");
   source = replaced(source, "count = 3", "count = 2");
@@ -252,17 +251,17 @@ trials = 14
 
 /// Adds the trials of a session to those before, and checks that one staircase presents them all.
 void add_and_compare(const std::string& database, const session::Summary& summary, const std::string& path,
-                     std::vector<records::TrialRow>& rows) {
+                     std::vector<core::TrialRow>& rows) {
   for (const auto& block : store::read_session(database, summary.session_id).blocks)
     rows.insert(rows.end(), block.trials.begin(), block.trials.end());
   const auto protocol = protocol::load(path);
   const auto stairs = procedure::make_procedure(protocol.procedures.front(), {}, {});
   for (const auto& row : rows) {
-    if (row.type != terms::TrialType::experimental || row.outcome == terms::Outcome::aborted) continue;
+    if (row.type != core::TrialType::experimental || row.outcome == core::Outcome::aborted) continue;
     REQUIRE(stairs->next()->level == row.level.value());
-    stairs->record(row.outcome != terms::Outcome::answered ? procedure::Answer::none
-                   : row.correct.value_or(false)           ? procedure::Answer::one
-                                                           : procedure::Answer::zero);
+    stairs->record(row.outcome != core::Outcome::answered ? procedure::Answer::none
+                   : row.correct.value_or(false)          ? procedure::Answer::one
+                                                          : procedure::Answer::zero);
   }
 }
 
@@ -273,7 +272,7 @@ TEST_CASE("a procedure that continues goes on where the participant's last sessi
   const TemporaryFolder folder;
   auto request = training_for("P01", folder / "a.sqlite");
   request.protocol = continuing_study(folder);
-  std::vector<records::TrialRow> rows;
+  std::vector<core::TrialRow> rows;
   const auto first = run(request);
   add_and_compare(request.database, first, request.protocol, rows);
   const auto end_of_first = rows.size();
@@ -283,23 +282,23 @@ TEST_CASE("a procedure that continues goes on where the participant's last sessi
       int left = 5;
       void trial_begins(const trial::TrialSpec&, const protocol::Block&,
                         const session::PlanAhead::Plans&) override {}
-      void trial_ended(const trial::TrialSpec&, const records::TrialRow&) override {
+      void trial_ended(const trial::TrialSpec&, const core::TrialRow&) override {
         if (--left == 0) throw std::runtime_error("cut");
       }
     } cut;
     session::Inputs inputs;
-    CHECK_THROWS(session::run(setup::prepare(request), nullptr, inputs, &cut));
+    CHECK_THROWS(session::run(session::prepare(request), nullptr, inputs, &cut));
     std::ostringstream messages;
-    setup::ResumeRequest again;
+    session::ResumeRequest again;
     again.database = request.database;
-    const auto resumed = setup::prepare_resume(again, messages);
+    const auto resumed = session::prepare_resume(again, messages);
     REQUIRE(resumed);
     const auto second = session::run(*resumed, nullptr, inputs);
     CHECK(second.status == SessionStatus::completed);
     add_and_compare(request.database, second, request.protocol, rows);
     CHECK(rows.size() == 2 * end_of_first);
     CHECK(rows[end_of_first].level != rows.front().level);
-    const auto report = desk::report_data(request.database, second.session_id);
+    const auto report = view::report_data(request.database, second.session_id);
     REQUIRE(report.estimates.size() == 1);
     REQUIRE(second.estimates.size() == 1);
     CHECK(report.estimates[0].mean == second.estimates[0].mean);
@@ -317,13 +316,13 @@ TEST_CASE("a procedure that continues goes on where the participant's last sessi
   SECTION("another version of the protocol is refused, and nothing is stored") {
     request.protocol = continuing_study(folder, "1.1.0");
     CHECK_THROWS_WITH(
-        setup::prepare(request),
+        session::prepare(request),
         Catch::Matchers::ContainsSubstring("participant P01 had session 1 with version 1.0.0") &&
             Catch::Matchers::ContainsSubstring("this file is version 1.1.0"));
     CHECK(store::list_sessions(request.database).size() == 1);
   }
   SECTION("a changed procedure of the same version is refused, and nothing is stored") {
-    auto source = system::read_file(request.protocol);
+    auto source = core::read_file(request.protocol);
     std::ofstream(request.protocol) << replaced(source, "start = -6.0", "start = -7.0");
     CHECK_THROWS_WITH(run(request),
                       Catch::Matchers::ContainsSubstring("would present level -7, but level -6 is stored"));

@@ -8,8 +8,8 @@
 
 using namespace turnpoint;
 using namespace measured;
-using terms::Proof;
-using terms::ProofCause;
+using core::Proof;
+using core::ProofCause;
 
 namespace {
 
@@ -21,7 +21,7 @@ Proof proof_of_silence(double tone_dB) {
 
 /// The amplitude of a planned tone on channel 1 of the captured signal, in its second 100 ms, at the frames
 /// at which it was planned.
-double amplitude_in(const records::SignalRow& signal, const records::ToneRow& tone) {
+double amplitude_in(const core::SignalRow& signal, const core::ToneRow& tone) {
   const auto channel = store::decode(signal).at(1);
   constexpr std::int64_t count = 19'200;
   std::complex<double> sum = 0;
@@ -39,7 +39,7 @@ TEST_CASE("without a pick-up a session runs, and each trial is unproven", "[sess
   auto request = request_in(folder, shipped("demo"));
   request.rig = kSource + "/tests/support/thin_plate.toml";
   session::Inputs inputs;
-  const auto summary = session::run(setup::prepare(request), nullptr, inputs);
+  const auto summary = session::run(session::prepare(request), nullptr, inputs);
   for (const auto& block : store::read_session(request.database, summary.session_id).blocks)
     for (const auto& trial : block.trials) {
       CHECK(trial.proof == Proof::unproven);
@@ -48,7 +48,7 @@ TEST_CASE("without a pick-up a session runs, and each trial is unproven", "[sess
 }
 
 TEST_CASE("a pick-up proves each trial of a good session", "[session][proof]") {
-  const auto ran = run(shipped("demo"), [](int, plant::Plant&) {});
+  const auto ran = run(shipped("demo"), [](int, simulation::Plant&) {});
   CHECK(ran.summary.voided == 0);
   REQUIRE(ran.trials.size() == 10);
   for (const auto& trial : ran.trials) {
@@ -64,31 +64,31 @@ TEST_CASE("a pick-up proves each trial of a good session", "[session][proof]") {
 
 TEST_CASE("a stimulus that the surface did not follow is void, named, and presented again",
           "[session][proof]") {
-  using plant::FaultKind;
+  using simulation::FaultKind;
   const auto [kind, cause] = GENERATE(std::pair{FaultKind::transducer_half, ProofCause::half},
                                       std::pair{FaultKind::drive_late, ProofCause::late},
                                       std::pair{FaultKind::frequency_off, ProofCause::frequency});
-  const auto ran = run(shipped("demo"), [kind = kind](int trial, plant::Plant& plant) {
-    if (trial == 3) plant.add({kind, plant.frames() + 1, plant::kNever, {}, 0});
+  const auto ran = run(shipped("demo"), [kind = kind](int trial, simulation::Plant& plant) {
+    if (trial == 3) plant.add({kind, plant.frames() + 1, simulation::kNever, {}, 0});
   });
   INFO(name(cause));
   REQUIRE(ran.trials.size() == 11);
   for (const auto& trial : ran.trials) {
     if (trial.trial_index == 3) {
-      CHECK(trial.outcome == terms::Outcome::fault);
+      CHECK(trial.outcome == core::Outcome::fault);
       CHECK(trial.proof == (cause == ProofCause::late ? Proof::refused : Proof::stopped));
       CHECK(name(trial.proof_cause) == std::string(name(cause)));
     } else {
-      CHECK(trial.outcome == terms::Outcome::answered);
+      CHECK(trial.outcome == core::Outcome::answered);
     }
   }
   CHECK(ran.summary.answered == 10);
 }
 
 TEST_CASE("what was captured in a void trial is kept with it, sample by sample", "[session][proof][raw]") {
-  const auto with = [](plant::FaultKind kind) {
-    const auto ran = run(shipped("demo"), [kind](int trial, plant::Plant& plant) {
-      if (trial == 3) plant.add({kind, plant.frames() + 1, plant::kNever, {}, 0});
+  const auto with = [](simulation::FaultKind kind) {
+    const auto ran = run(shipped("demo"), [kind](int trial, simulation::Plant& plant) {
+      if (trial == 3) plant.add({kind, plant.frames() + 1, simulation::kNever, {}, 0});
     });
     REQUIRE(ran.raw.size() == 1);
     CHECK(ran.raw[0].trial_index == 3);
@@ -105,7 +105,8 @@ TEST_CASE("what was captured in a void trial is kept with it, sample by sample",
                                 .margin(1e-5));
     return amplitude_in(signal, tone);
   };
-  const double whole = with(plant::FaultKind::drive_late), half = with(plant::FaultKind::transducer_half);
+  const double whole = with(simulation::FaultKind::drive_late),
+               half = with(simulation::FaultKind::transducer_half);
   CHECK(whole > 0.01);
   CHECK(half / whole == Approx(0.5).epsilon(0.001));
 }
@@ -115,8 +116,9 @@ TEST_CASE("a surface that moves before the stimulus makes the trial void, and th
   const auto [um, verdict] =
       GENERATE(std::pair{0.02, Proof::refused}, std::pair{0.001, Proof::flagged}, std::pair{0.0, Proof::ok});
   CAPTURE(um);
-  const auto ran = run(shipped("demo"), [um = um](int trial, plant::Plant& plant) {
-    if (trial == 3) plant.add({plant::FaultKind::sounding, plant.frames() + 1, plant::kNever, um, 0});
+  const auto ran = run(shipped("demo"), [um = um](int trial, simulation::Plant& plant) {
+    if (trial == 3)
+      plant.add({simulation::FaultKind::sounding, plant.frames() + 1, simulation::kNever, um, 0});
   });
   REQUIRE(ran.trials.size() == (verdict == Proof::refused ? 11 : 10));
   for (const auto& trial : ran.trials) {
@@ -125,21 +127,20 @@ TEST_CASE("a surface that moves before the stimulus makes the trial void, and th
     if (sounding && verdict != Proof::ok) CHECK(trial.proof_cause == ProofCause::noisy);
     CHECK(trial.silence_tone_dB.has_value() == (sounding && um > 0));
     if (sounding && um > 0) CHECK(proof_of_silence(trial.silence_tone_dB.value()) == verdict);
-    CHECK(trial.outcome ==
-          (trial.proof == Proof::refused ? terms::Outcome::fault : terms::Outcome::answered));
+    CHECK(trial.outcome == (trial.proof == Proof::refused ? core::Outcome::fault : core::Outcome::answered));
   }
   CHECK(ran.summary.answered == 10);
 }
 
 TEST_CASE("a dead surface stops the session with a page that says so", "[session][proof]") {
-  const auto ran =
-      run(shipped("demo"),
-          [](int trial, plant::Plant& plant) {
-            if (trial == 2)
-              plant.add({plant::FaultKind::transducer_dead, plant.frames() + 1, plant::kNever, {}, 0});
-          },
-          {kPickUps, false});
-  CHECK(ran.summary.status == records::SessionStatus::interrupted);
+  const auto ran = run(
+      shipped("demo"),
+      [](int trial, simulation::Plant& plant) {
+        if (trial == 2)
+          plant.add({simulation::FaultKind::transducer_dead, plant.frames() + 1, simulation::kNever, {}, 0});
+      },
+      {kPickUps, false});
+  CHECK(ran.summary.status == core::SessionStatus::interrupted);
   REQUIRE(ran.trials.size() == 5);
   CHECK(ran.trials[2].proof == Proof::stopped);
   CHECK(ran.trials[2].proof_cause == ProofCause::dead);

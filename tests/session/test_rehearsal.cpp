@@ -1,8 +1,8 @@
 #include <string>
 
-#include "station/observer/observer.hpp"
+#include "station/rehearsal/rehearsal.hpp"
 #include "station/session/session.hpp"
-#include "station/simulation/rehearsal.hpp"
+#include "station/simulation/observer.hpp"
 #include "station/store/read.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -22,7 +22,7 @@ TEST_CASE("a rehearsed session has the same trials, answers and times as a sessi
   setup.protocol = protocol::load(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol + ".toml");
   setup.participant = "P01";
   setup.database = folder / "a.sqlite";
-  setup.run_mode = terms::RunMode::simulated;
+  setup.run_mode = core::RunMode::simulated;
   setup.language = setup.protocol.languages.front();
   setup.observer = "sim";
   setup.seed = 7;
@@ -30,7 +30,7 @@ TEST_CASE("a rehearsed session has the same trials, answers and times as a sessi
   const auto summary = session::run(setup, nullptr, inputs);
   const auto stored = store::read_session(setup.database, summary.session_id);
   const auto rehearsed =
-      simulation::rehearse(setup.protocol, 0, 7, simulation::rehearser(observer::Observer({})));
+      rehearsal::rehearse(setup.protocol, 0, 7, rehearsal::rehearser(simulation::Observer({})));
   REQUIRE(rehearsed.blocks.size() == stored.blocks.size());
   REQUIRE(rehearsed.trials == summary.trials);
   for (std::size_t b = 0; b < stored.blocks.size(); ++b) {

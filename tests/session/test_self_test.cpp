@@ -7,7 +7,7 @@
 
 using namespace turnpoint;
 using namespace turnpoint::session;
-using records::name;
+using core::name;
 
 namespace {
 
@@ -16,8 +16,8 @@ struct GoodRig : SelfTestRig {
   GateReading gate{{}, true, 0.11};
   PressReading stop{{}, "", true, true};
   std::vector<PressReading> buttons{{{}, "left", true, true}, {{}, "right", true, true}};
-  std::vector<ToneReading> tones{{{}, "main", 30'000, -0.1, 0.02, terms::Proof::ok, terms::ProofCause::none}};
-  std::vector<CellReading> cells{{{}, texts::plain("a"), {}, 0.1, 0.3}};
+  std::vector<ToneReading> tones{{{}, "main", 30'000, -0.1, 0.02, core::Proof::ok, core::ProofCause::none}};
+  std::vector<CellReading> cells{{{}, core::plain("a"), {}, 0.1, 0.3}};
   MixerReading levels{3, {}};
   std::optional<double> temperature_C = 50;
   ClockReading wall{{"tsc", true, true}, std::nullopt};
@@ -77,20 +77,20 @@ TEST_CASE("each fault fails its check of the self-test and no other", "[session]
     CHECK(failed(checks) == name);
     CHECK_FALSE(passed(checks));
   };
-  SECTION("level of the mixer") { rig.levels.changes = {texts::plain("changed")}, expect("mixer"); }
+  SECTION("level of the mixer") { rig.levels.changes = {core::plain("changed")}, expect("mixer"); }
   SECTION("gate that never opens") { rig.gate = {{}, false, {}}, expect("gate"); }
   SECTION("gate that never shuts") { rig.gate = {{}, true, {}}, expect("gate"); }
   SECTION("gate that shuts late") { rig.gate = {{}, true, 0.3}, expect("gate"); }
   SECTION("stop without a wire") { rig.stop.pressed = false, expect("stop"); }
   SECTION("stop that is stuck") { rig.stop.released = false, expect("stop"); }
   SECTION("button without a wire") { rig.buttons[1].pressed = false, expect("button right"); }
-  SECTION("pick-up without a signal") { rig.tones[0].proof = terms::Proof::refused, expect("tone main"); }
-  SECTION("tone that was not captured") { rig.tones[0].proof = terms::Proof::lost, expect("tone main"); }
+  SECTION("pick-up without a signal") { rig.tones[0].proof = core::Proof::refused, expect("tone main"); }
+  SECTION("tone that was not captured") { rig.tones[0].proof = core::Proof::lost, expect("tone main"); }
   SECTION("overdriven preamplifier") { rig.tones[0].nonlinearity_dB = 0.5, expect("linearity main"); }
   SECTION("load on a cell") { rig.cells[0].zero_N = -1.01, expect("zero of cell a"); }
   SECTION("loose wire of a cell") { rig.cells[0].noise_mN = 2.1, expect("noise of cell a"); }
   SECTION("cell that cannot be read") {
-    rig.cells[0].fault = texts::plain("a wire is off"), expect("zero of cell a");
+    rig.cells[0].fault = core::plain("a wire is off"), expect("zero of cell a");
   }
   SECTION("hot machine") { rig.temperature_C = 80, expect("temperature"); }
   SECTION("clock that was set") { rig.wall.jump_s = -3600, expect("clock"); }
@@ -103,11 +103,11 @@ TEST_CASE("a check of the self-test is said in the language of the screen, and s
           "[session][self-test]") {
   GoodRig rig;
   rig.gate = {{}, true, {}};
-  rig.tones[0].cause = terms::ProofCause::level;
+  rig.tones[0].cause = core::ProofCause::level;
   rig.wall = {{"tsc", false, false}, -3600};
   const auto checks = self_test(rig);
   const auto german = [&](std::size_t k) {
-    return texts::say(checks.at(k).name, "de") + ": " + texts::say(checks.at(k).what, "de");
+    return core::say(checks.at(k).name, "de") + ": " + core::say(checks.at(k).what, "de");
   };
   CHECK(find(checks, "tone main").what ==
         "a quiet tone of 30.0 kHz was measured at -0.10 dB relative to its calibration: the surface moves "
@@ -152,9 +152,9 @@ TEST_CASE("a reading that rounds to zero has no minus sign", "[session][self-tes
 TEST_CASE("what a rig does not have is not possible to check, and does not fail", "[session][self-test]") {
   GoodRig rig;
   rig.gate.missing = rig.stop.missing = rig.buttons[0].missing = rig.tones[0].missing = rig.cells[0].missing =
-      texts::plain("the rig has none");
+      core::plain("the rig has none");
   rig.tones[0].nonlinearity_dB.reset();
-  rig.tones.push_back({{}, "second", 30'000, 0, {}, terms::Proof::unproven, terms::ProofCause::none});
+  rig.tones.push_back({{}, "second", 30'000, 0, {}, core::Proof::unproven, core::ProofCause::none});
   rig.temperature_C.reset();
   rig.levels.controls = 0;
   const auto checks = self_test(rig);
@@ -213,7 +213,9 @@ TEST_CASE("the self-test finds each fault of the simulated rig", "[session][self
     wrong = "stop";
   }
   SECTION("the surface does not move") {
-    faults.room = [](auto& room) { room.plant().add({plant::FaultKind::transducer_dead, 0, plant::kNever}); };
+    faults.room = [](auto& room) {
+      room.plant().add({simulation::FaultKind::transducer_dead, 0, simulation::kNever});
+    };
     wrong = "tone main";
   }
   SECTION("the preamplifier of the pick-ups is overdriven") {
@@ -228,7 +230,7 @@ TEST_CASE("the self-test finds each fault of the simulated rig", "[session][self
   }
   SECTION("the bridge of a cell is dead") {
     faults.room = [](auto& room) {
-      room.plant().add({plant::FaultKind::dead_bridge, 0, plant::kNever, {}, 1});
+      room.plant().add({simulation::FaultKind::dead_bridge, 0, simulation::kNever, {}, 1});
     };
     wrong = "zero of cell b";
   }
@@ -269,7 +271,7 @@ struct TestedSession {
 
   TestedSession() {
     setup.rig = simulated(folder, measured::kPickUps);
-    setup.run_mode = terms::RunMode::simulated;
+    setup.run_mode = core::RunMode::simulated;
     setup.observer = "sim";
   }
 
@@ -279,7 +281,7 @@ struct TestedSession {
     if (spoil) spoil(*room);
     return session::run(setup, nullptr, inputs, std::move(room));
   }
-  records::EventRow tested(const Summary& summary) const {
+  core::EventRow tested(const Summary& summary) const {
     const auto stored = store::read_session(setup.database, summary.session_id);
     for (const auto& event : stored.events)
       if (event.kind == "self_test") return event;
@@ -288,7 +290,7 @@ struct TestedSession {
 };
 
 void kill_transducer(SimulatedRoom& room) {
-  room.plant().add({plant::FaultKind::transducer_dead, 0, 100'000});
+  room.plant().add({simulation::FaultKind::transducer_dead, 0, 100'000});
 }
 
 }  // namespace
@@ -297,7 +299,7 @@ TEST_CASE("the self-test runs before the first block and is stored with the sess
           "[session][self-test]") {
   TestedSession session;
   const auto summary = session.run();
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   const auto event = session.tested(summary);
   CHECK(event.value == "passed");
   CHECK(find(event.checks, "tone main").verdict == Verdict::passed);
@@ -308,7 +310,7 @@ TEST_CASE("the self-test runs before the first block and is stored with the sess
 TEST_CASE("a failed check stops the session before anybody is stimulated", "[session][self-test]") {
   TestedSession session;
   const auto summary = session.run(kill_transducer);
-  CHECK(summary.status == records::SessionStatus::interrupted);
+  CHECK(summary.status == core::SessionStatus::interrupted);
   CHECK(summary.reason.find("the self-test failed: tone main: ") == 0);
   CHECK(summary.trials == 0);
   CHECK(session.tested(summary).value == "failed");
@@ -320,7 +322,7 @@ TEST_CASE("a session continues in spite of a failed check if the operator gives 
   TestedSession session;
   session.setup.despite = "the pick-up is being repaired";
   const auto summary = session.run(kill_transducer);
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   CHECK(session.tested(summary).value == "failed; continued: the pick-up is being repaired");
 }
 
@@ -353,20 +355,20 @@ TEST_CASE("in the room, the operator ends a session after a failed check, or wri
     if (continues) input.text = "the oscilloscope shows that it shuts";
     room.inputs.push(input);
   };
-  const auto lines = std::make_shared<lines::SimulatedAmplifierLines>();
+  const auto lines = std::make_shared<io::SimulatedAmplifierLines>();
   lines->bridge_monostable();
   auto devices = room.devices();
-  devices.amplifier = lines::simulated_amplifier(lines);
+  devices.amplifier = io::simulated_amplifier(lines);
   const auto summary = session::run(setup, &room, room.inputs, std::move(devices));
   const auto events = live_room::events_of(setup.database, summary, "self_test");
   REQUIRE(events.size() == 1);
   CHECK(find(events[0].checks, "gate").verdict == Verdict::failed);
   CHECK(find(events[0].checks, "stop").verdict == Verdict::not_possible);
   if (continues) {
-    CHECK(summary.status == records::SessionStatus::completed);
+    CHECK(summary.status == core::SessionStatus::completed);
     CHECK(events[0].value == "failed; continued: the oscilloscope shows that it shuts");
   } else {
-    CHECK(summary.status == records::SessionStatus::interrupted);
+    CHECK(summary.status == core::SessionStatus::interrupted);
     CHECK(room.stimuli == 0);
     CHECK(events[0].value == "failed");
   }

@@ -6,9 +6,9 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "station/session/prepare.hpp"
+#include "station/session/resume.hpp"
 #include "station/session/session.hpp"
-#include "station/setup/prepare.hpp"
-#include "station/setup/resume.hpp"
 #include "station/store/read.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/stochastic_approximation.hpp"
@@ -31,8 +31,8 @@ struct Folder {
   std::string operator/(const std::string& name) const { return (path / name).string(); }
 };
 
-setup::RunRequest request_for(const std::string& protocol, const std::string& database) {
-  setup::RunRequest request;
+session::RunRequest request_for(const std::string& protocol, const std::string& database) {
+  session::RunRequest request;
   request.protocol = kSource + "/protocols/" + protocol + ".toml";
   request.rig = kSource + "/tests/support/thin_plate.toml";
   request.participant = "P01";
@@ -42,13 +42,13 @@ setup::RunRequest request_for(const std::string& protocol, const std::string& da
   return request;
 }
 
-session::Summary run(const setup::RunRequest& request) {
+session::Summary run(const session::RunRequest& request) {
   session::Inputs inputs;
-  return session::run(setup::prepare(request), nullptr, inputs);
+  return session::run(session::prepare(request), nullptr, inputs);
 }
 
-std::vector<records::TrialRow> trials_of(const std::string& database, const std::string& session) {
-  std::vector<records::TrialRow> all;
+std::vector<core::TrialRow> trials_of(const std::string& database, const std::string& session) {
+  std::vector<core::TrialRow> all;
   for (const auto& block : store::read_session(database, session).blocks)
     for (const auto& trial : block.trials) all.push_back(trial);
   return all;
@@ -61,7 +61,7 @@ struct Watch : session::Monitor {
                     const session::PlanAhead::Plans&) override {
     announced.push_back(spec.level);
   }
-  void trial_ended(const trial::TrialSpec&, const records::TrialRow& row) override {
+  void trial_ended(const trial::TrialSpec&, const core::TrialRow& row) override {
     ended.push_back(row.level);
   }
 };
@@ -80,11 +80,11 @@ struct Cut : session::Display {
 TEST_CASE("the demo protocol runs and its trials are stored in SQLite", "[session]") {
   const Folder folder;
   const auto summary = run(request_for("demo", folder / "a.sqlite"));
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   const auto trials = trials_of(folder / "a.sqlite", summary.session_id);
   REQUIRE(static_cast<int>(trials.size()) == summary.trials);
   for (const auto& trial : trials) {
-    CHECK(trial.outcome == terms::Outcome::answered);
+    CHECK(trial.outcome == core::Outcome::answered);
     CHECK(*trial.response_time_s > 0);
     CHECK(trial.response_time_quality == "simulated");
     CHECK(trial.frequency_Hz.has_value());
@@ -93,14 +93,14 @@ TEST_CASE("the demo protocol runs and its trials are stored in SQLite", "[sessio
   }
   const auto sessions = store::list_sessions(folder / "a.sqlite");
   REQUIRE(sessions.size() == 1);
-  CHECK(sessions[0].start.run_mode == terms::RunMode::simulated);
+  CHECK(sessions[0].start.run_mode == core::RunMode::simulated);
 }
 
 void runs_to_its_end(const std::string& protocol) {
   const Folder folder;
   INFO(protocol);
   const auto summary = run(request_for(protocol, folder / "b.sqlite"));
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   CHECK(summary.trials > 20);
 }
 
@@ -136,7 +136,7 @@ TEST_CASE("a simulated observer that can never answer in time does not go on for
   request.protocol = folder / "hasty.toml";
   std::ofstream(request.protocol) << text;
   const auto summary = run(request);
-  CHECK(summary.status == records::SessionStatus::interrupted);
+  CHECK(summary.status == core::SessionStatus::interrupted);
   CHECK(summary.reason == "the simulated observer left 1000 trials in a row unanswered");
   CHECK(summary.trials == 1000);
 }
@@ -167,15 +167,15 @@ TEST_CASE(
     const auto database = folder / ("cut" + std::to_string(page) + ".sqlite");
     Cut cut(page);
     session::Inputs inputs;
-    auto setup = setup::prepare(request_for("demo", database));
+    auto setup = session::prepare(request_for("demo", database));
     setup.protocol.resume.warmup = 0;
     CHECK_THROWS_AS(session::run(setup, &cut, inputs), std::runtime_error);
     std::ostringstream messages;
-    auto resumed = setup::prepare_resume({database, "", "resume", true}, messages);
+    auto resumed = session::prepare_resume({database, "", "resume", true}, messages);
     REQUIRE(resumed.has_value());
     resumed->protocol.resume.warmup = 0;
     const auto summary = session::run(*resumed, nullptr, inputs);
-    CHECK(summary.status == records::SessionStatus::completed);
+    CHECK(summary.status == core::SessionStatus::completed);
     const auto trials = trials_of(database, summary.session_id);
     REQUIRE(trials.size() == expected.size());
     for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -207,12 +207,12 @@ TEST_CASE(
     const auto database = "cut" + std::to_string(page) + ".sqlite";
     Cut cut(page);
     session::Inputs inputs;
-    CHECK_THROWS_AS(session::run(setup::prepare(request(database)), &cut, inputs), std::runtime_error);
+    CHECK_THROWS_AS(session::run(session::prepare(request(database)), &cut, inputs), std::runtime_error);
     const auto before = store::list_sessions(folder / database).front().trials;
     CHECK(before > 8);
     CHECK(before + 4 < static_cast<int>(expected.size()));
     std::ostringstream messages;
-    auto resumed = setup::prepare_resume({folder / database, "", "resume", true}, messages);
+    auto resumed = session::prepare_resume({folder / database, "", "resume", true}, messages);
     REQUIRE(resumed.has_value());
     resumed->protocol.resume.warmup = 0;
     const auto summary = session::run(*resumed, nullptr, inputs);
@@ -231,10 +231,10 @@ TEST_CASE("a session log is not continued with a different protocol text", "[ses
   const Folder folder;
   Cut cut(30);
   session::Inputs inputs;
-  auto setup = setup::prepare(request_for("demo", folder / "a.sqlite"));
+  auto setup = session::prepare(request_for("demo", folder / "a.sqlite"));
   CHECK_THROWS(session::run(setup, &cut, inputs));
   std::ostringstream messages;
-  auto resumed = setup::prepare_resume({folder / "a.sqlite", "", "resume", true}, messages);
+  auto resumed = session::prepare_resume({folder / "a.sqlite", "", "resume", true}, messages);
   REQUIRE(resumed.has_value());
   for (auto& value : resumed->protocol.procedures.front().values) value *= 0.5;
   CHECK_THROWS_AS(session::run(*resumed, nullptr, inputs), std::runtime_error);
@@ -247,9 +247,9 @@ TEST_CASE("a session log is not continued if factors would be combined in anothe
   Cut cut(60);
   session::Inputs inputs;
   CHECK_THROWS(
-      session::run(setup::prepare(request_for("boundary-constant", folder / "a.sqlite")), &cut, inputs));
+      session::run(session::prepare(request_for("boundary-constant", folder / "a.sqlite")), &cut, inputs));
   std::ostringstream messages;
-  auto resumed = setup::prepare_resume({folder / "a.sqlite", "", "resume", true}, messages);
+  auto resumed = session::prepare_resume({folder / "a.sqlite", "", "resume", true}, messages);
   REQUIRE(resumed.has_value());
   for (auto& factor : resumed->protocol.factors) std::reverse(factor.levels.begin(), factor.levels.end());
   std::string refused;
@@ -266,13 +266,13 @@ TEST_CASE("all mistakes in a request are reported at once, and nothing is writte
   auto request = request_for("demo", folder / "a.sqlite");
   request.participant = "Jane Doe";
   request.language = "xx";
-  CHECK_THROWS_AS(setup::prepare(request), text::BadInput);
+  CHECK_THROWS_AS(session::prepare(request), core::BadInput);
   request.participant = "P01";
-  CHECK_THROWS_AS(setup::prepare(request), text::BadInput);
+  CHECK_THROWS_AS(session::prepare(request), core::BadInput);
   request.language.clear();
   request.observer.clear();
   request.mode = "live";
-  CHECK_THROWS_AS(setup::prepare(request), text::BadInput);
+  CHECK_THROWS_AS(session::prepare(request), core::BadInput);
   CHECK_FALSE(fs::exists(folder / "a.sqlite"));
 }
 
@@ -281,7 +281,7 @@ TEST_CASE("a monitor is notified before and after every trial and does not chang
   Watch watch;
   session::Inputs inputs;
   const auto watched =
-      session::run(setup::prepare(request_for("demo", folder / "a.sqlite")), nullptr, inputs, &watch);
+      session::run(session::prepare(request_for("demo", folder / "a.sqlite")), nullptr, inputs, &watch);
   const auto alone = run(request_for("demo", folder / "b.sqlite"));
   CHECK(static_cast<int>(watch.ended.size()) == watched.trials);
   CHECK(watch.announced == watch.ended);
@@ -299,7 +299,7 @@ TEST_CASE(
     "corrected",
     "[session]") {
   const Folder folder;
-  auto setup = setup::prepare(request_for("demo", folder / "a.sqlite"));
+  auto setup = session::prepare(request_for("demo", folder / "a.sqlite"));
   setup.response_offset_s = 0.0625;
   setup.consent_version = "2026-03";
   session::Inputs inputs;
@@ -323,10 +323,10 @@ TEST_CASE("a simulated session is not continued with another simulated observer"
   const auto database = folder / "a.sqlite";
   Cut cut(30);
   session::Inputs inputs;
-  const auto setup = setup::prepare(request_for("demo", database));
+  const auto setup = session::prepare(request_for("demo", database));
   CHECK_THROWS_AS(session::run(setup, &cut, inputs), std::runtime_error);
   std::ostringstream messages;
-  auto resumed = setup::prepare_resume({database, "", "resume", true}, messages);
+  auto resumed = session::prepare_resume({database, "", "resume", true}, messages);
   REQUIRE(resumed.has_value());
   const auto before = store::list_sessions(database).front();
   REQUIRE(before.trials > 0);
@@ -337,5 +337,5 @@ TEST_CASE("a simulated session is not continued with another simulated observer"
   CHECK(after.trials == before.trials);
   CHECK(after.segments == before.segments);
   resumed->observer = kept;
-  CHECK(session::run(*resumed, nullptr, inputs).status == records::SessionStatus::completed);
+  CHECK(session::run(*resumed, nullptr, inputs).status == core::SessionStatus::completed);
 }

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <set>
 
-#include "station/drive/synth.hpp"
+#include "station/audio/synth.hpp"
+#include "station/core/read_file.hpp"
 #include "station/protocol/survey.hpp"
 #include "station/session/plan_ahead.hpp"
 #include "station/session/stage.hpp"
-#include "station/system/read_file.hpp"
 #include "station/trial/timing.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
@@ -32,20 +32,20 @@ std::string replaced(std::string text, const std::string& old, const std::string
 
 std::string source(const std::string& by = "by = \"buzz\", scene = \"buzz\", length_ms = 60",
                    const std::string& buzz = kBuzzing) {
-  auto text = replaced(system::read_file(kSource + "/protocols/response-signal.toml"), "window_s = 0.4",
+  auto text = replaced(core::read_file(kSource + "/protocols/response-signal.toml"), "window_s = 0.4",
                        "window_s = 0.4, " + by);
   text = replaced(text, "repeats = 84", "repeats = 6");
   return replaced(replaced(text, "trials = 28", "trials = 4"), "[task]", buzz);
 }
 
 rig::Rig thin_plate(const std::string& more = "") {
-  return rig::parse(system::read_file(kSource + "/tests/support/thin_plate.toml") + more, "rig.toml");
+  return rig::parse(core::read_file(kSource + "/tests/support/thin_plate.toml") + more, "rig.toml");
 }
 
-std::vector<double> surface_samples(drive::PreparedBurst burst, const drive::Format& format) {
+std::vector<double> surface_samples(audio::PreparedBurst burst, const audio::Format& format) {
   burst.start_frame = 0;
   burst.marker = {};
-  drive::Synth synth(format);
+  audio::Synth synth(format);
   REQUIRE(synth.start(burst));
   const auto channels = static_cast<std::size_t>(format.channels);
   std::vector<double> block(500 * channels), samples;
@@ -59,7 +59,7 @@ std::vector<double> surface_samples(drive::PreparedBurst burst, const drive::For
 std::string problems(const protocol::Survey& survey) {
   std::string all;
   for (const auto* list : {&survey.problems, &survey.warnings})
-    for (const auto& problem : *list) all += text::format(problem) + "\n";
+    for (const auto& problem : *list) all += core::format(problem) + "\n";
   return all;
 }
 
@@ -70,7 +70,7 @@ TEST_CASE("a buzz begins on its very frame and leaves the stimulus before it as 
   const auto buzzing = protocol::parse(source(), "p.toml");
   const auto silent = protocol::parse(source("by = \"screen\"", "[task]"), "p.toml");
   const auto stream = session::stream_of(rig);
-  const auto format = drive::format_of(stream.output);
+  const auto format = audio::format_of(stream.output);
   std::set<double> lags;
   for (std::uint64_t seed = 0; seed < 40 && lags.size() < 3; ++seed) {
     trial::Director director(buzzing, 0, seed);
@@ -113,9 +113,10 @@ TEST_CASE("a buzz is measured by the pick-ups and stored with its frames, like a
   const bool broken = GENERATE(false, true);
   std::ofstream(path) << source();
   int faulted = 0;
-  const auto ran = run(path, [&](int trial, plant::Plant& plant) {
+  const auto ran = run(path, [&](int trial, simulation::Plant& plant) {
     if (broken && trial == 6)
-      plant.add({plant::FaultKind::transducer_half, plant.frames() + 1, plant::kNever, {}, 0}), ++faulted;
+      plant.add({simulation::FaultKind::transducer_half, plant.frames() + 1, simulation::kNever, {}, 0}),
+          ++faulted;
   });
   CHECK(faulted == (broken ? 1 : 0));
   int buzzes = 0;
@@ -123,10 +124,10 @@ TEST_CASE("a buzz is measured by the pick-ups and stored with its frames, like a
     CAPTURE(trial.trial_index, name(trial.proof), name(trial.proof_cause), trial.drive_ratio_dB.value_or(99),
             name(trial.outcome));
     if (broken && trial.trial_index == 6) {
-      CHECK(trial.outcome == terms::Outcome::fault);
+      CHECK(trial.outcome == core::Outcome::fault);
       continue;
     }
-    CHECK(trial.proof == terms::Proof::ok);
+    CHECK(trial.proof == core::Proof::ok);
     const auto lag_s = std::get<double>(trial.factors.at("lag_s"));
     std::int64_t change = 0;
     for (const auto& tone : trial.tones)
@@ -154,9 +155,9 @@ TEST_CASE("a buzz that fails alone makes its trial void", "[session][buzz][proof
   text = replaced(text, "levels = [0.1, 0.2, 0.35, 0.6, 1.0, 1.6]", "levels = [0.6]");
   std::ofstream(path) << text;
   constexpr std::int64_t kToBuzz = 24'960 + 1'600 * 192;  // see test_glides.cpp
-  const auto ran = run(path, [&](int trial, plant::Plant& plant) {
+  const auto ran = run(path, [&](int trial, simulation::Plant& plant) {
     if (trial == 1)
-      plant.add({plant::FaultKind::transducer_half,
+      plant.add({simulation::FaultKind::transducer_half,
                  plant.frames() + kToBuzz + 1'500,
                  plant.frames() + kToBuzz + 9'000,
                  {},
@@ -164,8 +165,8 @@ TEST_CASE("a buzz that fails alone makes its trial void", "[session][buzz][proof
   });
   for (const auto& trial : ran.trials) {
     CAPTURE(trial.trial_index, name(trial.proof), name(trial.proof_cause), trial.drive_ratio_dB.value_or(99));
-    CHECK((trial.outcome == terms::Outcome::fault) == (trial.trial_index == 1));
-    CHECK((trial.proof == terms::Proof::ok) == (trial.trial_index != 1));
+    CHECK((trial.outcome == core::Outcome::fault) == (trial.trial_index == 1));
+    CHECK((trial.proof == core::Proof::ok) == (trial.trial_index != 1));
   }
 }
 
@@ -192,9 +193,9 @@ TEST_CASE("a buzz that could tell the answer is refused", "[session][buzz][cues]
           source("by = \"buzz\", scene = \"buzz\", length_ms = 60", "[scene.buzz]\n" + buzz + "\n\n[task]"),
           "p.toml");
       FAIL_CHECK("the protocol is accepted");
-    } catch (const text::BadInput& error) {
+    } catch (const core::BadInput& error) {
       REQUIRE(error.problems().size() == 1);
-      CHECK(text::format(error.problems().front()).find("the buzz depends on \"change\"") !=
+      CHECK(core::format(error.problems().front()).find("the buzz depends on \"change\"") !=
             std::string::npos);
     }
   }

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <set>
 
-#include "station/system/read_file.hpp"
+#include "station/core/read_file.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
 
@@ -34,18 +34,18 @@ TEST_CASE("a flash is due at its lag, once in a trial, and never three times in 
           "[session][flash]") {
   const TemporaryFolder folder;
   // the shortest pauses and lags that a protocol can have
-  auto text = system::read_file(kSource + "/protocols/response-signal.toml");
+  auto text = core::read_file(kSource + "/protocols/response-signal.toml");
   text = replaced(text, "window_s = 0.4", "window_s = 0.4, by = \"flash\"");
   text = replaced(text, "[0.1, 0.2, 0.35, 0.6, 1.0, 1.6]", "[0.05, 0.07]");
   text = replaced(text, "{ uniform = [1.0, 2.5] }", "0.1");
   text = replaced(text, "{ uniform = [0.8, 1.4] }", "0.0");
   text = replaced(replaced(text, "repeats = 84", "repeats = 8"), "trials = 28", "trials = 4");
   std::ofstream(folder / "flash.toml") << text;
-  const auto setup = setup::prepare(request_in(folder, folder / "flash.toml", kPickUps));
+  const auto setup = session::prepare(request_in(folder, folder / "flash.toml", kPickUps));
   session::Inputs inputs;
   Flashes flashes;
   const auto summary = session::run(setup, &flashes, inputs, nullptr);
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   CHECK(flashes.others == 0);
   std::set<std::int64_t> possible;
   int answered = 0;
@@ -53,7 +53,7 @@ TEST_CASE("a flash is due at its lag, once in a trial, and never three times in 
     for (const auto& row : block.trials) {
       const auto due_ns = row.onset_ns + std::llround(1e9 * std::get<double>(row.factors.at("lag_s")));
       possible.insert(due_ns);
-      if (row.outcome != terms::Outcome::answered) continue;
+      if (row.outcome != core::Outcome::answered) continue;
       ++answered;
       CHECK(flashes.due_ns.count(due_ns) == 1);
     }

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "station/drive/synth.hpp"
+#include "station/audio/synth.hpp"
+#include "station/core/read_file.hpp"
 #include "station/session/plan_ahead.hpp"
 #include "station/session/stage.hpp"
-#include "station/system/read_file.hpp"
 #include "station/trial/timing.hpp"
 #include "tests/support/catch.hpp"
 
@@ -26,24 +26,24 @@ std::string replaced(std::string text, const std::string& old, const std::string
 
 rig::Rig with_headphones() {
   return rig::parse(
-      system::read_file(kRoot + "/tests/support/thin_plate.toml") +
+      core::read_file(kRoot + "/tests/support/thin_plate.toml") +
           "\n[noise]\nchannel = 2\nrms = 0.05\nsignal = { frequency_Hz = 1000, amplitude = 0.2 }\n",
       "rig.toml");
 }
 
 protocol::Protocol by_tone(const std::string& window = "window_s = 0.4, by = \"tone\"") {
   return protocol::parse(
-      replaced(system::read_file(kRoot + "/protocols/response-signal.toml"), "window_s = 0.4", window),
+      replaced(core::read_file(kRoot + "/protocols/response-signal.toml"), "window_s = 0.4", window),
       "p.toml");
 }
 
 /// Returns the samples of a channel in a burst that begins at frame 0. If `stop_at` is set, the burst is
 /// stopped.
-std::vector<double> channel_of(drive::PreparedBurst burst, const drive::Format& format, int channel,
+std::vector<double> channel_of(audio::PreparedBurst burst, const audio::Format& format, int channel,
                                std::optional<std::int64_t> stop_at = {}) {
   const auto length = burst.length_frames;
   burst.start_frame = 0;
-  drive::Synth synth(format);
+  audio::Synth synth(format);
   REQUIRE(synth.start(burst));
   const auto channels = static_cast<std::size_t>(format.channels);
   std::vector<double> block(500 * channels), samples;
@@ -69,7 +69,7 @@ TEST_CASE("a tone as response signal begins at its lag after the change, within 
   const auto rig = with_headphones();
   const auto protocol = by_tone();
   const auto stream = session::stream_of(rig);
-  const auto format = drive::format_of(stream.output);
+  const auto format = audio::format_of(stream.output);
   std::set<double> lags;
   for (std::uint64_t seed = 0; seed < 40 && lags.size() < 4; ++seed) {
     trial::Director director(protocol, 0, seed);

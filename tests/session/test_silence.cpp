@@ -8,8 +8,8 @@
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
-using terms::Proof;
-using terms::ProofCause;
+using core::Proof;
+using core::ProofCause;
 
 namespace {
 

@@ -1,9 +1,9 @@
 #include <cmath>
 
 #include "station/analysis/quantile.hpp"
-#include "station/desk/live_view.hpp"
-#include "station/desk/report_data.hpp"
 #include "station/report/figures.hpp"
+#include "station/view/live_view.hpp"
+#include "station/view/report_data.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
 
@@ -41,21 +41,21 @@ struct Sensors : session::Monitor {
   std::map<std::string, std::string> facts;
   void trial_begins(const trial::TrialSpec&, const protocol::Block&,
                     const session::PlanAhead::Plans&) override {}
-  void trial_ended(const trial::TrialSpec&, const records::TrialRow& row) override {
+  void trial_ended(const trial::TrialSpec&, const core::TrialRow& row) override {
     facts.clear();
-    for (const auto& [label, value] : desk::sensors_of(row, asked)) facts[label] = value;
+    for (const auto& [label, value] : view::sensors_of(row, asked)) facts[label] = value;
   }
 };
 
 report::SessionData data_of(const std::string& sensing, Sensors& sensors) {
   TemporaryFolder folder;
   const auto request = request_in(folder, demo_with(folder, sensing), kCells, "sim:residual=10");
-  const auto setup = setup::prepare(request);
+  const auto setup = session::prepare(request);
   sensors.asked = setup.protocol.sensing;
   session::Inputs inputs;
   const auto summary =
       session::run(setup, nullptr, inputs, std::make_unique<session::SimulatedRoom>(setup.rig), &sensors);
-  return desk::report_data(request.database, summary.session_id);
+  return view::report_data(request.database, summary.session_id);
 }
 
 double mean_between(const analysis::FrictionCurve& curve, double from_mm, double to_mm) {
@@ -85,7 +85,7 @@ TEST_CASE("the report has friction along the strip, which rises at the planned b
   const auto chart = report::strip_chart(data.strip);
   REQUIRE(chart);
   CHECK(chart->layers.size() == 3);
-  CHECK(std::get<plot::Rule>(chart->layers.front()).at == 0);
+  CHECK(std::get<report::Rule>(chart->layers.front()).at == 0);
   CHECK(data.repeats.empty());
   SECTION("the operator sees what the sensors measured") {
     CHECK(sensors.facts.at("Finger") == "ok");

@@ -2,7 +2,7 @@
 #include <map>
 #include <sstream>
 
-#include "station/setup/resume.hpp"
+#include "station/session/resume.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
 
@@ -85,20 +85,20 @@ physics::FrictionMap stiff_finger() {
 
 How with_finger(const physics::FrictionMap& friction, double drift_per_s = 0) {
   How how{kCells};
-  how.room = [=](plant::Setup& room) {
+  how.room = [=](simulation::Setup& room) {
     room.friction = friction;
     room.finger.friction_drift_per_s = drift_per_s;
   };
   return how;
 }
 
-const records::EventRow& table_of(const Ran& ran) {
+const core::EventRow& table_of(const Ran& ran) {
   for (const auto& event : ran.events)
     if (event.kind == "friction_table") return event;
   throw std::runtime_error("no friction table is stored");
 }
 
-const auto nothing = [](int, plant::Plant&) {};
+const auto nothing = [](int, simulation::Plant&) {};
 
 }  // namespace
 
@@ -108,7 +108,7 @@ TEST_CASE("a session measures how much vibration reduces the friction of this fi
   const auto finger = stiff_finger();
   const auto ran = run(protocol_with(folder, std::string(kTable) + "true\n"), nothing,
                        with_finger(finger, 0.3 / 120));  // friction drifts by 30 % within two minutes
-  REQUIRE(ran.summary.status == records::SessionStatus::completed);
+  REQUIRE(ran.summary.status == core::SessionStatus::completed);
   REQUIRE(ran.trials.size() == 27);
   const auto& table = table_of(ran);
   REQUIRE(table.friction_levels.size() == 4);
@@ -129,7 +129,7 @@ TEST_CASE("a session measures how much vibration reduces the friction of this fi
       const auto& trial = ran.trials[i];
       CHECK((trial.level.value() == 0) == (i % 2 == 0));
       CHECK(trial.tones.empty() == (i % 2 == 0));
-      CHECK(trial.type == terms::TrialType::practice);
+      CHECK(trial.type == core::TrialType::practice);
       CHECK(trial.response == "ok");
       CHECK_FALSE(trial.correct);
     }
@@ -171,16 +171,16 @@ TEST_CASE("a resumed session continues the table, and plans with the same table 
     return session::run(setup, &pages, inputs, std::move(room), &saboteur);
   };
   const auto stop_at = GENERATE(12, 26);
-  CHECK(run_once(setup::prepare(request), stop_at).status == records::SessionStatus::interrupted);
+  CHECK(run_once(session::prepare(request), stop_at).status == core::SessionStatus::interrupted);
   std::ostringstream messages;
-  auto resumed = setup::prepare_resume({request.database, "", "resume", true}, messages);
+  auto resumed = session::prepare_resume({request.database, "", "resume", true}, messages);
   REQUIRE(resumed);
   resumed->protocol.resume.warmup = 0;
   const auto summary = run_once(*resumed, -1);
-  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(summary.status == core::SessionStatus::completed);
   const auto stored = store::read_session(request.database, summary.session_id);
   int tables = 0;
-  std::vector<records::TrialRow> trials;
+  std::vector<core::TrialRow> trials;
   for (const auto& event : stored.events) tables += event.kind == "friction_table" ? 1 : 0;
   for (const auto& block : stored.blocks)
     trials.insert(trials.end(), block.trials.begin(), block.trials.end());
@@ -189,7 +189,7 @@ TEST_CASE("a resumed session continues the table, and plans with the same table 
   // If the resumed session used the rig's curve instead of the measured table, the last trials would be half
   // as strong.
   request.database = folder / "whole.sqlite";
-  const auto whole = run_once(setup::prepare(request), -1);
+  const auto whole = run_once(session::prepare(request), -1);
   const auto reference = store::read_session(request.database, whole.session_id);
   const auto& last = reference.blocks.back().trials.back();
   CHECK(trials.back().amplitude.value() == Approx(last.amplitude.value()).epsilon(0.1));
@@ -203,7 +203,7 @@ TEST_CASE("a training is passed by the movement that the protocol asks for, and 
   How how{kCells};
   SECTION("the usual finger") {
     const auto ran = run(protocol, nothing, how);
-    CHECK(ran.summary.status == records::SessionStatus::completed);
+    CHECK(ran.summary.status == core::SessionStatus::completed);
     REQUIRE(ran.trials.size() == 7);
     for (std::size_t i = 0; i < 5; ++i) {
       CHECK(ran.trials[i].response == "ok");
@@ -212,15 +212,15 @@ TEST_CASE("a training is passed by the movement that the protocol asks for, and 
     }
   }
   SECTION("a finger that presses too hard") {
-    how.room = [](plant::Setup& room) { room.finger.normal_N = 1.6; };
+    how.room = [](simulation::Setup& room) { room.finger.normal_N = 1.6; };
     const auto ran = run(protocol, nothing, how);
-    CHECK(ran.summary.status == records::SessionStatus::stopped);
+    CHECK(ran.summary.status == core::SessionStatus::stopped);
     CHECK(ran.summary.reason == "practice \"training\" was not passed in 2 attempts");
     REQUIRE(ran.trials.size() == 10);
     for (const auto& trial : ran.trials) {
       CHECK(trial.response == "hard");
       CHECK(trial.correct == false);
-      CHECK(trial.outcome == terms::Outcome::answered);
+      CHECK(trial.outcome == core::Outcome::answered);
     }
   }
 }
@@ -229,13 +229,14 @@ TEST_CASE("a stroke whose forces are not known is made again", "[session][stroke
   TemporaryFolder folder;
   const auto ran =
       run(protocol_with(folder, kTraining),
-          [](int trial, plant::Plant& plant) {
+          [](int trial, simulation::Plant& plant) {
             if (trial == 2)
-              plant.add({plant::FaultKind::no_reference, plant.frames() + 192000, plant::kNever, {}, 0});
+              plant.add(
+                  {simulation::FaultKind::no_reference, plant.frames() + 192000, simulation::kNever, {}, 0});
           },
           {kCells});
   REQUIRE(ran.trials.size() == 8);
-  CHECK(ran.trials[2].outcome == terms::Outcome::fault);
+  CHECK(ran.trials[2].outcome == core::Outcome::fault);
   CHECK(ran.trials[2].finger.sensing == "wire");
-  CHECK(ran.trials[3].outcome == terms::Outcome::answered);
+  CHECK(ran.trials[3].outcome == core::Outcome::answered);
 }

@@ -3,13 +3,13 @@
 #include <map>
 #include <sstream>
 
-#include "station/desk/report_data.hpp"
+#include "station/session/prepare.hpp"
 #include "station/session/session.hpp"
 #include "station/session/simulated_room.hpp"
 #include "station/session/stage.hpp"
 #include "station/session/triggers.hpp"
-#include "station/setup/prepare.hpp"
 #include "station/store/read.hpp"
+#include "station/view/report_data.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -24,8 +24,8 @@ const std::string kReadBack =
 
 struct Ran {
   session::Summary summary;
-  std::vector<records::TrialRow> trials;
-  std::map<std::string, std::vector<records::EventRow>> events;
+  std::vector<core::TrialRow> trials;
+  std::map<std::string, std::vector<core::EventRow>> events;
   std::string report;  ///< what the report says about the trigger codes
 };
 
@@ -36,7 +36,7 @@ Ran run(const std::string& protocol, const std::string& rig_tables,
   TemporaryFolder folder;
   std::ostringstream rig;
   rig << std::ifstream(kSource + "/deploy/rigs/simulated.toml").rdbuf() << rig_tables;
-  setup::RunRequest request;
+  session::RunRequest request;
   request.rig = folder / "rig.toml";
   std::ofstream(request.rig) << rig.str();
   request.protocol = kSource + "/protocols/" + protocol + ".toml";
@@ -44,7 +44,7 @@ Ran run(const std::string& protocol, const std::string& rig_tables,
   request.database = folder / "a.sqlite";
   request.observer = "sim";
   request.seed = 7;
-  const auto setup = setup::prepare(request);
+  const auto setup = session::prepare(request);
   session::Inputs inputs;
   Ran ran;
   if (!wire_broken) {
@@ -55,7 +55,7 @@ Ran run(const std::string& protocol, const std::string& rig_tables,
                         const session::PlanAhead::Plans&) override {
         room->break_marker_wire(broken(trial));
       }
-      void trial_ended(const trial::TrialSpec&, const records::TrialRow&) override { ++trial; }
+      void trial_ended(const trial::TrialSpec&, const core::TrialRow&) override { ++trial; }
       session::SimulatedRoom* room = nullptr;
       std::function<bool(int trial)> broken;
       int trial = 0;
@@ -68,14 +68,14 @@ Ran run(const std::string& protocol, const std::string& rig_tables,
   for (const auto& block : stored.blocks)
     ran.trials.insert(ran.trials.end(), block.trials.begin(), block.trials.end());
   for (const auto& event : stored.events) ran.events[event.kind].push_back(event);
-  for (const auto& [name, text] : desk::report_data(request.database, ran.summary.session_id).health)
-    if (texts::say(name, "en") == "Trigger codes") ran.report = texts::say(text, "en");
+  for (const auto& [name, text] : view::report_data(request.database, ran.summary.session_id).health)
+    if (core::say(name, "en") == "Trigger codes") ran.report = core::say(text, "en");
   return ran;
 }
 
 bool contains(const std::string& all, const std::string& part) { return all.find(part) != std::string::npos; }
 
-int count(const std::vector<records::EventRow>& events, const std::string& part) {
+int count(const std::vector<core::EventRow>& events, const std::string& part) {
   return static_cast<int>(std::count_if(events.begin(), events.end(),
                                         [&](const auto& event) { return contains(event.value, part); }));
 }
@@ -105,7 +105,7 @@ TEST_CASE("every event of a session has a row with its code, its frame and its t
 
 TEST_CASE("trials of four intervals have room for the codes of their events", "[session][trigger]") {
   auto ran = run("friction-4ifc", kCodes);
-  CHECK(ran.summary.status == records::SessionStatus::completed);
+  CHECK(ran.summary.status == core::SessionStatus::completed);
   const auto& rows = ran.events["trigger"];
   CHECK(count(rows, "trial frame") == static_cast<int>(ran.trials.size()));
   CHECK(count(rows, "onset frame") == 4 * static_cast<int>(ran.trials.size()));
@@ -132,7 +132,7 @@ TEST_CASE("every code that the marker channel carries is read back, at its frame
   CHECK(count(rows, "read back +0.00 frames") == static_cast<int>(rows.size()));
   CHECK(ran.summary.triggers_missed == 0);
   CHECK(ran.summary.triggers_extra == 0);
-  for (const auto& trial : ran.trials) CHECK(trial.proof == terms::Proof::ok);
+  for (const auto& trial : ran.trials) CHECK(trial.proof == core::Proof::ok);
 }
 
 TEST_CASE("codes that do not come back are missed, and named", "[session][trigger]") {
@@ -163,7 +163,7 @@ namespace {
 /// A stream with a marker channel, whose output a TriggerCapture captures.
 struct Bench {
   session::TriggerSetup setup;
-  std::unique_ptr<drive::SynchronousStream> stream;
+  std::unique_ptr<audio::SynchronousStream> stream;
   std::unique_ptr<session::Triggers> triggers;
   static constexpr std::int64_t bit = 192, whole = rig::trigger_code_bits * bit;
 
@@ -173,11 +173,11 @@ struct Bench {
     setup.marker->amplitude = 0.45;
     setup.bit_frames = bit;
     setup.marker_channel = 0;
-    drive::StreamConfig config;
-    config.samples = drive::Samples::passed;
+    audio::StreamConfig config;
+    config.samples = audio::Samples::passed;
     config.output.uri = "null:";
     config.output.rate_Hz = 192000;
-    stream = drive::open_synchronous(config);
+    stream = audio::open_synchronous(config);
     triggers = std::make_unique<session::Triggers>(setup, *stream, nullptr);
   }
   void scheduled(int code, std::int64_t frame) {
@@ -220,15 +220,15 @@ TEST_CASE("a code that is sent at once waits for the code before it", "[session]
 TEST_CASE("the first interval of a trial waits for the code of the trial", "[session][trigger]") {
   Bench bench;
   session::Inputs inputs;
-  drive::StreamConfig config = bench.stream->config();
-  const auto stage = session::virtual_stage(config, observer::Observer(observer::parse("sim")), inputs,
-                                            nullptr, bench.setup);
+  audio::StreamConfig config = bench.stream->config();
+  session::SimulatedParticipant participant(simulation::Observer(simulation::parse("sim")));
+  const auto stage = session::virtual_stage(config, participant, inputs, nullptr, bench.setup);
   session::Trigger trigger;
   trigger.code = 5;
   stage->triggers().send(trigger, 0);
-  drive::Burst burst;
+  audio::Burst burst;
   burst.length_frames = 9600, burst.ramp.frames = 100;
-  const auto prepared = drive::prepare(burst, drive::format_of(config.output), config.limits);
+  const auto prepared = audio::prepare(burst, audio::format_of(config.output), config.limits);
   const auto onsets = stage->present({&prepared, 1}, 0);
   REQUIRE(onsets.size() == 1);
   CHECK(onsets[0].frame >= Bench::whole);

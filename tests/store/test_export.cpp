@@ -2,9 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "station/core/usage_error.hpp"
 #include "station/store/read.hpp"
 #include "station/store/text_table.hpp"
-#include "station/terms/usage_error.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
 
@@ -242,9 +242,9 @@ TEST_CASE("separator and decimal mark can be chosen, but must differ", "[store]"
   const auto lines = lines_of(sample::bytes_of(files[0].path), "\r\n");
   CHECK(sample::contains(lines[1], ";-12,5;dB;0,30000000000000004;speed;150,25;30123,4567890123;"));
   options.separator = ',';
-  CHECK_THROWS_AS(export_data(db, folder / "out", options), turnpoint::terms::UsageError);
+  CHECK_THROWS_AS(export_data(db, folder / "out", options), turnpoint::core::UsageError);
   options.decimal = 'x';
-  CHECK_THROWS_AS(export_data(db, folder / "out", options), turnpoint::terms::UsageError);
+  CHECK_THROWS_AS(export_data(db, folder / "out", options), turnpoint::core::UsageError);
 }
 
 TEST_CASE("texts are quoted according to RFC 4180, and no text can act as a formula in a spreadsheet",

@@ -8,18 +8,18 @@
 #include <random>
 #include <set>
 
+#include "station/core/number.hpp"
+#include "station/core/usage_error.hpp"
 #include "station/store/backup.hpp"
 #include "station/store/export.hpp"
-#include "station/store/open.hpp"
-#include "station/store/seal.hpp"
 #include "station/store/merge.hpp"
+#include "station/store/open.hpp"
 #include "station/store/read.hpp"
+#include "station/store/seal.hpp"
 #include "station/store/session_log.hpp"
 #include "station/store/station.hpp"
 #include "station/store/verify.hpp"
 #include "station/store/withdraw.hpp"
-#include "station/terms/usage_error.hpp"
-#include "station/text/number.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
 
@@ -372,7 +372,7 @@ TEST_CASE("an interrupted session can be closed for good, but a completed one ca
   CHECK_FALSE(interrupted_session(db));
   CHECK(read_session(db, open).session.status_reason == "too old");
   CHECK(sample::failure([&] { abandon(db, done, ""); }).first == ErrorKind::refused);
-  CHECK_THROWS_AS(annotate(db, done, ""), turnpoint::terms::UsageError);
+  CHECK_THROWS_AS(annotate(db, done, ""), turnpoint::core::UsageError);
 }
 
 TEST_CASE("a withdrawal that arrives from elsewhere takes all sessions of the person, sent or not",
@@ -433,7 +433,7 @@ TEST_CASE("a tombstone that names another station or another person than its ses
   TemporaryFolder folder;
   const auto a = folder / "a.sqlite";
   const auto id = sample::session(a, 3, at_station("P01", "a"));
-  const auto hash = [](const std::string& code) { return turnpoint::text::sha256("salt/" + code); };
+  const auto hash = [](const std::string& code) { return turnpoint::core::sha256("salt/" + code); };
   CHECK(follow_tombstones(a, {{id, "salt", hash("P01"), 1, "b"}}).sessions.empty());
   CHECK(follow_tombstones(a, {{id, "salt", hash("P02"), 1, "a"}}).sessions.empty());
   CHECK(follow_tombstones(a, {{id, "salt", "", 1, "b"}}).sessions.empty());

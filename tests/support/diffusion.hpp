@@ -1,6 +1,6 @@
 #pragma once
 #include "station/analysis/diffusion.hpp"
-#include "station/observer/first_passage.hpp"
+#include "station/simulation/first_passage.hpp"
 
 namespace turnpoint::tests {
 
@@ -10,9 +10,10 @@ struct Decision {
 };
 
 /// Simulates one decision of a diffusion with these parameters and noise of s = 0.1 (SD after 1 s).
-inline Decision sample_decision(const analysis::DiffusionParameters& parameters, random::Draws& draws) {
+inline Decision sample_decision(const analysis::DiffusionParameters& parameters, core::Draws& draws) {
   const double s = analysis::kDiffusionScale;
-  const auto passage = observer::first_passage(parameters.drift / s, parameters.boundary / (2 * s), 0, draws);
+  const auto passage =
+      simulation::first_passage(parameters.drift / s, parameters.boundary / (2 * s), 0, draws);
   return {passage.upper, passage.time_s + parameters.nondecision_s};
 }
 

@@ -3,13 +3,13 @@
 #include <stdexcept>
 #include <string>
 
-#include "station/system/read_file.hpp"
+#include "station/core/read_file.hpp"
 
 // Files of the source tree that are made from declarations in the code, wholly or between two markers.
 namespace turnpoint::tests {
 
 inline std::string in_source(const std::string& path) {
-  return system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/" + path);
+  return core::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/" + path);
 }
 
 inline void write_source(const std::string& path, const std::string& text) {

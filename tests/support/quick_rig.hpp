@@ -2,8 +2,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "station/core/read_file.hpp"
 #include "station/rig/rig.hpp"
-#include "station/system/read_file.hpp"
 
 /// Returns `text` with the first `from` replaced. Throws if `text` does not contain it.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -16,7 +16,7 @@ inline std::string replaced(std::string text, const std::string& from, const std
 /// Its boundary map is nearly the same but has a closed form, so that surveys of protocols are fast.
 inline std::string quick_rig_source() {
   const auto text =
-      turnpoint::system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml");
+      turnpoint::core::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml");
   return replaced(replaced(text, "edges = \"clamped\"", "edges = \"supported\""), "thickness_mm = 2.0",
                   "thickness_mm = 4.2");
 }

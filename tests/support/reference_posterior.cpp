@@ -5,13 +5,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "station/random/draws.hpp"
+#include "station/core/draws.hpp"
 
 namespace reference {
 
 namespace {
 
-namespace rnd = turnpoint::random;
+namespace rnd = turnpoint::core;
 
 constexpr int kKeptOneIn = 5;
 

@@ -3,13 +3,13 @@
 #include <string>
 #include <utility>
 
-#include "station/system/read_file.hpp"
+#include "station/core/read_file.hpp"
 
 /// Returns the shipped staircase protocol, with both of its staircases replaced by accelerated stochastic
 /// approximation of 20 trials each.
 inline std::string stochastic_approximation() {
   auto source =
-      turnpoint::system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/friction-staircase.toml");
+      turnpoint::core::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/friction-staircase.toml");
   const std::pair<std::string, std::string> edits[] = {
       {"kind = \"up-down\"", "kind = \"accelerated-stochastic-approximation\"\ntarget = 0.794"},
       {"n_down = 3 ", "# "},

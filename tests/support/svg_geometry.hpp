@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "station/plot/svg.hpp"
+#include "station/report/svg.hpp"
 
-/// Finds the positions of elements in an SVG document of plot::Svg by parsing its text.
+/// Finds the positions of elements in an SVG document of report::Svg by parsing its text.
 namespace svg_geometry {
 
 struct Box {
@@ -53,7 +53,7 @@ inline std::vector<Text> texts(const std::string& svg) {
   for (const auto& element : elements(svg, "text")) {
     if (!attribute(element, "transform").empty()) continue;
     const auto words = element.substr(element.find('>') + 1);
-    const double size = number(element, "font-size"), width = turnpoint::plot::text_width(words, size);
+    const double size = number(element, "font-size"), width = turnpoint::report::text_width(words, size);
     const auto anchor = attribute(element, "text-anchor");
     const double left = number(element, "x") - width * (anchor == "end" ? 1 : anchor == "middle" ? 0.5 : 0);
     const double base = number(element, "y");

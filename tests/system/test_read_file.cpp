@@ -1,4 +1,4 @@
-#include "station/system/read_file.hpp"
+#include "station/core/read_file.hpp"
 
 #include <fstream>
 #include <system_error>
@@ -6,7 +6,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using turnpoint::system::read_file;
+using turnpoint::core::read_file;
 
 TEST_CASE("a file that cannot be read completely is an error, and never counts as empty", "[system]") {
   CHECK_THROWS_AS(read_file("/proc/self/mem"), std::system_error);  // reading its first byte fails with EIO

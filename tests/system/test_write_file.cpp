@@ -7,7 +7,7 @@
 #include <string>
 #include <system_error>
 
-#include "station/system/read_file.hpp"
+#include "station/core/read_file.hpp"
 #include "station/system/write_file.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -89,7 +89,7 @@ TEST_CASE("a database, its logs, an input, a folder and a pipe without a reader 
   std::ofstream(input) << "rows";
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
   fs::create_symlink(database, folder / "link");
-  CHECK(system::read_file(input) == "rows");
+  CHECK(core::read_file(input) == "rows");
   for (const auto& path : {database, database + "-wal", folder / "link", input, folder.path + "", pipe})
     CHECK_THROWS_AS(system::write_file(path, "report"), system::RefusedDestination);
   CHECK(content(database) == start);
@@ -97,7 +97,7 @@ TEST_CASE("a database, its logs, an input, a folder and a pipe without a reader 
   CHECK_FALSE(fs::exists(database + "-wal"));
   system::write_file(input, "changed", 0666, system::Replaces::input);
   CHECK(content(input) == "changed");
-  CHECK(system::read_file(input) == "changed");  // an output is not protected by being read
+  CHECK(core::read_file(input) == "changed");  // an output is not protected by being read
   system::write_file(input, "again");
   CHECK(content(input) == "again");
 }

@@ -15,7 +15,7 @@ namespace {
 /// A study of `sessions` sessions, each with `trials` trials of a staircase and a QUEST+ that are
 /// interleaved.
 protocol::Protocol study(int sessions, int trials, const std::string& changes = "step = [3.0, 1.5]") {
-  auto source = system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/friction-training.toml");
+  auto source = core::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/friction-training.toml");
   source = replaced(source, "count = 3", "count = " + std::to_string(std::max(2, sessions)));
   source.resize(source.find("[[procedure]]"));
   return protocol::parse(source + R"(
@@ -56,7 +56,7 @@ trials = )" + std::to_string(trials) +
 }
 
 struct Day {
-  std::vector<records::BlockRecord> blocks;
+  std::vector<core::BlockRecord> blocks;
   std::vector<double> levels;
   std::vector<std::string> estimates;
 };
@@ -75,7 +75,7 @@ Day run(const protocol::Protocol& protocol, int number, const procedure::Earlier
     trial::TrialEnd end;
     const int i = answers++;
     if (i % 17 == 5) {
-      end.outcome = terms::Outcome::timeout;
+      end.outcome = core::Outcome::timeout;
     } else {
       end.correct = i * i % 7 != 2;
       end.response = *end.correct ? *spec->correct : 1 - *spec->correct;
@@ -123,11 +123,11 @@ TEST_CASE("only trials that count are continued", "[session][continuation]") {
   trial::add_earlier_trials(protocol, blocks, all);
   auto disturbed = blocks;
   auto extra = disturbed[0].trials[3];
-  extra.outcome = terms::Outcome::fault;
+  extra.outcome = core::Outcome::fault;
   disturbed[0].trials.insert(disturbed[0].trials.begin() + 3, extra);
-  extra = disturbed[0].trials[0], extra.type = terms::TrialType::warmup;
+  extra = disturbed[0].trials[0], extra.type = core::TrialType::warmup;
   disturbed[0].trials.push_back(extra);
-  extra.type = terms::TrialType::catch_trial;
+  extra.type = core::TrialType::catch_trial;
   disturbed[0].trials.push_back(extra);
   auto attempt = blocks[0];  // an attempt that was begun and repeated
   attempt.trials.resize(7);

@@ -36,8 +36,8 @@ Count run_through(Director& director, bool right = true) {
   while (director.block() != nullptr) {
     while (const auto spec = director.next()) {
       ++count.trials;
-      count.catches += spec->type == terms::TrialType::catch_trial ? 1 : 0;
-      count.practice += spec->type == terms::TrialType::practice ? 1 : 0;
+      count.catches += spec->type == core::TrialType::catch_trial ? 1 : 0;
+      count.practice += spec->type == core::TrialType::practice ? 1 : 0;
       director.record(answered(*spec, right));
     }
     director.finish_block();
@@ -56,7 +56,7 @@ TEST_CASE("a void trial is presented again unchanged, and does not change later 
       auto spec = disturbed.next();
       REQUIRE(spec.has_value());
       if (trial % 5 == 2) {
-        disturbed.record({terms::Outcome::fault, {}, {}, {}});
+        disturbed.record({core::Outcome::fault, {}, {}, {}});
         spec = disturbed.next();
       }
       CHECK(spec->level == expected->level);
@@ -242,7 +242,7 @@ TEST_CASE("without repetition, each level comes once before any comes again", "[
     order.push_back(value);
     if (round.size() == 5) round.clear(), orders.insert(std::exchange(order, {}));
     if (order.size() == 3) {  // a void trial is presented again with the same value
-      director.record({terms::Outcome::fault, {}, {}, {}});
+      director.record({core::Outcome::fault, {}, {}, {}});
       CHECK(std::get<double>(director.next()->factors.at("end_mm")) == value);
     }
     director.record(answered(*spec, true));
@@ -293,7 +293,7 @@ TEST_CASE("a warm-up trial of a procedure over two dimensions has a value of bot
   director.finish_block();
   director.warm_up(1);
   const auto trial = director.next();
-  CHECK(trial->type == terms::TrialType::warmup);
+  CHECK(trial->type == core::TrialType::warmup);
   CHECK(std::get<double>(trial->factors.at("end_mm")) == 150);
 }
 
@@ -311,7 +311,7 @@ TEST_CASE("the progress never reaches its end before the last trial, however man
       REQUIRE(director.trials_done() < director.trials_expected());
       ++number;
       if (unanswered_every > 0 && number % unanswered_every == 0)
-        director.record({terms::Outcome::timeout, {}, {}, {}});
+        director.record({core::Outcome::timeout, {}, {}, {}});
       else
         director.record(answered(*spec, number % 4 != 1));
     }

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <exception>
 
+#include "station/session/prepare.hpp"
 #include "station/session/session.hpp"
-#include "station/setup/prepare.hpp"
 
 using namespace turnpoint;
 
@@ -45,14 +45,14 @@ class Room : public session::Display {
 
 int main(int argc, char** argv) try {
   if (argc != 5) return 2;
-  setup::RunRequest request;
+  session::RunRequest request;
   request.protocol = argv[1];
   request.rig = argv[2];
   request.participant = "T1";
   request.database = argv[3];
   request.mode = argv[4];
   Room room;
-  session::run(setup::prepare(request), &room, room.inputs);
+  session::run(session::prepare(request), &room, room.inputs);
   std::fprintf(stderr, "cut_off_session: nobody cut it off\n");
   return 1;
 } catch (const std::exception& error) {

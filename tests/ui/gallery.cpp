@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "station/texts/texts.hpp"
+#include "station/core/texts.hpp"
 #include "tests/ui/gallery_parts.hpp"
 
 namespace turnpoint::ui {
@@ -72,7 +72,7 @@ void add_judgements(std::vector<Exhibit>& all, const Words& words) {
   number.value = {0.1, 1000, 1, {}, {}, ""};
   all.push_back({"number", number});
   number.value.decimals = 0;
-  number.value.first = texts::text("first_is", words.language);
+  number.value.first = core::text("first_is", words.language);
   number.value.first.replace(number.value.first.find("%1"), 2, "10");
   all.push_back({"number-standard", number});
   Page sure = base(words, PageKind::confidence);
@@ -116,14 +116,14 @@ Page guided(Page page, bool frozen = false) {
 void add_strokes(std::vector<Exhibit>& all, const Words& words) {
   const auto page = [&](PageKind kind, const char* text) {
     Page made = base(words, kind);
-    made.text = texts::text(text, words.language);
+    made.text = core::text(text, words.language);
     return made;
   };
   Page training = page(PageKind::instructions, "training_text");
-  training.title = texts::text("training", words.language);
+  training.title = core::text("training", words.language);
   all.push_back({"training", training});
   Page measuring = page(PageKind::instructions, "measuring_text");
-  measuring.title = texts::text("measuring", words.language);
+  measuring.title = core::text("measuring", words.language);
   all.push_back({"measuring", measuring});
   all.push_back({"stroke", guided(page(PageKind::stimulus, "stroke_now"))});
   Page good = page(PageKind::feedback, "movement_ok"), bad = page(PageKind::feedback, "movement_hard");
@@ -199,8 +199,8 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
   };
   for (const auto& [kind, detail] : faults) {
     Page page = base(words, PageKind::fault);
-    const auto text = texts::fault_text(kind, words.language);
-    page.title = texts::text("please_wait", words.language);
+    const auto text = core::fault_text(kind, words.language);
+    page.title = core::text("please_wait", words.language);
     page.fault = kind;
     page.text = text.happened;
     page.safe = text.safe;
@@ -213,7 +213,7 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
                         FaultKind::capture,   FaultKind::self_test,       FaultKind::program,
                         FaultKind::other};
     if (std::find(armed.begin(), armed.end(), kind) == armed.end()) page.amplifier = "faulted";
-    all.push_back({std::string("fault-") + terms::name(kind), page});
+    all.push_back({std::string("fault-") + core::name(kind), page});
   }
 }
 
@@ -232,11 +232,11 @@ void add_notices(std::vector<Exhibit>& all, const Words& words) {
   failed.early = session::EarlySession{"P07", 2, "2026-11-26", 1, "2026-11-25", 1};
   all.push_back({"failed-early", failed});
   Page end = base(words, PageKind::end);
-  end.title = texts::text("thanks_early", words.language);
+  end.title = core::text("thanks_early", words.language);
   end.resumable = true;
   all.push_back({"end-early", end});
   end.resumable = false;
-  end.title = texts::text("thanks", words.language);
+  end.title = core::text("thanks", words.language);
   end.trials_done = end.trials_total = 88;
   all.push_back({"end", end});
   const auto add = [&end](const char* key, const char* value) {

@@ -1,4 +1,4 @@
-#include "station/texts/texts.hpp"
+#include "station/core/texts.hpp"
 #include "tests/ui/gallery_parts.hpp"
 
 namespace turnpoint::ui {

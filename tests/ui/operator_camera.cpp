@@ -62,8 +62,8 @@ void OperatorCamera::shoot(const QString& page, const QString& name, QVariantMap
   delete item;
 }
 
-void OperatorCamera::shoot_live(const desk::LiveState& state, const QString& name,
-                                const std::optional<desk::FingerGauges>& gauges) {
+void OperatorCamera::shoot_live(const view::LiveState& state, const QString& name,
+                                const std::optional<view::FingerGauges>& gauges) {
   session::Page page;
   page.kind = session::PageKind::interval;
   page.run_mode = "pilot";
@@ -75,7 +75,7 @@ void OperatorCamera::shoot_live(const desk::LiveState& state, const QString& nam
         {{"live", QVariant::fromValue(&live_)}, {"bridge", QVariant::fromValue(&bridge_)}});
 }
 
-void OperatorCamera::shoot_report(const desk::ReportPages& pages, const QString& name, int picture) {
+void OperatorCamera::shoot_report(const view::ReportPages& pages, const QString& name, int picture) {
   report_.take(pages);
   QGuiApplication::processEvents();
   shoot("ReportPage.qml", name,

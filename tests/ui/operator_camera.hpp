@@ -6,11 +6,11 @@
 #include <QVariantMap>
 #include <functional>
 
-#include "station/desk/live_view.hpp"
-#include "station/desk/report_pages.hpp"
 #include "station/ui/operator/live_model.hpp"
 #include "station/ui/operator/report_model.hpp"
 #include "station/ui/participant/session_bridge.hpp"
+#include "station/view/live_view.hpp"
+#include "station/view/report_pages.hpp"
 
 namespace turnpoint::ui {
 
@@ -49,10 +49,10 @@ class OperatorCamera {
       const std::function<bool()>& ready = [] { return true; },
       const std::function<void(QQuickWindow&)>& operate = [](QQuickWindow&) {});
   /// With gauges of the finger, if there are any.
-  void shoot_live(const desk::LiveState& state, const QString& name,
-                  const std::optional<desk::FingerGauges>& gauges = std::nullopt);
+  void shoot_live(const view::LiveState& state, const QString& name,
+                  const std::optional<view::FingerGauges>& gauges = std::nullopt);
   /// `picture` is the number of the figure to show.
-  void shoot_report(const desk::ReportPages& pages, const QString& name, int picture = 0);
+  void shoot_report(const view::ReportPages& pages, const QString& name, int picture = 0);
 
   int count() const { return count_; }
 

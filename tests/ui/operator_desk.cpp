@@ -5,10 +5,10 @@
 #include <QFile>
 #include <chrono>
 
-#include "station/desk/live_facts.hpp"
 #include "station/session/planned_session.hpp"
 #include "station/store/session_log.hpp"
 #include "station/store/station.hpp"
+#include "station/view/live_facts.hpp"
 
 namespace turnpoint::ui {
 
@@ -19,7 +19,7 @@ OperatorDesk::OperatorDesk(SessionBridge& bridge, QObject* parent) : QObject(par
   QFile mistaken(folder_.filePath("mistaken.toml"));
   if (mistaken.open(QIODevice::WriteOnly)) mistaken.write("format = \"friction-protocol/1\"\nprotocl = 3\n");
   mistaken.close();
-  operating_ = std::make_unique<OperatorController>(setup::StationRequest{
+  operating_ = std::make_unique<OperatorController>(session::StationRequest{
       folder_.path().toStdString(), TURNPOINT_SOURCE_DIR "/tests/support/thin_plate.toml",
       folder_.filePath("lab.sqlite").toStdString()});
   connect(operating_.get(), &OperatorController::chosen, this, [this](const ChosenSession& session) {
@@ -35,12 +35,12 @@ OperatorController* OperatorDesk::early() {
   QFile::copy(TURNPOINT_SOURCE_DIR "/protocols/friction-training.toml",
               early_folder_.filePath("friction-training.toml"));
   const auto database = early_folder_.filePath("lab.sqlite").toStdString();
-  records::SessionStart start;
+  core::SessionStart start;
   start.participant = "P01", start.protocol_id = "friction-training", start.planned_session = 1;
-  start.run_mode = terms::RunMode::pilot;
+  start.run_mode = core::RunMode::pilot;
   start.station_id = store::suggested_station_name(), start.started_local = session::local_time();
-  store::SessionLog::begin(database, start, {}).finish(records::SessionStatus::completed, "");
-  early_ = std::make_unique<OperatorController>(setup::StationRequest{
+  store::SessionLog::begin(database, start, {}).finish(core::SessionStatus::completed, "");
+  early_ = std::make_unique<OperatorController>(session::StationRequest{
       early_folder_.path().toStdString(), TURNPOINT_SOURCE_DIR "/tests/support/thin_plate.toml", database});
   connect(early_.get(), &OperatorController::chosen, this,
           [this](const ChosenSession& session) { reason_ = QString::fromStdString(session.setup.early); });
@@ -61,12 +61,12 @@ double OperatorDesk::keptLatencyMs() const {
 }
 
 void OperatorDesk::tellLive(const QString& heading, const QString& language) {
-  desk::LiveState state;
+  view::LiveState state;
   state.heading = heading.toStdString();
-  desk::LiveTrial scored, caught;
+  view::LiveTrial scored, caught;
   scored.correct = caught.correct = true;
-  caught.type = terms::TrialType::catch_trial;
-  state.course = desk::course_of({scored, caught}, language.toStdString());
+  caught.type = core::TrialType::catch_trial;
+  state.course = view::course_of({scored, caught}, language.toStdString());
   live_.take(state);
 }
 

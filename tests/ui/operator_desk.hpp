@@ -52,7 +52,7 @@ class OperatorDesk : public QObject {
   QTemporaryDir early_folder_;
   std::unique_ptr<OperatorController> operating_, early_;
   LiveModel live_;
-  LatencyController latency_{calibration::LatencyReference::button};
+  LatencyController latency_{rig::LatencyReference::button};
   QString chosen_, reason_;
 };
 

@@ -5,18 +5,18 @@
 #include <condition_variable>
 #include <mutex>
 
-#include "station/desk/report_data.hpp"
 #include "station/session/planned_session.hpp"
-#include "station/setup/prepare.hpp"
+#include "station/session/prepare.hpp"
 #include "station/store/session_log.hpp"
 #include "station/store/station.hpp"
+#include "station/view/report_data.hpp"
 
 namespace turnpoint::ui {
 
 namespace {
 
-setup::RunRequest request_for(const std::string& protocol, const std::string& database) {
-  setup::RunRequest request;
+session::RunRequest request_for(const std::string& protocol, const std::string& database) {
+  session::RunRequest request;
   request.protocol = TURNPOINT_SOURCE_DIR "/protocols/" + protocol + ".toml";
   request.rig = TURNPOINT_SOURCE_DIR "/tests/support/thin_plate.toml";
   request.participant = "P03";
@@ -36,7 +36,7 @@ struct FirstTrials : session::Monitor {
     to.trial_begins(spec, block, plans);
     if (left == 0) throw std::runtime_error("enough");
   }
-  void trial_ended(const trial::TrialSpec& spec, const records::TrialRow& row) override {
+  void trial_ended(const trial::TrialSpec& spec, const core::TrialRow& row) override {
     --left;
     to.trial_ended(spec, row);
   }
@@ -45,31 +45,31 @@ struct FirstTrials : session::Monitor {
 struct Nobody : session::Monitor {
   void trial_begins(const trial::TrialSpec&, const protocol::Block&,
                     const session::PlanAhead::Plans&) override {}
-  void trial_ended(const trial::TrialSpec&, const records::TrialRow&) override {}
+  void trial_ended(const trial::TrialSpec&, const core::TrialRow&) override {}
 };
 
-void run_first(const setup::RunRequest& request, session::Monitor& monitor, int trials) {
+void run_first(const session::RunRequest& request, session::Monitor& monitor, int trials) {
   session::Inputs inputs;
   FirstTrials first(monitor, trials);
   try {
-    session::run(setup::prepare(request), nullptr, inputs, &first);
+    session::run(session::prepare(request), nullptr, inputs, &first);
   } catch (const std::runtime_error&) {
   }
 }
 
 }  // namespace
 
-desk::LiveState live_exhibit(const std::string& protocol, int trials, const std::string& language) {
+view::LiveState live_exhibit(const std::string& protocol, int trials, const std::string& language) {
   const QTemporaryDir folder;
   const auto request = request_for(protocol, folder.filePath("a.sqlite").toStdString());
-  const auto setup = setup::prepare(request);
+  const auto setup = session::prepare(request);
   std::mutex mutex;
   std::condition_variable told;
-  desk::LiveState state;
+  view::LiveState state;
   int news = 0;
-  desk::LiveView view(
+  view::LiveView view(
       setup.protocol, setup.rig,
-      [&](desk::LiveState next) {
+      [&](view::LiveState next) {
         const std::lock_guard lock(mutex);
         state = std::move(next);
         ++news;
@@ -82,20 +82,20 @@ desk::LiveState live_exhibit(const std::string& protocol, int trials, const std:
   return state;
 }
 
-desk::ReportPages report_exhibit(const std::string& protocol, const std::string& language) {
+view::ReportPages report_exhibit(const std::string& protocol, const std::string& language) {
   const QTemporaryDir folder;
   const auto database = folder.filePath("a.sqlite").toStdString();
   session::Inputs inputs;
-  const auto summary = session::run(setup::prepare(request_for(protocol, database)), nullptr, inputs);
-  return desk::report_pages(database, summary.session_id, language);
+  const auto summary = session::run(session::prepare(request_for(protocol, database)), nullptr, inputs);
+  return view::report_pages(database, summary.session_id, language);
 }
 
-desk::ReportPages forces_exhibit(const std::string& protocol, const std::string& language) {
+view::ReportPages forces_exhibit(const std::string& protocol, const std::string& language) {
   const QTemporaryDir folder;
   const auto database = folder.filePath("a.sqlite").toStdString();
   session::Inputs inputs;
-  const auto session = session::run(setup::prepare(request_for(protocol, database)), nullptr, inputs);
-  auto data = desk::report_data(database, session.session_id);
+  const auto session = session::run(session::prepare(request_for(protocol, database)), nullptr, inputs);
+  auto data = view::report_data(database, session.session_id);
   data.language = language;
   for (const auto& trial : data.trials) {
     const double wave = std::sin(2.1 * trial.trial_index), other = std::cos(1.3 * trial.trial_index);
@@ -105,7 +105,7 @@ desk::ReportPages forces_exhibit(const std::string& protocol, const std::string&
                            (fast ? 118 : 82) + 12 * other, 0.35 + 0.03 * wave, 0.8 + 0.05 * other, planned_mm,
                            planned_mm + 0.4 * wave - 0.3 * other, 0.4});
   }
-  return desk::report_pages(report::summarise(data));
+  return view::report_pages(report::summarise(data));
 }
 
 std::string interrupted_exhibit(const std::string& folder) {
@@ -117,11 +117,11 @@ std::string interrupted_exhibit(const std::string& folder) {
 
 std::string today_exhibit(const std::string& folder) {
   const auto path = folder + "/today.sqlite";
-  records::SessionStart today;
+  core::SessionStart today;
   today.participant = "P01", today.protocol_id = "friction-training", today.planned_session = 1;
-  today.run_mode = terms::RunMode::pilot;
+  today.run_mode = core::RunMode::pilot;
   today.station_id = store::suggested_station_name(), today.started_local = session::local_time();
-  store::SessionLog::begin(path, today, {}).finish(records::SessionStatus::completed, "");
+  store::SessionLog::begin(path, today, {}).finish(core::SessionStatus::completed, "");
   return path;
 }
 

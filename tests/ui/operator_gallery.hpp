@@ -1,20 +1,20 @@
 #pragma once
 #include <string>
 
-#include "station/desk/live_view.hpp"
-#include "station/desk/report_pages.hpp"
+#include "station/view/live_view.hpp"
+#include "station/view/report_pages.hpp"
 
 namespace turnpoint::ui {
 
 // Texts and figures are in a language such as "de".
 
 /// Returns what an operator would see after `trials` trials of a session with a simulated observer.
-desk::LiveState live_exhibit(const std::string& protocol, int trials, const std::string& language);
+view::LiveState live_exhibit(const std::string& protocol, int trials, const std::string& language);
 
 /// Returns the report of a whole simulated session of that protocol.
-desk::ReportPages report_exhibit(const std::string& protocol, const std::string& language);
+view::ReportPages report_exhibit(const std::string& protocol, const std::string& language);
 /// Returns the same report as if force cells had recorded; their values are invented.
-desk::ReportPages forces_exhibit(const std::string& protocol, const std::string& language);
+view::ReportPages forces_exhibit(const std::string& protocol, const std::string& language);
 
 /// Creates a database in `folder` with an interrupted session of participant P03. Returns its path.
 std::string interrupted_exhibit(const std::string& folder);

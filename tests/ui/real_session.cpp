@@ -3,7 +3,7 @@
 #include <QFile>
 #include <chrono>
 
-#include "station/setup/prepare.hpp"
+#include "station/session/prepare.hpp"
 #include "station/store/export.hpp"
 #include "tests/support/shared_lines.hpp"
 
@@ -31,8 +31,8 @@ void RealSession::start(const QString& protocol) {
   failure_.clear();
   ++sessions_;
   protocol_ = protocol.section('.', 0, 0);
-  lines_ = std::make_shared<lines::SimulatedLines>(SharedLines::count);
-  setup::RunRequest request;
+  lines_ = std::make_shared<io::SimulatedLines>(SharedLines::count);
+  session::RunRequest request;
   request.protocol = TURNPOINT_SOURCE_DIR "/tests/ui/" + protocol.toStdString();
   request.rig = TURNPOINT_SOURCE_DIR "/tests/support/thin_plate.toml";
   request.participant = "T1";
@@ -42,7 +42,7 @@ void RealSession::start(const QString& protocol) {
     try {
       session::Devices devices;
       devices.amplifier = guarded(lines_);
-      session::run(setup::prepare(request), &bridge_, inputs_, std::move(devices));
+      session::run(session::prepare(request), &bridge_, inputs_, std::move(devices));
     } catch (const std::exception& error) {
       failure = error.what();
     }
@@ -74,7 +74,7 @@ void RealSession::find(const QString& fault) {
   input.kind = session::InputKind::fault;
   input.text = "found by a test";
   for (const auto kind : {FaultKind::converter_gone, FaultKind::touch_gone, FaultKind::stimulus_missed})
-    if (fault == terms::name(kind)) input.fault = kind;
+    if (fault == core::name(kind)) input.fault = kind;
   inputs_.push(std::move(input));
 }
 

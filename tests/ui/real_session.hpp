@@ -5,7 +5,7 @@
 #include <memory>
 #include <thread>
 
-#include "station/lines/simulated_lines.hpp"
+#include "station/io/simulated_lines.hpp"
 #include "station/session/session.hpp"
 #include "station/ui/participant/session_bridge.hpp"
 #include "tests/store/failing_disk.hpp"
@@ -53,7 +53,7 @@ class RealSession : public QObject {
 
   QTemporaryDir folder_;
   FailingDisk disk_;
-  std::shared_ptr<lines::SimulatedLines> lines_;
+  std::shared_ptr<io::SimulatedLines> lines_;
   session::Inputs inputs_;
   SessionBridge bridge_;
   int sessions_ = 0;

@@ -110,7 +110,7 @@ class Camera {
   turnpoint::ui::LiveModel live_;
   turnpoint::ui::ReportModel report_;
   StartController start_;
-  turnpoint::ui::OperatorLock lock_{turnpoint::desk::OperatorCode()};
+  turnpoint::ui::OperatorLock lock_{turnpoint::view::OperatorCode()};
   QQmlApplicationEngine engine_;
   QQuickWindow* window_ = nullptr;
   int count_ = 0;
@@ -161,7 +161,7 @@ int shoot_early(const QString& out, const QStringList& sizes, const QStringList&
   const QTemporaryDir folder;
   QDir::setCurrent(folder.path());
   QFile::copy(QString::fromStdString(source + "/tests/support/thin_plate.toml"), "plate.toml");
-  const setup::StationRequest request{source + "/protocols", "plate.toml", ui::today_exhibit(".")};
+  const session::StationRequest request{source + "/protocols", "plate.toml", ui::today_exhibit(".")};
   ui::OperatorController early(request);
   ui::StudiesController studies(request);
   ui::SessionsController sessions(request);
@@ -297,9 +297,9 @@ int shoot_sessions(const QString& out, const QStringList& sizes, const QString& 
   const auto report = ui::report_exhibit("speed-accuracy", language),
              report2 = ui::report_exhibit("boundary-constant", language),
              report3 = ui::forces_exhibit("speed-accuracy", language);
-  const desk::FingerGauges gauges{
+  const view::FingerGauges gauges{
       {0.45, 0.3, 0.6, "0.68 N"}, {0.4, 0.25, 0.55, "82 mm/s"}, {0.62, 0, 0, "186 mm"}};
-  ui::LatencyController latency(calibration::LatencyReference::photodiode);
+  ui::LatencyController latency(rig::LatencyReference::photodiode);
   return shoot_each(out, sizes, {{shown, {shown}}}, [&](OperatorCamera& camera) {
     camera.shoot("OperatorPage.qml", "participant",
                  {{"operating", QVariant::fromValue(&operating)}, {"typing", true}});

@@ -11,11 +11,11 @@
 #include <csignal>
 #include <fstream>
 
-#include "station/calibration/apply.hpp"
 #include "station/maintenance/calibrate.hpp"
 #include "station/maintenance/panel_latency.hpp"
+#include "station/rig/apply.hpp"
 #include "station/session/planned_session.hpp"
-#include "station/setup/prepare.hpp"
+#include "station/session/prepare.hpp"
 #include "station/store/export.hpp"
 #include "station/store/session_log.hpp"
 #include "station/store/station.hpp"
@@ -64,25 +64,25 @@ void StationRoom::entitle(const QString& title) {
 }
 
 void StationRoom::reopen(const QString& code) {
-  start(desk::OperatorCode::of_digits(code.toStdString()), Begins::open);
+  start(view::OperatorCode::of_digits(code.toStdString()), Begins::open);
 }
 
 void StationRoom::reopenLocked(const QString& code) {
-  start(desk::OperatorCode::of_digits(code.toStdString()), Begins::locked);
+  start(view::OperatorCode::of_digits(code.toStdString()), Begins::locked);
 }
 
-void StationRoom::reopenBuiltIn() { start(desk::OperatorCode(), Begins::locked); }
+void StationRoom::reopenBuiltIn() { start(view::OperatorCode(), Begins::locked); }
 
 void StationRoom::reopenEmpty(const QString& code) {
   QFile::remove(folder_->filePath("protocols/short.toml"));
   reopen(code);
 }
 
-void StationRoom::start(const desk::OperatorCode& code, Begins begins) {
+void StationRoom::start(const view::OperatorCode& code, Begins begins) {
   close();
   const bool locked = begins == Begins::locked;
   operating_ = std::make_unique<OperatorController>(
-      setup::StationRequest{path("protocols"), path("rig.toml"), path("lab.sqlite"), locked});
+      session::StationRequest{path("protocols"), path("rig.toml"), path("lab.sqlite"), locked});
   station_ = std::make_unique<StationWindow>(
       StationWindow::Place{5.9, QSize(1280, 800), false},
       StationWindow::Operator{operating_.get(), code, locked, disks(), path("operator-code")},
@@ -125,11 +125,11 @@ void StationRoom::planSessions() {
     std::ofstream file(path("protocols/short.toml"), std::ios::app);
     file << "\n[sessions]\ncount = 2\nmin_days = 1\n";
   }
-  records::SessionStart start;
+  core::SessionStart start;
   start.participant = "T1", start.protocol_id = "short", start.planned_session = 1;
-  start.run_mode = terms::RunMode::pilot;
+  start.run_mode = core::RunMode::pilot;
   start.station_id = store::suggested_station_name(), start.started_local = session::local_time();
-  store::SessionLog::begin(path("lab.sqlite"), start, {}).finish(records::SessionStatus::completed, "");
+  store::SessionLog::begin(path("lab.sqlite"), start, {}).finish(core::SessionStatus::completed, "");
 }
 
 QString StationRoom::askedUdisks() const {
@@ -182,14 +182,14 @@ void StationRoom::calibrate() {
   write(path("sweep.csv"), sweep);
   write(path("friction.csv"), "displacement_um,relative_friction\n0,1\n0.5,0.6\n1,0.4\n2,0.2\n4,0.15\n");
   write(path("sound.csv"), "frequency_Hz,level_dB\n20000,60\n30000,70\n50000,80\n");
-  calibration::Measurements measurements;
+  rig::Measurements measurements;
   measurements.sweeps = {{"main", path("sweep.csv"), 0.1}};
   measurements.friction_csv = path("friction.csv");
   measurements.sound_csv = path("sound.csv");
   const auto rig = rig::load(path("rig.toml"));
   auto made = maintenance::calibrate(rig, measurements, 30, "");
   maintenance::keep_devices(rig, made);
-  write(calibration::file_for(rig.path, made.made_on), calibration::to_toml(made));
+  write(rig::file_for(rig.path, made.made_on), rig::to_toml(made));
 }
 
 void StationRoom::addCells() {
@@ -219,8 +219,7 @@ double StationRoom::keepLatency() {
   const auto kept = latency_.kept();
   if (!kept) return 0;
   const auto rig = rig::load(path("rig.toml"));
-  write(calibration::file_for(rig.path, calibration::today()),
-        calibration::to_toml(maintenance::with_panel(rig, *kept)));
+  write(rig::file_for(rig.path, rig::today()), rig::to_toml(maintenance::with_panel(rig, *kept)));
   return kept->touch->median_s;
 }
 
@@ -272,14 +271,14 @@ void StationRoom::block(int ms) {
 }
 
 QStringList StationRoom::plannedLevels() const {
-  setup::RunRequest request;
+  session::RunRequest request;
   request.protocol = path("protocols/short.toml");
   request.rig = path("rig.toml");
   request.participant = "T1";
   request.database = path("unbroken.sqlite");
   request.observer = "sim";
   session::Inputs inputs;
-  session::run(setup::prepare(request), nullptr, inputs);
+  session::run(session::prepare(request), nullptr, inputs);
   return read(request.database, "trials.csv", "level", {}, {});
 }
 

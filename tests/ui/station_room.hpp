@@ -113,7 +113,7 @@ class StationRoom : public QObject {
 
  private:
   enum class Begins { open, locked };
-  void start(const desk::OperatorCode& code, Begins begins);
+  void start(const view::OperatorCode& code, Begins begins);
   QStringList read(const std::string& database, const QString& file, const QString& name,
                    const QString& where, const QString& is) const;
   maintenance::DiskSources disks() const;
@@ -126,7 +126,7 @@ class StationRoom : public QObject {
   QTimer beat_;
   std::int64_t beat_ns_ = 0;
   int stalls_ = 0;
-  LatencyController latency_{calibration::LatencyReference::button};
+  LatencyController latency_{rig::LatencyReference::button};
 };
 
 }  // namespace turnpoint::ui

@@ -11,7 +11,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "station/records/records.hpp"
+#include "station/core/records.hpp"
 #include "station/ui/participant/session_bridge.hpp"
 #include "station/ui/platform/screens.hpp"
 #include "tests/support/small_disk.hpp"
@@ -53,7 +53,7 @@ void sit_down() {
 int main(int argc, char** argv) try {
   if (argc < 4) return 2;
   if (argc > 4) filling = argv[4];
-  setup::RunRequest request;
+  session::RunRequest request;
   request.protocol = argv[1];
   request.rig = argv[2];
   request.participant = "T1";

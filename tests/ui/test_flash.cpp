@@ -6,10 +6,10 @@
 #include <memory>
 #include <thread>
 
-#include "station/desk/report_data.hpp"
 #include "station/store/read.hpp"
 #include "station/system/clocks.hpp"
 #include "station/ui/participant/session_runner.hpp"
+#include "station/view/report_data.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -82,7 +82,7 @@ TEST_CASE("each flash of a session is stored with the time at which it was shown
   const std::string early = "anticipation_s = 0.0\n";
   text.erase(text.find(early), early.size());
   setup.protocol = protocol::parse(text, "flash.toml");
-  setup.run_mode = terms::RunMode::pilot;
+  setup.run_mode = core::RunMode::pilot;
   setup.rig.touch_uri = "sim:";
   setup.display_latency_s = 0.042;
   const auto database = setup.database;
@@ -121,11 +121,11 @@ TEST_CASE("each flash of a session is stored with the time at which it was shown
   CHECK(flashes >= 2);
   CHECK(late >= 1);
   int rows = 0;
-  for (const auto& [name, said] : desk::report_data(database, summary->session_id).health)
+  for (const auto& [name, said] : view::report_data(database, summary->session_id).health)
     if (name.key == "station.flashes") {
       ++rows;
-      CHECK(texts::say(said, "en").find(std::to_string(shown) + " shown; frame ready ") == 0);
-      CHECK(texts::say(said, "en").find("a touch shows on this screen after 42 ms") != std::string::npos);
+      CHECK(core::say(said, "en").find(std::to_string(shown) + " shown; frame ready ") == 0);
+      CHECK(core::say(said, "en").find("a touch shows on this screen after 42 ms") != std::string::npos);
     }
   CHECK(rows == 1);
 }

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "station/calibration/apply.hpp"
+#include "station/rig/apply.hpp"
 #include "station/system/clocks.hpp"
 #include "station/ui/operator/calibration_guide.hpp"
 #include "tests/support/catch.hpp"
@@ -77,7 +77,7 @@ TEST_CASE(
   CHECK(guide.problem() == QVariant(QString()));
   CHECK(room.measured("panel_button"));
   CHECK_FALSE(room.measured("panel_photodiode"));
-  const auto made = calibration::load(guide.file().toStdString());
+  const auto made = rig::load_calibration(guide.file().toStdString());
   REQUIRE((made.panel && made.panel->touch));
   CHECK(made.panel->touch->median_s > 0.029);
   CHECK(made.panel->touch->median_s < 0.2);

@@ -13,7 +13,7 @@ TEST_CASE("the operator's view has gauges of the finger, and the participant's p
           "[ui][gauges]") {
   const EventLoop<> loop;
   const TemporaryFolder folder;
-  setup::RunRequest request;
+  session::RunRequest request;
   request.protocol = measured::shipped("demo");
   request.rig = measured::with_capture(folder, measured::kCells);
   request.participant = "P01";
@@ -32,7 +32,7 @@ TEST_CASE("the operator's view has gauges of the finger, and the participant's p
   QObject::connect(&runner.bridge(), &ui::SessionBridge::shown, &live,
                    [&] { guided += runner.bridge().page()->is_guided() ? 1 : 0; });
   CHECK_FALSE(live.gauged());
-  runner.begin(setup::prepare(request));
+  runner.begin(session::prepare(request));
   const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(100);
   while (pressed < 20 && std::chrono::steady_clock::now() < until)
     QCoreApplication::processEvents(QEventLoop::AllEvents, 10);

@@ -18,7 +18,7 @@ struct Keypad {
   EventLoop<> loop;
   double now_s = 1000;
   int opened = 0, refused = 0;
-  ui::OperatorLock lock{desk::OperatorCode::of_digits("7391"), [this] { return now_s; }};
+  ui::OperatorLock lock{view::OperatorCode::of_digits("7391"), [this] { return now_s; }};
 
   Keypad() {
     QObject::connect(&lock, &ui::OperatorLock::opened, [this] { ++opened; });
@@ -72,7 +72,7 @@ TEST_CASE(
     "[lock]") {
   const TemporaryFolder folder;
   EventLoop<> loop;
-  ui::OperatorLock lock{desk::OperatorCode()};
+  ui::OperatorLock lock{view::OperatorCode()};
   lock.store_in(folder / "operator-code");
   int chosen = 0, refused = 0;
   QObject::connect(&lock, &ui::OperatorLock::chosen, [&] { ++chosen; });
@@ -85,13 +85,13 @@ TEST_CASE(
     REQUIRE_FALSE(lock.checking());
   };
   CHECK(lock.built_in());
-  CHECK(lock.shown_code() == desk::OperatorCode::built_in);
-  for (const char* impossible : {"123", desk::OperatorCode::built_in}) choose(impossible);
+  CHECK(lock.shown_code() == view::OperatorCode::built_in);
+  for (const char* impossible : {"123", view::OperatorCode::built_in}) choose(impossible);
   CHECK(refused == 2);
   CHECK(lock.built_in());
   choose("7391");
   CHECK(chosen == 1);
   CHECK_FALSE(lock.built_in());
   CHECK(lock.shown_code().isEmpty());
-  CHECK(desk::operator_code({folder / "operator-code"}).opens("7391"));
+  CHECK(view::operator_code({folder / "operator-code"}).opens("7391"));
 }

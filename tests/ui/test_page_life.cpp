@@ -29,7 +29,7 @@ struct PilotSession {
     text.replace(text.find("explore_s = 2.0"), 15, "explore_s = 20.0");
     text.replace(text.find("deadline_s = 3.0"), 16, "deadline_s = 25.0");
     setup.protocol = protocol::parse(text, "pilot.toml");
-    setup.run_mode = terms::RunMode::pilot;
+    setup.run_mode = core::RunMode::pilot;
     setup.rig.touch_uri = touch_uri;
     runner.begin(std::move(setup));
   }
@@ -62,7 +62,7 @@ TEST_CASE("if the pages' thread hangs, the amplifier is switched off, and the ne
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(2600));  // now the pages' thread hangs
   REQUIRE(session.shows(session::PageKind::fault));
-  CHECK(session.page().fault == terms::FaultKind::page_silent);
+  CHECK(session.page().fault == core::FaultKind::page_silent);
   CHECK(session.page().amplifier == "faulted");
   session.runner.ask_to_stop();
   const auto summary = session.runner.finish();
@@ -79,7 +79,7 @@ TEST_CASE("an unplugged touch panel makes the trial void and causes a fault page
   REQUIRE(session.shows(session::PageKind::stimulus));
   panel->unplug();
   REQUIRE(session.shows(session::PageKind::fault));
-  CHECK(session.page().fault == terms::FaultKind::touch_gone);
+  CHECK(session.page().fault == core::FaultKind::touch_gone);
   CHECK(session.page().detail == "the touch panel was disconnected");
   panel.reset();
   panel = std::make_unique<FakeEvdev>(2, path);

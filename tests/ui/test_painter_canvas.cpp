@@ -4,7 +4,7 @@
 #include <QImage>
 #include <cmath>
 
-#include "station/plot/chart.hpp"
+#include "station/report/chart.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/ui/event_loop.hpp"
 
@@ -40,12 +40,12 @@ struct Screen {
   EventLoop<QGuiApplication> loop;
 };
 
-const plot::Paint kBlack{"", "#000000", 1, "", 1};
+const report::Paint kBlack{"", "#000000", 1, "", 1};
 
 }  // namespace
 
 TEST_CASE("a figure is painted in the middle, as large as its proportions allow", "[ui]") {
-  const auto sheet = painted([](plot::Canvas& canvas) {
+  const auto sheet = painted([](report::Canvas& canvas) {
     canvas.begin(100, 100, "square");
     canvas.rectangle({0, 0}, 100, 100, kBlack);
   });
@@ -53,7 +53,7 @@ TEST_CASE("a figure is painted in the middle, as large as its proportions allow"
 }
 
 TEST_CASE("shapes outside a clip are not painted, and shapes after the clip ends are", "[ui]") {
-  const auto clipped = painted([](plot::Canvas& canvas) {
+  const auto clipped = painted([](report::Canvas& canvas) {
     canvas.begin(400, 300, "clip");
     canvas.begin_clip({100, 100}, 50, 60);
     canvas.line({0, 0}, {400, 300}, {"#000000", "", 4, "", 1});
@@ -61,7 +61,7 @@ TEST_CASE("shapes outside a clip are not painted, and shapes after the clip ends
     canvas.end_clip();
   });
   CHECK(inked(clipped) == QRect(100, 100, 50, 60));
-  const auto after = painted([](plot::Canvas& canvas) {
+  const auto after = painted([](report::Canvas& canvas) {
     canvas.begin(400, 300, "clip");
     canvas.begin_clip({100, 100}, 50, 60);
     canvas.end_clip();
@@ -72,7 +72,7 @@ TEST_CASE("shapes outside a clip are not painted, and shapes after the clip ends
 
 TEST_CASE("the length of dashes does not depend on the width of the line", "[ui]") {
   for (const double width : {2.0, 6.0}) {
-    const auto sheet = painted([&](plot::Canvas& canvas) {
+    const auto sheet = painted([&](report::Canvas& canvas) {
       canvas.begin(400, 300, "dashes");
       canvas.line({0, 150}, {400, 150}, {"#000000", "", width, "40 60", 1});
     });
@@ -84,30 +84,30 @@ TEST_CASE("the length of dashes does not depend on the width of the line", "[ui]
 
 TEST_CASE("text is aligned at its start, middle or end, and rotates counter-clockwise", "[ui]") {
   const Screen screen;
-  const auto at = [](plot::Anchor anchor, double degrees) {
-    return inked(painted([&](plot::Canvas& canvas) {
+  const auto at = [](report::Anchor anchor, double degrees) {
+    return inked(painted([&](report::Canvas& canvas) {
       canvas.begin(400, 300, "text");
       canvas.text({200, 150}, "HHHH", 24, anchor, "#000000", 400, degrees);
     }));
   };
-  CHECK(std::abs(at(plot::Anchor::start, 0).left() - 200) <= 4);
-  CHECK(std::abs(at(plot::Anchor::middle, 0).center().x() - 200) <= 4);
-  CHECK(std::abs(at(plot::Anchor::end, 0).right() - 200) <= 4);
-  CHECK(std::abs(at(plot::Anchor::start, 0).bottom() - 150) <= 2);
-  const auto upwards = at(plot::Anchor::start, 90);
+  CHECK(std::abs(at(report::Anchor::start, 0).left() - 200) <= 4);
+  CHECK(std::abs(at(report::Anchor::middle, 0).center().x() - 200) <= 4);
+  CHECK(std::abs(at(report::Anchor::end, 0).right() - 200) <= 4);
+  CHECK(std::abs(at(report::Anchor::start, 0).bottom() - 150) <= 2);
+  const auto upwards = at(report::Anchor::start, 90);
   CHECK(upwards.height() > upwards.width());
   CHECK(std::abs(upwards.bottom() - 150) <= 4);
 }
 
 TEST_CASE("a figure on the screen fills the same frame as in a file", "[ui]") {
   const Screen screen;
-  plot::Figure figure;
+  report::Figure figure;
   figure.title = "A figure";
-  plot::Chart chart{"", {"x", 0, 1, plot::AxisScale::linear}, {"y", 0, 1, plot::AxisScale::linear}, {}};
-  chart.layers.emplace_back(plot::Line{{0, 0.5, 1}, {0.5, 40, 0.5}, 0, ""});
+  report::Chart chart{"", {"x", 0, 1, report::AxisScale::linear}, {"y", 0, 1, report::AxisScale::linear}, {}};
+  chart.layers.emplace_back(report::Line{{0, 0.5, 1}, {0.5, 40, 0.5}, 0, ""});
   figure.charts.push_back(chart);
   figure.chart_width_px = 400, figure.chart_height_px = 300;
-  const auto sheet = painted([&](plot::Canvas& canvas) { plot::draw(canvas, figure); });
+  const auto sheet = painted([&](report::Canvas& canvas) { report::draw(canvas, figure); });
   int above = 0;
   for (int x = 0; x < 400; ++x) above += sheet.pixel(x, 4) != kPaper ? 1 : 0;
   CHECK(above == 0);  // the line leaves the chart's range, but is clipped at its frame

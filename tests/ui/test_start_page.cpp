@@ -8,9 +8,9 @@
 #include <mutex>
 
 #include "station/session/planned_session.hpp"
-#include "station/setup/prepare.hpp"
-#include "station/store/open.hpp"
+#include "station/session/prepare.hpp"
 #include "station/store/backup.hpp"
+#include "station/store/open.hpp"
 #include "station/store/session_log.hpp"
 #include "station/store/station.hpp"
 #include "station/system/clocks.hpp"
@@ -31,14 +31,14 @@ constexpr std::chrono::seconds kPatience{20};
 /// Simulates checks of protocols. Each takes until the test ends it, even if its result is no longer needed.
 class HeldChecks {
  public:
-  simulation::Check operator()(const std::string& protocol, const std::stop_token& stop) {
+  rehearsal::Check operator()(const std::string& protocol, const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     begun_.push_back(std::filesystem::path(protocol).filename());
     running_ = stop;
     changed_.notify_all();
     changed_.wait_for(lock, kPatience, [this] { return open_; });
     ++ended_;
-    simulation::Check check;
+    rehearsal::Check check;
     check.rig_name = begun_.back();
     return check;
   }
@@ -90,7 +90,7 @@ struct StartPage {
 
   void open() {
     page = std::make_unique<OperatorController>(
-        setup::StationRequest{folder.path, kSource + "/tests/support/thin_plate.toml", folder / "lab.sqlite"},
+        session::StationRequest{folder.path, kSource + "/tests/support/thin_plate.toml", folder / "lab.sqlite"},
         [this](const std::string& protocol, const std::string&, const std::stop_token& stop) {
           return checks(protocol, stop);
         });
@@ -159,7 +159,7 @@ TEST_CASE("the result of a check that ends late is not shown for a protocol that
 TEST_CASE("a failed attempt to resume a session does not change the check of the chosen protocol",
           "[start]") {
   StartPage start;
-  setup::RunRequest request;
+  session::RunRequest request;
   request.protocol = kSource + "/protocols/demo.toml";
   request.rig = kSource + "/tests/support/thin_plate.toml";
   request.participant = "P01";
@@ -168,12 +168,12 @@ TEST_CASE("a failed attempt to resume a session does not change the check of the
   struct Cut : session::Monitor {
     void trial_begins(const trial::TrialSpec&, const protocol::Block&,
                       const session::PlanAhead::Plans&) override {}
-    void trial_ended(const trial::TrialSpec&, const records::TrialRow&) override {
+    void trial_ended(const trial::TrialSpec&, const core::TrialRow&) override {
       throw std::runtime_error("cut");
     }
   } cut;
   session::Inputs inputs;
-  CHECK_THROWS(session::run(setup::prepare(request), nullptr, inputs, &cut));
+  CHECK_THROWS(session::run(session::prepare(request), nullptr, inputs, &cut));
   start.open();
   REQUIRE_FALSE(start.page->interrupted().isEmpty());
   REQUIRE(start.comes([&] { return start.checks.begun().size() == 1; }));
@@ -188,9 +188,9 @@ TEST_CASE("a failed attempt to resume a session does not change the check of the
 TEST_CASE("the start page says how old the last good backup is", "[start]") {
   StartPage start;
   const auto database = start.folder / "lab.sqlite", record = database + ".last-backup";
-  records::SessionStart session;
+  core::SessionStart session;
   session.participant = "P01", session.station_id = "lab";
-  store::SessionLog::begin(database, session, {}).finish(records::SessionStatus::stopped, "");
+  store::SessionLog::begin(database, session, {}).finish(core::SessionStatus::stopped, "");
   start.open();
   CHECK(start.page->backup()["state"] == "none");
 
@@ -215,9 +215,9 @@ TEST_CASE("a database of another machine is asked about, and either answer lets 
   StartPage start;
   std::filesystem::copy_file(kSource + "/protocols/friction-training.toml", start.folder / "0.toml");
   const auto path = start.folder / "lab.sqlite";
-  records::SessionStart session;
+  core::SessionStart session;
   session.participant = "P01", session.station_id = "bench-1";
-  store::SessionLog::begin(path, session, {}).finish(records::SessionStatus::stopped, "");
+  store::SessionLog::begin(path, session, {}).finish(core::SessionStatus::stopped, "");
   const auto id = store::read_station(path).database_id;
   {
     auto writer = store::open_writer(path, store::IfMissing::fail);
@@ -257,12 +257,12 @@ TEST_CASE("the operator begins a session that comes too early only with a reason
           "[start]") {
   StartPage start;
   std::filesystem::copy_file(kSource + "/protocols/friction-training.toml", start.folder / "0.toml");
-  records::SessionStart today;
+  core::SessionStart today;
   today.participant = "P01", today.protocol_id = "friction-training", today.planned_session = 1;
-  today.run_mode = terms::RunMode::pilot;
+  today.run_mode = core::RunMode::pilot;
   today.station_id = store::suggested_station_name(), today.started_local = session::local_time();
   store::SessionLog::begin(start.folder / "lab.sqlite", today, {})
-      .finish(records::SessionStatus::completed, "");
+      .finish(core::SessionStatus::completed, "");
   start.open();
   start.checks.let_go();
   REQUIRE(start.comes([&] { return !start.page->checking(); }));

@@ -102,7 +102,7 @@ TEST_CASE("a session stopped during a stimulus is closed in its log, and can be 
   CHECK(child.said().find("interrupted, 2 trials: the program was stopped by a signal") != std::string::npos);
   const auto sessions = turnpoint::store::list_sessions(folder / "db");
   REQUIRE(sessions.size() == 1);
-  CHECK(sessions[0].status == turnpoint::records::SessionStatus::interrupted);
+  CHECK(sessions[0].status == turnpoint::core::SessionStatus::interrupted);
 }
 
 TEST_CASE("on a full disk, a session ends within three seconds of the signal and says what was kept",

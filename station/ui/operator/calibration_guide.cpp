@@ -6,16 +6,16 @@
 #include <sstream>
 #include <utility>
 
-#include "station/calibration/apply.hpp"
-#include "station/calibration/calibration.hpp"
-#include "station/desk/preview.hpp"
-#include "station/desk/scene_figures.hpp"
+#include "station/core/number.hpp"
 #include "station/maintenance/panel_latency.hpp"
 #include "station/maintenance/play_armed.hpp"
-#include "station/setup/prepare.hpp"
-#include "station/text/number.hpp"
+#include "station/rig/apply.hpp"
+#include "station/rig/calibration.hpp"
+#include "station/session/prepare.hpp"
 #include "station/ui/operator/facts.hpp"
 #include "station/ui/operator/figure_view.hpp"
+#include "station/view/preview.hpp"
+#include "station/view/scene_figures.hpp"
 
 namespace turnpoint::ui {
 
@@ -28,12 +28,11 @@ constexpr std::pair<Series, const char*> kSeries[] = {{Series::response, "respon
                                                       {Series::friction, "friction"},
                                                       {Series::sound, "sound"}};
 /// What the touch panel's latency is measured against.
-constexpr std::pair<calibration::LatencyReference, const char*> kPanel[] = {
-    {calibration::LatencyReference::button, "panel_button"},
-    {calibration::LatencyReference::photodiode, "panel_photodiode"}};
+constexpr std::pair<rig::LatencyReference, const char*> kPanel[] = {
+    {rig::LatencyReference::button, "panel_button"}, {rig::LatencyReference::photodiode, "panel_photodiode"}};
 constexpr int kTick_ms = 100;
 
-bool has(const calibration::Calibration& made, Series series) {
+bool has(const rig::Calibration& made, Series series) {
   switch (series) {
     case Series::response:
       return !made.transducers.empty();
@@ -48,7 +47,7 @@ bool has(const calibration::Calibration& made, Series series) {
 }
 
 QString shown(const std::optional<double>& value) {
-  return value ? QString::fromStdString(text::number(*value, 5)) : QString();
+  return value ? QString::fromStdString(core::number(*value, 5)) : QString();
 }
 
 /// A number as people type it, also with a decimal comma.
@@ -72,9 +71,9 @@ CalibrationGuide::CalibrationGuide(std::string rig, QObject* parent)
 CalibrationGuide::~CalibrationGuide() { delete latency_.release(); }
 
 QVariantList CalibrationGuide::series() const {
-  std::optional<calibration::Calibration> made;
+  std::optional<rig::Calibration> made;
   try {
-    if (const auto newest = calibration::newest_for(path_); !newest.empty()) made = calibration::load(newest);
+    if (const auto newest = rig::newest_for(path_); !newest.empty()) made = rig::load_calibration(newest);
   } catch (const std::exception&) {
     // the page says elsewhere that the calibration cannot be read
   }
@@ -83,7 +82,7 @@ QVariantList CalibrationGuide::series() const {
     list += QVariantMap{{"name", name}, {"measured", made.has_value() && has(*made, series)}};
   for (const auto& [reference, name] : kPanel) {
     const auto panel = made ? made->panel : std::nullopt;
-    const bool by_button = reference == calibration::LatencyReference::button;
+    const bool by_button = reference == rig::LatencyReference::button;
     const bool measured = panel && (by_button ? panel->touch : panel->flash);
     list += QVariantMap{{"name", name}, {"measured", measured}};
   }
@@ -96,13 +95,13 @@ QString CalibrationGuide::chosen() const {
   return found == std::end(kSeries) ? QString() : found->second;
 }
 
-bool CalibrationGuide::refuse(const texts::Phrase& problem) {
+bool CalibrationGuide::refuse(const core::Phrase& problem) {
   problem_ = problem;
   Q_EMIT changed();
   return false;
 }
 
-void CalibrationGuide::begin_latency(calibration::LatencyReference reference) {
+void CalibrationGuide::begin_latency(rig::LatencyReference reference) {
   leave();
   try {
     latency_.reset(new LatencyController(reference));
@@ -135,11 +134,11 @@ void CalibrationGuide::begin(const QString& series) {
   leave();
   try {
     std::ostringstream messages;  // the page says elsewhere which calibration is used
-    rig_ = setup::calibrated_rig(path_, "", messages);
+    rig_ = session::calibrated_rig(path_, "", messages);
     points_ = maintenance::series_points(*rig_, found->first);
     chosen_ = found->first;
     real_ = maintenance::can_be_felt(*rig_);
-    const auto outline = desk::outline_of(*rig_);
+    const auto outline = view::outline_of(*rig_);
     surface_ = {{"lengthMm", outline.length_mm},
                 {"wideHalfWidthMm", outline.wide_half_width_mm},
                 {"narrowHalfWidthMm", outline.narrow_half_width_mm},
@@ -160,7 +159,7 @@ void CalibrationGuide::play() {
   Q_EMIT changed();
   job_.start([this, rig = *rig_, point = points_[static_cast<std::size_t>(at_)]](
                  const std::stop_token& stop) -> std::function<void()> {
-    texts::Phrase problem;
+    core::Phrase problem;
     try {
       maintenance::play_point(rig, point, stop,
                               [this](const std::vector<maintenance::ToneReading>& readings) {
@@ -185,7 +184,7 @@ void CalibrationGuide::take(const std::vector<maintenance::ToneReading>& reading
   for (const auto& reading : readings)
     readings_ += QVariantMap{
         {"channel", reading.channel},
-        {"um", reading.displacement_um ? QString::fromStdString(text::number(*reading.displacement_um, 3))
+        {"um", reading.displacement_um ? QString::fromStdString(core::number(*reading.displacement_um, 3))
                                        : QString()},
         {"percent", 100 * reading.amplitude}};
   Q_EMIT read();
@@ -206,7 +205,7 @@ bool CalibrationGuide::enter(const QString& typed) {
   const auto value = number_in(typed);
   const auto [low, high] = maintenance::possible_values(*rig_, *chosen_);
   if (!typed.trimmed().isEmpty() && (!value || *value < low || *value > high))
-    return refuse(texts::plain(QString("%1 … %2").arg(low).arg(high).toStdString()));
+    return refuse(core::plain(QString("%1 … %2").arg(low).arg(high).toStdString()));
   point.value = value;
   problem_ = {};
   Q_EMIT changed();
@@ -216,7 +215,7 @@ bool CalibrationGuide::enter(const QString& typed) {
 bool CalibrationGuide::enterPhase(const QString& typed) {
   if (points_.empty()) return false;
   const auto value = number_in(typed);
-  if (!value || std::abs(*value) > 360) return refuse(texts::plain("-360 … 360"));
+  if (!value || std::abs(*value) > 360) return refuse(core::plain("-360 … 360"));
   points_[static_cast<std::size_t>(at_)].phase_deg = value;
   problem_ = {};
   Q_EMIT changed();
@@ -245,8 +244,8 @@ QVariantMap CalibrationGuide::point() const {
   const auto& point = points_[static_cast<std::size_t>(at_)];
   return {{"transducer", QString::fromStdString(point.transducer)},
           {"kHz", QString::number(1e-3 * point.frequency_Hz, 'f', 2)},
-          {"um", QString::fromStdString(text::number(point.displacement_um, 3))},
-          {"percent", QString::fromStdString(text::number(100 * point.full_scale, 3))},
+          {"um", QString::fromStdString(core::number(point.displacement_um, 3))},
+          {"percent", QString::fromStdString(core::number(100 * point.full_scale, 3))},
           {"value", shown(point.value)},
           {"phase", shown(point.phase_deg)}};
 }
@@ -257,7 +256,7 @@ void CalibrationGuide::finish() {
     // the fit begins from the rig file, as `turnpoint calibrate` does
     const auto result = maintenance::finish_series(rig::load(path_), *chosen_, points_);
     file_ = QString::fromStdString(result.file);
-    figure_ = to_variant(desk::drawing_of(result.figure));
+    figure_ = to_variant(view::drawing_of(result.figure));
     chosen_.reset();
     points_.clear();
     at_ = 0;

@@ -103,8 +103,8 @@ class CalibrationGuide : public QObject {
 
  private:
   void take(const std::vector<maintenance::ToneReading>& readings);
-  bool refuse(const texts::Phrase& problem);
-  void begin_latency(calibration::LatencyReference reference);
+  bool refuse(const core::Phrase& problem);
+  void begin_latency(rig::LatencyReference reference);
   void keep_latency();
 
   std::string path_;
@@ -120,7 +120,7 @@ class CalibrationGuide : public QObject {
   QVariantList readings_;
   /// Deleted by the event loop, because it ends its own measurement by a signal.
   std::unique_ptr<LatencyController, QScopedPointerDeleteLater> latency_;
-  texts::Phrase problem_;
+  core::Phrase problem_;
   QString file_;
   QVariant figure_;
   // The last member, so that its thread ends before the objects that it uses are destroyed.

@@ -2,8 +2,8 @@
 
 #include <sstream>
 
-#include "station/programs/programs.hpp"
-#include "station/setup/prepare.hpp"
+#include "station/session/prepare.hpp"
+#include "station/session/programs.hpp"
 #include "station/system/fonts.hpp"
 
 namespace turnpoint::ui {
@@ -14,29 +14,29 @@ namespace {
 /// sessions. Five take little time and give the duration to within some minutes.
 constexpr int kSessions = 5;
 
-simulation::CheckOptions options() {
-  simulation::CheckOptions options{kSessions};
+rehearsal::CheckOptions options() {
+  rehearsal::CheckOptions options{kSessions};
   options.load_rig = [](const std::string& path) {
     std::ostringstream messages;  // not shown, because the page says elsewhere which calibration is used
-    return setup::calibrated_rig(path, "", messages);
+    return session::calibrated_rig(path, "", messages);
   };
   options.drawable = system::drawable;
-  options.try_programs = programs::problems_of;
+  options.try_programs = session::problems_of;
   return options;
 }
 
 }  // namespace
 
-simulation::Check check_protocol(const std::string& protocol, const std::string& rig,
-                                 const std::stop_token& stop) {
-  return simulation::check(protocol, rig, options(), stop);
+rehearsal::Check check_protocol(const std::string& protocol, const std::string& rig,
+                                const std::stop_token& stop) {
+  return rehearsal::check(protocol, rig, options(), stop);
 }
 
-simulation::Check check_source(const std::string& source, const std::string& path, const std::string& rig,
-                               const std::stop_token& stop) {
+rehearsal::Check check_source(const std::string& source, const std::string& path, const std::string& rig,
+                              const std::stop_token& stop) {
   auto with_source = options();
   with_source.load_protocol = [&source](const std::string& file) { return protocol::parse(source, file); };
-  return simulation::check(path, rig, with_source, stop);
+  return rehearsal::check(path, rig, with_source, stop);
 }
 
 }  // namespace turnpoint::ui

@@ -6,17 +6,17 @@
 #include <sstream>
 #include <utility>
 
-#include "station/design/goals.hpp"
-#include "station/desk/scene_figures.hpp"
-#include "station/desk/trial_timeline.hpp"
+#include "station/core/read_file.hpp"
+#include "station/core/texts.hpp"
+#include "station/core/toml.hpp"
 #include "station/maintenance/play_armed.hpp"
-#include "station/setup/prepare.hpp"
-#include "station/system/read_file.hpp"
-#include "station/text/toml.hpp"
-#include "station/texts/texts.hpp"
+#include "station/session/prepare.hpp"
 #include "station/ui/operator/design_lists.hpp"
 #include "station/ui/operator/facts.hpp"
 #include "station/ui/operator/figure_view.hpp"
+#include "station/view/goals.hpp"
+#include "station/view/scene_figures.hpp"
+#include "station/view/trial_timeline.hpp"
 
 namespace turnpoint::ui {
 
@@ -24,11 +24,11 @@ namespace {
 
 rig::Rig rig_without_messages(const std::string& path) {
   std::ostringstream messages;
-  return setup::calibrated_rig(path, "", messages);
+  return session::calibrated_rig(path, "", messages);
 }
 
 /// The first problem of a value that was refused, without the name of a file.
-texts::Phrase reason(const text::BadInput& bad) {
+core::Phrase reason(const core::BadInput& bad) {
   auto problem = bad.problems().front();
   problem.place = {};
   return phrase_of(problem);
@@ -47,7 +47,7 @@ std::string DesignController::path_for(const std::string& name) const {
   return place_.folder + (place_.folder.empty() ? "" : "/") + name + ".toml";
 }
 
-bool DesignController::refuse(texts::Phrase trouble) {
+bool DesignController::refuse(core::Phrase trouble) {
   trouble_ = std::move(trouble);
   Q_EMIT changed();
   return false;
@@ -74,21 +74,21 @@ void DesignController::close() {
 }
 
 bool DesignController::make(const QString& goal, const QString& name) try {
-  const auto* chosen = design::find_goal(goal.toStdString());
+  const auto* chosen = view::find_goal(goal.toStdString());
   if (chosen == nullptr) return false;
-  if (!is_name(name)) return refuse(texts::plain("name"));
+  if (!is_name(name)) return refuse(core::plain("name"));
   const auto path = path_for(name.toStdString());
-  if (QFileInfo::exists(QString::fromStdString(path))) return refuse(texts::plain("taken"));
-  const auto source = system::read_file(place_.templates + "/" + chosen->file + ".toml");
+  if (QFileInfo::exists(QString::fromStdString(path))) return refuse(core::plain("taken"));
+  const auto source = core::read_file(place_.templates + "/" + chosen->file + ".toml");
   saved_.clear(), old_version_.clear();
-  begin(design::study_from(*chosen, source, name.toStdString()), path);
+  begin(view::study_from(*chosen, source, name.toStdString()), path);
   return true;
 } catch (const std::exception& error) {
   return refuse(phrases_of(error).front());
 }
 
 bool DesignController::open(const QString& path) try {
-  const auto text = text::read_text_file(path.toStdString());
+  const auto text = core::read_text_file(path.toStdString());
   saved_ = text;
   begin(text, path.toStdString());
   old_version_.clear();
@@ -101,10 +101,10 @@ bool DesignController::open(const QString& path) try {
 }
 
 void DesignController::begin(std::string text, const std::string& path) {
-  if (!schema_) schema_.emplace(system::read_file(place_.templates + "/protocol.schema.json"));
+  if (!schema_) schema_.emplace(core::read_file(place_.templates + "/protocol.schema.json"));
   if (surface_.isEmpty()) {
     rig_ = rig_without_messages(place_.rig);
-    const auto outline = desk::outline_of(*rig_);
+    const auto outline = view::outline_of(*rig_);
     surface_ = {{"lengthMm", outline.length_mm},
                 {"wideHalfWidthMm", outline.wide_half_width_mm},
                 {"narrowHalfWidthMm", outline.narrow_half_width_mm},
@@ -134,12 +134,12 @@ void DesignController::read_again() {
   timeline_.clear();
   try {
     const auto protocol = protocol::parse(draft_->text(), path_);
-    timeline_ = to_list(desk::trial_timeline(protocol));
+    timeline_ = to_list(view::trial_timeline(protocol));
     pages_.follow(protocol, *rig_);
     precision_.follow(protocol);
     feeling_.follow(protocol, place_.rig, maintenance::can_be_felt(*rig_));
     checking_ = true;
-  } catch (const text::BadInput& bad) {
+  } catch (const core::BadInput& bad) {
     for (const auto& problem : bad.problems()) remarks_.push_back({Kind::problem, problem});
   }
   make_form();
@@ -160,9 +160,9 @@ void DesignController::make_form() {
       }
     return;
   }
-  std::vector<text::Problem> problems;
+  std::vector<core::Problem> problems;
   for (const auto& remark : remarks_) problems.push_back(remark.problem);
-  form_ = design::form_of(*draft_->document(), *schema_, problems);
+  form_ = view::form_of(*draft_->document(), *schema_, problems);
 }
 
 void DesignController::start_check() {
@@ -173,8 +173,8 @@ void DesignController::start_check() {
     } catch (const protocol::Abandoned&) {
       return {};
     } catch (const std::exception& error) {
-      simulation::Check failed;
-      failed.problems.push_back({{path, 0, 0}, texts::phrase_of(error), {}});
+      rehearsal::Check failed;
+      failed.problems.push_back({{path, 0, 0}, core::phrase_of(error), {}});
       return [this, failed] { take(failed); };
     }
   });
@@ -185,15 +185,15 @@ void DesignController::start_profiles() {
                       rig = place_.rig](const std::stop_token& stop) -> std::function<void()> {
     QVariantMap profiles;
     try {
-      desk::Preview preview(protocol::parse(source, path), rig_without_messages(rig));
+      view::Preview preview(protocol::parse(source, path), rig_without_messages(rig));
       std::vector<std::string> assumed;
-      const auto factors = desk::factors_for(preview.protocol(), {}, assumed);
+      const auto factors = view::factors_for(preview.protocol(), {}, assumed);
       for (const auto& scene : preview.scenes()) {
         if (stop.stop_requested()) return {};
         const auto look = preview.look(scene, factors);
         if (look.problem.empty())
           profiles[QString::fromStdString(scene)] =
-              to_variant(desk::drawing_of(desk::profile_figure({look}, language)));
+              to_variant(view::drawing_of(view::profile_figure({look}, language)));
       }
     } catch (const std::exception&) {
       // A scene that cannot be planned has no profile. The check reports what is wrong.
@@ -205,9 +205,9 @@ void DesignController::start_profiles() {
   });
 }
 
-void DesignController::take(const simulation::Check& check) {
+void DesignController::take(const rehearsal::Check& check) {
   checking_ = false;
-  words_ = desk::words_of(check);
+  words_ = view::words_of(check);
   remarks_.clear();
   for (const auto& problem : check.problems) remarks_.push_back({Kind::problem, problem});
   for (const auto& problem : check.warnings) remarks_.push_back({Kind::warning, problem});
@@ -216,7 +216,7 @@ void DesignController::take(const simulation::Check& check) {
   Q_EMIT changed();
 }
 
-const design::Group* DesignController::group(int index) const {
+const view::Group* DesignController::group(int index) const {
   if (!draft_ || draft_->document() == nullptr || section_ >= static_cast<int>(form_.size())) return nullptr;
   const auto& groups = form_[static_cast<std::size_t>(section_)].groups;
   return index >= 0 && index < static_cast<int>(groups.size()) ? &groups[static_cast<std::size_t>(index)]
@@ -245,7 +245,7 @@ bool DesignController::goTo(int remark) {
     for (int g = 0; g < static_cast<int>(groups.size()); ++g) {
       const auto& group = groups[static_cast<std::size_t>(g)];
       const auto field = std::find_if(group.fields.begin(), group.fields.end(),
-                                      [&](const design::Field& f) { return has(f.remarks); });
+                                      [&](const view::Field& f) { return has(f.remarks); });
       if (field == group.fields.end() && !has(group.remarks)) continue;
       show(s);
       Q_EMIT reached(g, field == group.fields.end() ? -1 : static_cast<int>(field - group.fields.begin()));
@@ -259,19 +259,19 @@ bool DesignController::change(int index, int field, const QString& typed) try {
   const auto* in = group(index);
   if (in == nullptr || field < 0 || field >= static_cast<int>(in->fields.size())) return false;
   take_change(
-      design::changed(*draft_->document(), in->fields[static_cast<std::size_t>(field)], typed.toStdString()));
+      view::changed(*draft_->document(), in->fields[static_cast<std::size_t>(field)], typed.toStdString()));
   return true;
-} catch (const text::BadInput& bad) {
+} catch (const core::BadInput& bad) {
   return refuse(reason(bad));
 }
 
 bool DesignController::copy(int index, const QString& name) try {
   const auto* from = group(index);
   if (from == nullptr) return false;
-  if (!is_name(name)) return refuse(texts::plain("name"));
+  if (!is_name(name)) return refuse(core::plain("name"));
   take_change(draft_->document()->with_copy(from->path, name.toStdString()));
   return true;
-} catch (const text::BadInput& bad) {
+} catch (const core::BadInput& bad) {
   return refuse(reason(bad));
 }
 

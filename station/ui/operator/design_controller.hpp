@@ -8,10 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "station/design/draft.hpp"
-#include "station/design/form.hpp"
-#include "station/desk/choices.hpp"
-#include "station/desk/preview.hpp"
 #include "station/rig/rig.hpp"
 #include "station/ui/operator/check_protocol.hpp"
 #include "station/ui/operator/feeling.hpp"
@@ -19,6 +15,10 @@
 #include "station/ui/operator/precision.hpp"
 #include "station/ui/platform/newest_job.hpp"
 #include "station/ui/shared/phrases.hpp"
+#include "station/view/choices.hpp"
+#include "station/view/draft.hpp"
+#include "station/view/form.hpp"
+#include "station/view/preview.hpp"
 
 namespace turnpoint::ui {
 
@@ -101,7 +101,7 @@ class DesignController : public QObject {
   bool can_redo() const { return draft_ && draft_->can_redo(); }
   bool unsaved() const { return draft_ && draft_->text() != saved_; }
   QVariant trouble() const { return to_variant(trouble_); }
-  const texts::Phrase& trouble_phrase() const { return trouble_; }
+  const core::Phrase& trouble_phrase() const { return trouble_; }
   QString saved_as() const { return saved_as_; }
   QVariantMap surface() const { return surface_; }
   QVariantList timeline() const { return timeline_; }
@@ -159,39 +159,39 @@ class DesignController : public QObject {
   void saved();
 
  private:
-  using Kind = desk::CheckWords::Remark::Kind;
+  using Kind = view::CheckWords::Remark::Kind;
   struct Remark {
     Kind kind = Kind::problem;
-    text::Problem problem;
+    core::Problem problem;
   };
   void begin(std::string text, const std::string& path);
   void take_change(std::string text);
   void read_again();
   void start_check();
   void start_profiles();
-  void take(const simulation::Check& check);
+  void take(const rehearsal::Check& check);
   void make_form();
-  bool refuse(texts::Phrase trouble);
+  bool refuse(core::Phrase trouble);
   bool write_to(const std::string& path);
   std::string kept_path() const;
   void keep_draft() const;
   bool changed_on_disk() const;
   void raise_version();
   std::string path_for(const std::string& name) const;
-  const design::Group* group(int index) const;
+  const view::Group* group(int index) const;
 
   DesignPlace place_;
   SourceChecker checker_;
-  std::optional<design::Schema> schema_;
-  std::optional<design::Draft> draft_;
+  std::optional<view::Schema> schema_;
+  std::optional<view::Draft> draft_;
   std::string name_, path_, saved_;
   std::optional<rig::Rig> rig_;
   std::string old_version_;  ///< of a study that existed before, until a save has raised it
-  std::vector<design::Section> form_;
+  std::vector<view::Section> form_;
   std::vector<Remark> remarks_;
-  desk::CheckWords words_;
+  view::CheckWords words_;
   QString stage_, saved_as_, suggested_;
-  texts::Phrase trouble_;
+  core::Phrase trouble_;
   QVariantMap surface_, profiles_;
   QVariantList timeline_;
   int section_ = 0;

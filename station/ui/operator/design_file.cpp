@@ -5,9 +5,9 @@
 #include <exception>
 #include <utility>
 
-#include "station/system/read_file.hpp"
+#include "station/core/read_file.hpp"
+#include "station/core/toml.hpp"
 #include "station/system/write_file.hpp"
-#include "station/text/toml.hpp"
 #include "station/ui/operator/design_controller.hpp"
 #include "station/ui/operator/design_lists.hpp"
 #include "station/ui/operator/facts.hpp"
@@ -38,10 +38,10 @@ QString DesignController::kept() const {
 }
 
 bool DesignController::continueKept() try {
-  const auto all = text::read_text_file(kept_path());
+  const auto all = core::read_text_file(kept_path());
   const auto end = all.find('\n');
   const auto path = all.substr(0, end);
-  saved_ = QFileInfo::exists(QString::fromStdString(path)) ? text::read_text_file(path) : "";
+  saved_ = QFileInfo::exists(QString::fromStdString(path)) ? core::read_text_file(path) : "";
   old_version_.clear();
   begin(end == std::string::npos ? "" : all.substr(end + 1), path);
   return true;
@@ -56,7 +56,7 @@ void DesignController::discardKept() {
 
 bool DesignController::changed_on_disk() const {
   return !saved_.empty() && QFileInfo::exists(QString::fromStdString(path_)) &&
-         system::read_file(path_) != saved_;
+         core::read_file(path_) != saved_;
 }
 
 /// Sessions of the old text and of the new one must not be taken for the same study, so the version differs.
@@ -66,7 +66,7 @@ void DesignController::raise_version() {
       draft_->document() == nullptr ? nullptr : draft_->document()->find({"protocol", "version"});
   if (version.empty() || part == nullptr || part->scalar.string != version) return;
   take_change(
-      draft_->document()->with({"protocol", "version"}, design::toml_string(design::next_version(version))));
+      draft_->document()->with({"protocol", "version"}, view::toml_string(view::next_version(version))));
 }
 
 bool DesignController::write_to(const std::string& path) {
@@ -86,15 +86,15 @@ bool DesignController::write_to(const std::string& path) {
 bool DesignController::save(const QString& name) try {
   if (!draft_) return false;
   if (name.isEmpty() || name.toStdString() == name_) {
-    if (changed_on_disk()) return refuse(texts::plain("on_disk"));
+    if (changed_on_disk()) return refuse(core::plain("on_disk"));
     raise_version();
     return write_to(path_);
   }
-  if (!is_name(name)) return refuse(texts::plain("name"));
+  if (!is_name(name)) return refuse(core::plain("name"));
   const auto path = path_for(name.toStdString());
-  if (QFileInfo::exists(QString::fromStdString(path))) return refuse(texts::plain("taken"));
+  if (QFileInfo::exists(QString::fromStdString(path))) return refuse(core::plain("taken"));
   if (draft_->document() == nullptr) return refuse(draft_->problems().front().what);
-  take_change(draft_->document()->with({"protocol", "id"}, design::toml_string(name.toStdString())));
+  take_change(draft_->document()->with({"protocol", "id"}, view::toml_string(name.toStdString())));
   old_version_.clear();
   return write_to(path);
 } catch (const std::exception& error) {
@@ -112,7 +112,7 @@ bool DesignController::overwrite() try {
 /// The reloaded text is one more change, so undo() returns to the text that was edited.
 bool DesignController::reload() try {
   if (!draft_) return false;
-  const auto text = text::read_text_file(path_);
+  const auto text = core::read_text_file(path_);
   saved_ = text;
   take_change(text);
   return true;

@@ -10,7 +10,7 @@ namespace turnpoint::ui {
 
 namespace {
 
-using RuleKind = design::Rule::Kind;
+using RuleKind = view::Rule::Kind;
 
 QString kind_name(RuleKind kind) {
   switch (kind) {
@@ -38,7 +38,7 @@ QVariantList chosen(const std::vector<std::size_t>& indices, const QVariantList&
 }
 
 /// Returns the help text that the schema has for a field, followed by the field's limits in words.
-QString help_of(const design::Field& field) {
+QString help_of(const view::Field& field) {
   auto help = QString::fromStdString(field.help);
   const auto add = [&help](const QString& more) { help += (help.isEmpty() ? "" : "   ·   ") + more; };
   if (field.low && field.high)
@@ -50,7 +50,7 @@ QString help_of(const design::Field& field) {
   return help;
 }
 
-QVariantMap field_of(const design::Group& group, int index, const QVariantList& remarks) {
+QVariantMap field_of(const view::Group& group, int index, const QVariantList& remarks) {
   const auto& field = group.fields[static_cast<std::size_t>(index)];
   QStringList path;
   for (auto i = group.path.size(); i < field.path.size(); ++i) path += QString::fromStdString(field.path[i]);
@@ -74,8 +74,8 @@ bool is_name(const QString& name) {
   return allowed.match(name).hasMatch();
 }
 
-QVariantMap to_map(desk::CheckWords::Remark::Kind kind, const text::Problem& problem) {
-  using Kind = desk::CheckWords::Remark::Kind;
+QVariantMap to_map(view::CheckWords::Remark::Kind kind, const core::Problem& problem) {
+  using Kind = view::CheckWords::Remark::Kind;
   return {{"kind", kind == Kind::problem   ? "problem"
                    : kind == Kind::warning ? "warning"
                                            : "note"},
@@ -84,7 +84,7 @@ QVariantMap to_map(desk::CheckWords::Remark::Kind kind, const text::Problem& pro
           {"hint", to_variant(problem.allowed)}};
 }
 
-QVariantList to_list(const std::vector<desk::TrialPart>& parts) {
+QVariantList to_list(const std::vector<view::TrialPart>& parts) {
   static constexpr const char* kinds[] = {"pause", "interval", "gap", "answer"};
   QVariantList list;
   for (const auto& part : parts)
@@ -93,7 +93,7 @@ QVariantList to_list(const std::vector<desk::TrialPart>& parts) {
   return list;
 }
 
-QVariantMap group_of(const design::Group& group, const QVariantList& remarks) {
+QVariantMap group_of(const view::Group& group, const QVariantList& remarks) {
   QVariantList fields;
   int boundary = -1, zone = -1;
   for (int i = 0; i < static_cast<int>(group.fields.size()); ++i) {

@@ -4,9 +4,9 @@
 #include <QVariantMap>
 #include <vector>
 
-#include "station/design/form.hpp"
-#include "station/desk/choices.hpp"
-#include "station/desk/trial_timeline.hpp"
+#include "station/view/choices.hpp"
+#include "station/view/form.hpp"
+#include "station/view/trial_timeline.hpp"
 
 namespace turnpoint::ui {
 
@@ -14,15 +14,15 @@ namespace turnpoint::ui {
 bool is_name(const QString& name);
 
 /// One remark for QML, as {kind: problem | warning | note, line, what, hint}.
-QVariantMap to_map(desk::CheckWords::Remark::Kind kind, const text::Problem& problem);
+QVariantMap to_map(view::CheckWords::Remark::Kind kind, const core::Problem& problem);
 
 /// Converts the parts of a trial for QML, to a list of {kind, from, to}.
-QVariantList to_list(const std::vector<desk::TrialPart>& parts);
+QVariantList to_list(const std::vector<view::TrialPart>& parts);
 
 /// Converts one table of a form for QML, to {kind, name, present, copied, removable, remarks, fields,
 /// boundary, zone}. A field is {index, path (within its table), kind, value, allowed, list, present,
 /// required, help, remarks}. `boundary` and `zone` are the indices of the fields that a mark on the drawn
 /// surface can set; -1 if there is none. The argument `remarks` holds the remarks on the whole form.
-QVariantMap group_of(const design::Group& group, const QVariantList& remarks);
+QVariantMap group_of(const view::Group& group, const QVariantList& remarks);
 
 }  // namespace turnpoint::ui

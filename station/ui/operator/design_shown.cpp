@@ -2,30 +2,30 @@
 #include <algorithm>
 #include <vector>
 
-#include "station/design/goals.hpp"
-#include "station/texts/texts.hpp"
+#include "station/core/texts.hpp"
 #include "station/ui/operator/design_controller.hpp"
 #include "station/ui/operator/design_lists.hpp"
 #include "station/ui/operator/facts.hpp"
+#include "station/view/goals.hpp"
 
 namespace turnpoint::ui {
 
 QVariantList DesignController::goals(const QString& language) {
   QVariantList list;
-  for (const auto& goal : design::goals())
+  for (const auto& goal : view::goals())
     list += QVariantMap{{"word", goal.word},
-                        {"says", QString::fromStdString(design::describe(goal, language.toStdString()))}};
+                        {"says", QString::fromStdString(view::describe(goal, language.toStdString()))}};
   return list;
 }
 
 QString DesignController::label(const QStringList& path, const QString& language) {
   QString all;
-  const auto& known = texts::catalogue("en");
+  const auto& known = core::catalogue("en");
   for (const auto& name : path) {
     const auto key = "design.keys." + name.toStdString();
     bool number = false;
     const int index = name.toInt(&number);
-    const auto said = known.count(key) > 0 ? QString::fromStdString(texts::text(key, language.toStdString()))
+    const auto said = known.count(key) > 0 ? QString::fromStdString(core::text(key, language.toStdString()))
                       : number             ? QString::number(index + 1)
                                            : name;
     all += (all.isEmpty() ? "" : number ? " " : " · ") + said;

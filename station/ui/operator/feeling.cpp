@@ -5,10 +5,10 @@
 #include <sstream>
 #include <vector>
 
-#include "station/desk/preview.hpp"
 #include "station/maintenance/play_armed.hpp"
-#include "station/setup/prepare.hpp"
+#include "station/session/prepare.hpp"
 #include "station/ui/operator/facts.hpp"
+#include "station/view/preview.hpp"
 
 namespace turnpoint::ui {
 
@@ -41,12 +41,12 @@ void Feeling::play(const QString& scene) {
   job_.start([this, protocol = *protocol_, path = rig_,
               scene = scene.toStdString()](const std::stop_token& stop) -> std::function<void()> {
     maintenance::FeltScene felt;
-    texts::Phrase problem;
+    core::Phrase problem;
     try {
       std::ostringstream messages;  // the rig's page says which calibration is used
-      const auto rig = setup::calibrated_rig(path, "", messages);
+      const auto rig = session::calibrated_rig(path, "", messages);
       std::vector<std::string> assumed;
-      felt = maintenance::feel_scene(rig, protocol, scene, desk::factors_for(protocol, {}, assumed), stop);
+      felt = maintenance::feel_scene(rig, protocol, scene, view::factors_for(protocol, {}, assumed), stop);
     } catch (const std::exception& error) {
       problem = explanation_of(error);
     }

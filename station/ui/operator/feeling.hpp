@@ -57,7 +57,7 @@ class Feeling : public QObject {
   std::string rig_;
   bool real_ = false;
   QString playing_, last_;
-  texts::Phrase problem_;
+  core::Phrase problem_;
   double seconds_ = 0;
   int tones_ = 0, peak_percent_ = 0;
   QTimer rest_;

@@ -5,9 +5,9 @@
 #include <QPdfWriter>
 #include <stdexcept>
 
-#include "station/plot/svg.hpp"
+#include "station/core/texts.hpp"
+#include "station/report/svg.hpp"
 #include "station/system/write_file.hpp"
-#include "station/texts/texts.hpp"
 #include "station/ui/operator/painter_canvas.hpp"
 
 namespace turnpoint::ui {
@@ -22,31 +22,31 @@ constexpr double kDrawnText_px = 12;
 constexpr double kSavedWidth_px = 680, kSavedHeight_px = 450;
 constexpr double kFigureInch_mm = 25.4, kPixelsPerInch = 96;
 
-void save_pdf(const desk::Drawing& drawing, const QString& path) {
+void save_pdf(const view::Drawing& drawing, const QString& path) {
   QPdfWriter writer(path);
   writer.setPageMargins(QMarginsF());
   writer.setPageSize(QPageSize(QSizeF(kSavedWidth_px, kSavedHeight_px) * kFigureInch_mm / kPixelsPerInch,
                                QPageSize::Millimeter, {}, QPageSize::ExactMatch));
   QPainter painter;
   if (!painter.begin(&writer))
-    throw texts::Failure(texts::phrase("operator.not_written", {texts::plain(path.toStdString())}));
+    throw core::Failure(core::phrase("operator.not_written", {core::plain(path.toStdString())}));
   PainterCanvas canvas(painter, QRectF(0, 0, writer.width(), writer.height()));
   drawing(canvas, kSavedWidth_px, kSavedHeight_px);
 }
 
 }  // namespace
 
-void save_drawing(const desk::Drawing& drawing, const QString& folder, const QString& name) {
+void save_drawing(const view::Drawing& drawing, const QString& folder, const QString& name) {
   if (!QDir().mkpath(folder))
-    throw texts::Failure(texts::phrase("operator.not_made", {texts::plain(folder.toStdString())}));
+    throw core::Failure(core::phrase("operator.not_made", {core::plain(folder.toStdString())}));
   const QString path = folder + "/" + name;
-  plot::Svg svg;
+  report::Svg svg;
   drawing(svg, kSavedWidth_px, kSavedHeight_px);
   system::write_file((path + ".svg").toStdString(), svg.finish());
   save_pdf(drawing, path + ".pdf");
 }
 
-QVariant to_variant(const desk::Drawing& drawing) { return QVariant::fromValue(Picture{drawing}); }
+QVariant to_variant(const view::Drawing& drawing) { return QVariant::fromValue(Picture{drawing}); }
 
 FigureView::FigureView(QQuickItem* parent) : QQuickPaintedItem(parent) { setAntialiasing(true); }
 

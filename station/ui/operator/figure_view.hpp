@@ -2,7 +2,7 @@
 #include <QColor>
 #include <QQuickPaintedItem>
 
-#include "station/desk/scene_figures.hpp"
+#include "station/view/scene_figures.hpp"
 
 namespace turnpoint::ui {
 
@@ -11,16 +11,16 @@ struct Picture {
   Q_GADGET
 
  public:
-  desk::Drawing draw;
+  view::Drawing draw;
 };
 
 /// Converts a drawing to the value of a QML property.
-QVariant to_variant(const desk::Drawing& drawing);
+QVariant to_variant(const view::Drawing& drawing);
 
 /// Writes a drawing to FOLDER/NAME.svg and FOLDER/NAME.pdf, at the size of a figure that fills the width of a
 /// page. Makes the folder if there is none. Throws std::runtime_error or std::system_error if a file cannot
 /// be written.
-void save_drawing(const desk::Drawing& drawing, const QString& folder, const QString& name);
+void save_drawing(const view::Drawing& drawing, const QString& folder, const QString& name);
 
 /// Shows one figure, laid out for the size of this item with text of `textPixels`. Each new picture is drawn
 /// only once.

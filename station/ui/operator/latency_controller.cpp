@@ -10,7 +10,7 @@ namespace {
 constexpr int kClaim_ms = 100;
 }  // namespace
 
-LatencyController::LatencyController(calibration::LatencyReference reference, QObject* parent)
+LatencyController::LatencyController(rig::LatencyReference reference, QObject* parent)
     : QObject(parent), reference_(reference) {
   claim_.setSingleShot(true);
   claim_.setInterval(kClaim_ms);
@@ -52,7 +52,7 @@ void LatencyController::claim() {
 }
 
 void LatencyController::measure() {
-  delay_ = calibration::pair_delays(touches_ns_, edges_ns_, reference_);
+  delay_ = rig::pair_delays(touches_ns_, edges_ns_, reference_);
   Q_EMIT changed();
 }
 
@@ -64,7 +64,7 @@ void LatencyController::again() {
 
 void LatencyController::keep() {
   if (pairs() < wanted()) return;
-  calibration::PanelLatency panel;
+  rig::PanelLatency panel;
   panel.quality = quality().toStdString();
   (by_button() ? panel.touch : panel.flash) = delay_;
   kept_ = panel;

@@ -37,7 +37,7 @@ class LatencyController : public QObject {
  public:
   using KernelTime = std::function<std::optional<std::int64_t>(double x, double y, std::int64_t seen_ns)>;
 
-  explicit LatencyController(calibration::LatencyReference reference, QObject* parent = nullptr);
+  explicit LatencyController(rig::LatencyReference reference, QObject* parent = nullptr);
 
   /// Opens the rig's touch panel and its button lines, one of which gives the reference time. Throws the
   /// errors of maintenance::LatencyDevices.
@@ -49,11 +49,11 @@ class LatencyController : public QObject {
   /// Adds an edge of the reference line. May be called on any thread.
   void edge(std::int64_t time_ns);
 
-  bool by_button() const { return reference_ == calibration::LatencyReference::button; }
+  bool by_button() const { return reference_ == rig::LatencyReference::button; }
   int taps() const { return static_cast<int>(touches_ns_.size()); }
   int edges() const { return static_cast<int>(edges_ns_.size()); }
   int pairs() const { return delay_ ? delay_->pairs : 0; }
-  static int wanted() { return calibration::kLeastPairs; }
+  static int wanted() { return rig::kLeastPairs; }
   QVariant median_ms() const { return delay_ ? QVariant(1e3 * delay_->median_s) : QVariant(); }
   double jitter_ms() const { return delay_ ? 1e3 * delay_->sd_s : 0; }
   int unmatched() const { return delay_ ? delay_->unmatched : 0; }
@@ -64,7 +64,7 @@ class LatencyController : public QObject {
   Q_INVOKABLE void again();
   /// Accepts the current result at the operator's request. Does nothing with fewer pairs than `wanted`.
   Q_INVOKABLE void keep();
-  std::optional<calibration::PanelLatency> kept() const { return kept_; }
+  std::optional<rig::PanelLatency> kept() const { return kept_; }
 
  Q_SIGNALS:
   void changed();
@@ -79,13 +79,13 @@ class LatencyController : public QObject {
   void claim();
   void measure();
 
-  calibration::LatencyReference reference_;
+  rig::LatencyReference reference_;
   KernelTime kernel_time_;
   std::vector<Pending> pending_;
   QTimer claim_;
   std::vector<std::int64_t> touches_ns_, edges_ns_;
-  std::optional<calibration::Delay> delay_;
-  std::optional<calibration::PanelLatency> kept_;
+  std::optional<rig::Delay> delay_;
+  std::optional<rig::PanelLatency> kept_;
   // The last member, so that its threads end before the objects that they use are destroyed.
   std::unique_ptr<maintenance::LatencyDevices> devices_;
 };

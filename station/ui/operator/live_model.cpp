@@ -10,7 +10,7 @@ LiveModel::LiveModel(SessionBridge& bridge, QObject* parent) : QObject(parent), 
   connect(bridge_.page(), &PageModel::changed, this, &LiveModel::hold_or_show);
 }
 
-void LiveModel::take(desk::LiveState state) {
+void LiveModel::take(view::LiveState state) {
   QMetaObject::invokeMethod(
       this,
       [this, state = std::move(state)]() mutable {
@@ -20,7 +20,7 @@ void LiveModel::take(desk::LiveState state) {
       Qt::QueuedConnection);
 }
 
-void LiveModel::take(std::optional<desk::FingerGauges> gauges) {
+void LiveModel::take(std::optional<view::FingerGauges> gauges) {
   QMetaObject::invokeMethod(
       this,
       [this, gauges = std::move(gauges)]() mutable {
@@ -53,7 +53,7 @@ void LiveModel::hold_or_show() {
 
 namespace {
 
-QList<double> gauge_of(const desk::Gauge& gauge) { return {gauge.value.value_or(-1), gauge.low, gauge.high}; }
+QList<double> gauge_of(const view::Gauge& gauge) { return {gauge.value.value_or(-1), gauge.low, gauge.high}; }
 
 }  // namespace
 

@@ -3,9 +3,9 @@
 #include <QQmlEngine>
 #include <optional>
 
-#include "station/desk/live_view.hpp"
 #include "station/ui/operator/figure_view.hpp"
 #include "station/ui/participant/session_bridge.hpp"
+#include "station/view/live_view.hpp"
 
 namespace turnpoint::ui {
 
@@ -40,11 +40,11 @@ class LiveModel : public QObject {
   explicit LiveModel(SessionBridge& bridge, QObject* parent = nullptr);
 
   /// Takes the newest state of the session. May be called on any thread; returns at once.
-  void take(desk::LiveState state);
+  void take(view::LiveState state);
 
   /// Takes the newest gauges; none if nothing is known of the finger, as before a session. May be called on
   /// any thread; returns at once. Gauges are small, so they are shown at once, also while a stimulus runs.
-  void take(std::optional<desk::FingerGauges> gauges);
+  void take(std::optional<view::FingerGauges> gauges);
 
   QString heading() const { return QString::fromStdString(state_.heading); }
   QVariantList scene() const;
@@ -83,9 +83,9 @@ class LiveModel : public QObject {
   void hold_or_show();
 
   SessionBridge& bridge_;
-  desk::LiveState state_;
-  std::optional<desk::LiveState> waiting_;
-  std::optional<desk::FingerGauges> gauges_;
+  view::LiveState state_;
+  std::optional<view::LiveState> waiting_;
+  std::optional<view::FingerGauges> gauges_;
   bool held_ = false;
 };
 

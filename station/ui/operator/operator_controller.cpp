@@ -6,14 +6,14 @@
 #include <sstream>
 #include <utility>
 
-#include "station/setup/prepare.hpp"
-#include "station/setup/resume.hpp"
+#include "station/session/prepare.hpp"
+#include "station/session/resume.hpp"
 #include "station/ui/operator/facts.hpp"
 #include "station/ui/shared/early_session.hpp"
 
 namespace turnpoint::ui {
 
-OperatorController::OperatorController(setup::StationRequest request, Checker checker, Checks checks,
+OperatorController::OperatorController(session::StationRequest request, Checker checker, Checks checks,
                                        QObject* parent)
     : QObject(parent),
       request_(std::move(request)),
@@ -33,13 +33,13 @@ void OperatorController::refresh() {
   armed_ = false;
   participant_.clear();
   too_early_.reset();
-  protocols_ = desk::list_studies(request_.protocols, request_.database);
+  protocols_ = view::list_studies(request_.protocols, request_.database);
   try {
-    participants_ = to_list(desk::known_participants(request_.database));
-    interrupted_ = desk::interrupted_note(request_.database);
-    backup_ = desk::backup_note(request_.database);
+    participants_ = to_list(view::known_participants(request_.database));
+    interrupted_ = view::interrupted_note(request_.database);
+    backup_ = view::backup_note(request_.database);
   } catch (const std::exception& error) {
-    state_.refusal = texts::phrase_of(error);  // until the state of the station has been read
+    state_.refusal = core::phrase_of(error);  // until the state of the station has been read
   }
   look_at_station();
   Q_EMIT changed();
@@ -49,12 +49,12 @@ void OperatorController::refresh() {
 
 void OperatorController::look_at_station() {
   looker_.start([this, database = request_.database](const std::stop_token&) -> Then {
-    auto state = desk::station_state(database);
-    desk::BackupNote backup;
+    auto state = view::station_state(database);
+    view::BackupNote backup;
     try {
-      backup = desk::backup_note(database);
+      backup = view::backup_note(database);
     } catch (const std::exception& error) {
-      state.refusal = texts::phrase_of(error);
+      state.refusal = core::phrase_of(error);
     }
     return [this, state = std::move(state), backup] {
       state_ = state;
@@ -72,7 +72,7 @@ QVariantList OperatorController::signs() const {
   return list;
 }
 
-void OperatorController::tell_failure(const texts::Phrase& why) {
+void OperatorController::tell_failure(const core::Phrase& why) {
   refused_ = {why};
   Q_EMIT changed();
 }
@@ -80,7 +80,7 @@ void OperatorController::tell_failure(const texts::Phrase& why) {
 /// Starts a job on the worker thread. The job returns a function, which then runs on the GUI thread unless a
 /// newer job was started meanwhile. If the job throws, `failed` is called with the messages.
 void OperatorController::work(std::function<Then(const std::stop_token&)> job,
-                              void (OperatorController::*failed)(std::vector<texts::Phrase>)) {
+                              void (OperatorController::*failed)(std::vector<core::Phrase>)) {
   worker_.start([this, failed, job = std::move(job)](const std::stop_token& stop) -> Then {
     try {
       return job(stop);
@@ -92,7 +92,7 @@ void OperatorController::work(std::function<Then(const std::stop_token&)> job,
   });
 }
 
-void OperatorController::fail(std::vector<texts::Phrase> problems) {
+void OperatorController::fail(std::vector<core::Phrase> problems) {
   words_.problems = std::move(problems);
   checking_ = preparing_ = false;
   Q_EMIT changed();
@@ -100,7 +100,7 @@ void OperatorController::fail(std::vector<texts::Phrase> problems) {
 
 /// Shows why no session can begin with the current settings. With other settings, the protocol may still be
 /// usable.
-void OperatorController::refuse(std::vector<texts::Phrase> reasons) {
+void OperatorController::refuse(std::vector<core::Phrase> reasons) {
   refused_ = std::move(reasons);
   stay();
 }
@@ -112,7 +112,7 @@ void OperatorController::stay() {
   Q_EMIT changed();
 }
 
-const desk::ProtocolEntry* OperatorController::entry() const {
+const view::ProtocolEntry* OperatorController::entry() const {
   return selected_ >= 0 && selected_ < static_cast<int>(protocols_.size())
              ? &protocols_[static_cast<std::size_t>(selected_)]
              : nullptr;
@@ -141,7 +141,7 @@ void OperatorController::check_selected() {
   if (entry() == nullptr || !may_check_) return;
   work(
       [this, path = entry()->path, rig = request_.rig](const std::stop_token& stop) -> Then {
-        auto words = desk::words_of(checker_(path, rig, stop));
+        auto words = view::words_of(checker_(path, rig, stop));
         return [this, words = std::move(words)] {
           words_ = words;
           checking_ = false;
@@ -152,13 +152,13 @@ void OperatorController::check_selected() {
       &OperatorController::fail);
 }
 
-setup::RunRequest OperatorController::request_for(const char* mode) const {
-  setup::RunRequest request;
+session::RunRequest OperatorController::request_for(const char* mode) const {
+  session::RunRequest request;
   request.self_test = true;
   request.protocol = entry()->path;
   request.rig = request_.rig;
   request.database = request_.database;
-  request.participant = setup::kCodeToCome;
+  request.participant = session::kCodeToCome;
   request.mode = mode;
   return request;
 }
@@ -170,12 +170,12 @@ void OperatorController::check_live() {
   Q_EMIT changed();
   work(
       [this, request = request_for("live")](const std::stop_token& stop) -> Then {
-        return [this, reasons = setup::live_problems(request, stop)] { refuse_live(reasons); };
+        return [this, reasons = session::live_problems(request, stop)] { refuse_live(reasons); };
       },
       &OperatorController::refuse_live);
 }
 
-void OperatorController::refuse_live(std::vector<texts::Phrase> reasons) {
+void OperatorController::refuse_live(std::vector<core::Phrase> reasons) {
   not_live_ = std::move(reasons);
   stay();
 }
@@ -238,7 +238,7 @@ void OperatorController::prepare(const std::string& early) {
   work(
       [this, request, ask_code, ask_language, arm = armed_](const std::stop_token& stop) -> Then {
         try {
-          ChosenSession session{setup::prepare(request, stop), ask_language, ask_code, arm};
+          ChosenSession session{session::prepare(request, stop), ask_language, ask_code, arm};
           return [this, session] {
             preparing_ = false;
             Q_EMIT changed();
@@ -286,11 +286,11 @@ void OperatorController::resumeSession(const QString& session_id) {
   work(
       [this, arm = armed_, id = session_id.toStdString()](const std::stop_token&) -> Then {
         std::ostringstream messages;
-        setup::ResumeRequest request;
+        session::ResumeRequest request;
         request.self_test = true;
         request.database = request_.database;
         request.session_id = id;
-        const auto setup = setup::prepare_resume(request, messages);
+        const auto setup = session::prepare_resume(request, messages);
         return [this, setup, arm] {
           if (!setup) return stay();
           preparing_ = false;
@@ -314,7 +314,7 @@ QVariantList OperatorController::protocols() const {
 
 QVariantList OperatorController::facts() const { return to_list(words_.facts); }
 /// True if the station can record no session.
-bool OperatorController::refuses() const { return state_.refusal != texts::Phrase(); }
+bool OperatorController::refuses() const { return state_.refusal != core::Phrase(); }
 
 QVariantList OperatorController::problems() const {
   QVariantList all;
@@ -339,7 +339,7 @@ QStringList OperatorController::languages() const {
 }
 
 QVariantMap OperatorController::backup() const {
-  using State = desk::BackupNote::State;
+  using State = view::BackupNote::State;
   const auto* state = backup_.state == State::none     ? "none"
                       : backup_.state == State::recent ? "recent"
                       : backup_.state == State::old    ? "old"

@@ -9,13 +9,13 @@
 #include <stop_token>
 #include <vector>
 
-#include "station/desk/choices.hpp"
-#include "station/desk/station_state.hpp"
+#include "station/session/prepare.hpp"
 #include "station/session/session.hpp"
-#include "station/setup/prepare.hpp"
 #include "station/store/station.hpp"
 #include "station/ui/operator/check_protocol.hpp"
 #include "station/ui/platform/newest_job.hpp"
+#include "station/view/choices.hpp"
+#include "station/view/station_state.hpp"
 
 namespace turnpoint::ui {
 
@@ -78,13 +78,13 @@ class OperatorController : public QObject {
   /// does not compete with the first page for the processor.
   enum class Checks { at_once, when_allowed };
   /// `checker` runs on the worker thread.
-  explicit OperatorController(setup::StationRequest request, Checker checker = check_protocol,
+  explicit OperatorController(session::StationRequest request, Checker checker = check_protocol,
                               Checks checks = Checks::at_once, QObject* parent = nullptr);
   ~OperatorController() override;
 
   void allow_checks();
 
-  const setup::StationRequest& request() const { return request_; }
+  const session::StationRequest& request() const { return request_; }
   QVariantList protocols() const;
   int selected() const { return selected_; }
   bool checking() const { return checking_; }
@@ -115,7 +115,7 @@ class OperatorController : public QObject {
   /// Reads protocols, participants and interrupted sessions again: at the start and after each session.
   Q_INVOKABLE void refresh();
   /// Tells the operator why the last session failed. The participant's page does not say it.
-  void tell_failure(const texts::Phrase& why);
+  void tell_failure(const core::Phrase& why);
   Q_INVOKABLE void select(int index);
   Q_INVOKABLE void chooseLanguage(int index);
   Q_INVOKABLE void enterParticipant(const QString& code);
@@ -140,34 +140,34 @@ class OperatorController : public QObject {
 
  private:
   using Then = std::function<void()>;
-  setup::RunRequest request_for(const char* mode) const;
+  session::RunRequest request_for(const char* mode) const;
   void prepare(const std::string& early);
   void forget_refusal();
   void work(std::function<Then(const std::stop_token&)> job,
-            void (OperatorController::*failed)(std::vector<texts::Phrase>));
+            void (OperatorController::*failed)(std::vector<core::Phrase>));
   void check_selected();
   void check_live();
-  void refuse_live(std::vector<texts::Phrase> reasons);
+  void refuse_live(std::vector<core::Phrase> reasons);
   void look_at_station();
   void name_station(const store::StationName& how);
   void stay();
   bool refuses() const;
-  void fail(std::vector<texts::Phrase> problems);
-  void refuse(std::vector<texts::Phrase> reasons);
-  const desk::ProtocolEntry* entry() const;
+  void fail(std::vector<core::Phrase> problems);
+  void refuse(std::vector<core::Phrase> reasons);
+  const view::ProtocolEntry* entry() const;
 
-  setup::StationRequest request_;
+  session::StationRequest request_;
   Checker checker_;
-  std::vector<desk::ProtocolEntry> protocols_;
+  std::vector<view::ProtocolEntry> protocols_;
   QStringList participants_;
-  std::optional<desk::InterruptedNote> interrupted_;
-  desk::BackupNote backup_;
-  desk::StationState state_;
+  std::optional<view::InterruptedNote> interrupted_;
+  view::BackupNote backup_;
+  view::StationState state_;
   QTimer minutes_;  ///< updates the ages shown on the page, which may be open for days
-  desk::CheckWords words_;
-  std::vector<texts::Phrase> refused_;  ///< why the last chosen session did not begin
+  view::CheckWords words_;
+  std::vector<core::Phrase> refused_;  ///< why the last chosen session did not begin
   std::optional<session::EarlySession> too_early_;
-  std::vector<texts::Phrase> not_live_;  ///< why the chosen protocol cannot run live
+  std::vector<core::Phrase> not_live_;  ///< why the chosen protocol cannot run live
   int selected_ = -1, language_ = -1;
   QString participant_;
   bool live_ = false, armed_ = false, checking_ = false, preparing_ = false;

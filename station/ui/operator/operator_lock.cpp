@@ -6,7 +6,7 @@
 
 namespace turnpoint::ui {
 
-OperatorLock::OperatorLock(desk::OperatorCode code, QObject* parent)
+OperatorLock::OperatorLock(view::OperatorCode code, QObject* parent)
     : OperatorLock(
           std::move(code),
           [] {
@@ -14,7 +14,7 @@ OperatorLock::OperatorLock(desk::OperatorCode code, QObject* parent)
           },
           parent) {}
 
-OperatorLock::OperatorLock(desk::OperatorCode code, Clock clock, QObject* parent)
+OperatorLock::OperatorLock(view::OperatorCode code, Clock clock, QObject* parent)
     : QObject(parent), code_(std::move(code)), clock_(std::move(clock)), job_(*this) {
   second_.setInterval(1000);
   connect(&second_, &QTimer::timeout, this, [this] {
@@ -44,11 +44,11 @@ void OperatorLock::choose(const QString& digits) {
   if (checking_ || digits.isEmpty()) return;
   checking_ = true;
   Q_EMIT changed();
-  const auto file = file_.empty() ? desk::operator_code_files().front() : file_;
+  const auto file = file_.empty() ? view::operator_code_files().front() : file_;
   job_.start([this, file, text = digits.toStdString()](const std::stop_token&) -> std::function<void()> {
     try {
-      auto code = desk::OperatorCode::of_digits(text);
-      desk::store_operator_code(code, file);
+      auto code = view::OperatorCode::of_digits(text);
+      view::store_operator_code(code, file);
       return [this, code = std::move(code)] {
         code_ = code;
         checking_ = false;

@@ -6,14 +6,14 @@
 #include <string>
 #include <utility>
 
-#include "station/desk/operator_code.hpp"
 #include "station/ui/platform/newest_job.hpp"
+#include "station/view/operator_code.hpp"
 
 namespace turnpoint::ui {
 
 /// Protects the operator's pages on the participant's screen. A code is compared on a separate thread,
 /// because hashing takes as long as several frames. After wrong codes it refuses every code for a while
-/// (desk/operator_code.hpp). The log says how many codes were wrong in a row. GUI thread only.
+/// (view/operator_code.hpp). The log says how many codes were wrong in a row. GUI thread only.
 class OperatorLock : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -28,13 +28,13 @@ class OperatorLock : public QObject {
  public:
   /// True as long as nobody has chosen a code. The code is then shown, because it is no secret.
   bool built_in() const { return code_.is_built_in(); }
-  QString shown_code() const { return built_in() ? desk::OperatorCode::built_in : ""; }
+  QString shown_code() const { return built_in() ? view::OperatorCode::built_in : ""; }
   using Clock = std::function<double()>;  ///< returns the time of a monotonic clock in s
 
-  explicit OperatorLock(desk::OperatorCode code, QObject* parent = nullptr);
-  OperatorLock(desk::OperatorCode code, Clock clock, QObject* parent = nullptr);
+  explicit OperatorLock(view::OperatorCode code, QObject* parent = nullptr);
+  OperatorLock(view::OperatorCode code, Clock clock, QObject* parent = nullptr);
 
-  int digits() const { return static_cast<int>(desk::OperatorCode::longest); }
+  int digits() const { return static_cast<int>(view::OperatorCode::longest); }
   bool checking() const { return checking_; }
   int wait_s() const;
 
@@ -44,7 +44,7 @@ class OperatorLock : public QObject {
   /// Makes these digits the operator's code and stores it. Then emits chosen() or, if the code is not
   /// possible or cannot be stored, refused().
   Q_INVOKABLE void choose(const QString& digits);
-  /// Where choose() stores the code; "" (the default) is the first of desk::operator_code_files().
+  /// Where choose() stores the code; "" (the default) is the first of view::operator_code_files().
   void store_in(std::string file) { file_ = std::move(file); }
 
  Q_SIGNALS:
@@ -56,10 +56,10 @@ class OperatorLock : public QObject {
  private:
   void judge(bool right);
 
-  desk::OperatorCode code_;
+  view::OperatorCode code_;
   Clock clock_;
   std::string file_;
-  desk::CodeBackOff back_off_;
+  view::CodeBackOff back_off_;
   bool checking_ = false;
   QTimer second_;
   NewestJob job_;  // The last member, so that its thread ends before the objects that it uses are destroyed.

@@ -28,7 +28,7 @@ void PagesPreview::forget() {
 void PagesPreview::make() {
   problem_ = {};
   try {
-    pages_ = desk::sample_pages(protocol_, rig_, language_.toStdString());
+    pages_ = view::sample_pages(protocol_, rig_, language_.toStdString());
   } catch (const std::exception& error) {
     problem_ = explanation_of(error);
   }

@@ -4,9 +4,9 @@
 #include <QStringList>
 #include <vector>
 
-#include "station/desk/sample_pages.hpp"
 #include "station/ui/participant/session_bridge.hpp"
 #include "station/ui/shared/phrases.hpp"
+#include "station/view/sample_pages.hpp"
 
 namespace turnpoint::ui {
 
@@ -53,10 +53,10 @@ class PagesPreview : public QObject {
   SessionBridge bridge_;
   protocol::Protocol protocol_;
   rig::Rig rig_;
-  std::vector<desk::SamplePage> pages_;
+  std::vector<view::SamplePage> pages_;
   QStringList languages_;
   QString language_;
-  texts::Phrase problem_;
+  core::Phrase problem_;
   int shown_ = 0;
 };
 

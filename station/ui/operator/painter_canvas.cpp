@@ -9,16 +9,16 @@ namespace turnpoint::ui {
 
 namespace {
 
-QPointF point_of(const plot::Point& point) { return {point.first, point.second}; }
+QPointF point_of(const report::Point& point) { return {point.first, point.second}; }
 
-QPolygonF points_of(const std::vector<plot::Point>& points) {
+QPolygonF points_of(const std::vector<report::Point>& points) {
   QPolygonF polygon;
   for (const auto& point : points) polygon << point_of(point);
   return polygon;
 }
 
 /// Converts dash lengths from px, as figures give them, to widths of the pen, as a QPen needs them.
-QList<qreal> dashes_of(const plot::Paint& paint) {
+QList<qreal> dashes_of(const report::Paint& paint) {
   QList<qreal> dashes;
   for (const auto& part : QString::fromStdString(paint.dash).split(' ', Qt::SkipEmptyParts))
     dashes << part.toDouble() / paint.width;
@@ -50,7 +50,7 @@ QColor PainterCanvas::shown(const std::string& colour) const {
                           alpha);
 }
 
-void PainterCanvas::use(const plot::Paint& paint) {
+void PainterCanvas::use(const report::Paint& paint) {
   QPen pen(Qt::NoPen);
   if (!paint.stroke.empty() && paint.width > 0) {
     pen = QPen(shown(paint.stroke), paint.width, Qt::SolidLine, Qt::FlatCap, Qt::RoundJoin);
@@ -61,32 +61,32 @@ void PainterCanvas::use(const plot::Paint& paint) {
   painter_.setOpacity(paint.opacity);
 }
 
-void PainterCanvas::line(plot::Point from, plot::Point to, const plot::Paint& paint) {
+void PainterCanvas::line(report::Point from, report::Point to, const report::Paint& paint) {
   use(paint);
   painter_.drawLine(point_of(from), point_of(to));
 }
 
-void PainterCanvas::polyline(const std::vector<plot::Point>& points, const plot::Paint& paint) {
+void PainterCanvas::polyline(const std::vector<report::Point>& points, const report::Paint& paint) {
   use(paint);
   painter_.drawPolyline(points_of(points));
 }
 
-void PainterCanvas::polygon(const std::vector<plot::Point>& points, const plot::Paint& paint) {
+void PainterCanvas::polygon(const std::vector<report::Point>& points, const report::Paint& paint) {
   use(paint);
   painter_.drawPolygon(points_of(points));
 }
 
-void PainterCanvas::rectangle(plot::Point corner, double width, double height, const plot::Paint& paint) {
+void PainterCanvas::rectangle(report::Point corner, double width, double height, const report::Paint& paint) {
   use(paint);
   painter_.drawRect(QRectF(point_of(corner), QSizeF(width, height)));
 }
 
-void PainterCanvas::circle(plot::Point centre, double radius, const plot::Paint& paint) {
+void PainterCanvas::circle(report::Point centre, double radius, const report::Paint& paint) {
   use(paint);
   painter_.drawEllipse(point_of(centre), radius, radius);
 }
 
-void PainterCanvas::text(plot::Point at, const std::string& text, double size, plot::Anchor anchor,
+void PainterCanvas::text(report::Point at, const std::string& text, double size, report::Anchor anchor,
                          const std::string& colour, int weight, double degrees) {
   // Figures use font sizes in half pixels, but a QFont has whole pixels. So use a font of ten times the size
   // and scale it down.
@@ -103,12 +103,14 @@ void PainterCanvas::text(plot::Point at, const std::string& text, double size, p
   painter_.setFont(font);
   painter_.setOpacity(1);
   painter_.setPen(shown(colour));
-  const double left = anchor == plot::Anchor::start ? 0 : anchor == plot::Anchor::middle ? width / 2 : width;
+  const double left = anchor == report::Anchor::start    ? 0
+                      : anchor == report::Anchor::middle ? width / 2
+                                                         : width;
   painter_.drawText(QPointF(-left, 0), words);
   painter_.restore();
 }
 
-void PainterCanvas::begin_clip(plot::Point corner, double width, double height) {
+void PainterCanvas::begin_clip(report::Point corner, double width, double height) {
   painter_.save(), ++saved_;
   painter_.setClipRect(QRectF(point_of(corner), QSizeF(width, height)));
 }

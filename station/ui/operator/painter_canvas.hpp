@@ -1,12 +1,12 @@
 #pragma once
 #include <QPainter>
 
-#include "station/plot/canvas.hpp"
+#include "station/report/canvas.hpp"
 
 namespace turnpoint::ui {
 
 /// Paints a figure as large as possible into the middle of a rectangle of the screen, in the pages' font.
-class PainterCanvas : public plot::Canvas {
+class PainterCanvas : public report::Canvas {
  public:
   /// How the colours of a figure are shown. In the dark, light and dark change places; hues stay.
   enum class Tone { paper, dark };
@@ -17,18 +17,18 @@ class PainterCanvas : public plot::Canvas {
   Q_DISABLE_COPY_MOVE(PainterCanvas)
 
   void begin(double width, double height, const std::string& title) override;
-  void line(plot::Point from, plot::Point to, const plot::Paint& paint) override;
-  void polyline(const std::vector<plot::Point>& points, const plot::Paint& paint) override;
-  void polygon(const std::vector<plot::Point>& points, const plot::Paint& paint) override;
-  void rectangle(plot::Point corner, double width, double height, const plot::Paint& paint) override;
-  void circle(plot::Point centre, double radius, const plot::Paint& paint) override;
-  void text(plot::Point at, const std::string& text, double size, plot::Anchor anchor,
+  void line(report::Point from, report::Point to, const report::Paint& paint) override;
+  void polyline(const std::vector<report::Point>& points, const report::Paint& paint) override;
+  void polygon(const std::vector<report::Point>& points, const report::Paint& paint) override;
+  void rectangle(report::Point corner, double width, double height, const report::Paint& paint) override;
+  void circle(report::Point centre, double radius, const report::Paint& paint) override;
+  void text(report::Point at, const std::string& text, double size, report::Anchor anchor,
             const std::string& colour, int weight, double degrees) override;
-  void begin_clip(plot::Point corner, double width, double height) override;
+  void begin_clip(report::Point corner, double width, double height) override;
   void end_clip() override;
 
  private:
-  void use(const plot::Paint& paint);
+  void use(const report::Paint& paint);
   QColor shown(const std::string& colour) const;
 
   QPainter& painter_;

@@ -5,12 +5,12 @@
 #include <exception>
 #include <utility>
 
-#include "station/desk/scene_figures.hpp"
-#include "station/simulation/parallel.hpp"
-#include "station/simulation/power_figure.hpp"
-#include "station/text/number.hpp"
+#include "station/core/number.hpp"
+#include "station/rehearsal/parallel.hpp"
+#include "station/rehearsal/power_figure.hpp"
 #include "station/ui/operator/facts.hpp"
 #include "station/ui/operator/figure_view.hpp"
+#include "station/view/scene_figures.hpp"
 
 namespace turnpoint::ui {
 
@@ -21,11 +21,11 @@ namespace {
 constexpr int kFirst = 20, kAll = 200;
 constexpr int kResamples = 100;
 
-QVariantMap number_of(const simulation::Recovery& recovery) {
+QVariantMap number_of(const rehearsal::Recovery& recovery) {
   // No more digits than the spread between sessions justifies.
   const double spread = recovery.upper_quartile - recovery.lower_quartile;
   const auto shown = [spread](const std::optional<double>& value) {
-    return value && std::isfinite(*value) ? QString::fromStdString(text::estimated(*value, spread))
+    return value && std::isfinite(*value) ? QString::fromStdString(core::estimated(*value, spread))
                                           : QString();
   };
   const bool tailed = recovery.heavy_tailed;
@@ -84,11 +84,11 @@ void Precision::start() {
   problem_ = {};
   job_.start(
       [this, protocol = *protocol_, draft = draft_](const std::stop_token& stop) -> std::function<void()> {
-        simulation::PowerOptions options;
+        rehearsal::PowerOptions options;
         options.replicates = kResamples;
-        options.threads = std::max(1, simulation::processors() - 1);
+        options.threads = std::max(1, rehearsal::processors() - 1);
         options.stop = stop;
-        simulation::Power found;
+        rehearsal::Power found;
         try {
           for (const int sessions : {kFirst, kAll}) {
             options.observers = sessions;
@@ -104,7 +104,7 @@ void Precision::start() {
                   },
                   Qt::QueuedConnection);
             };
-            found = simulation::power(protocol, options);
+            found = rehearsal::power(protocol, options);
             if (stop.stop_requested()) return {};
             QMetaObject::invokeMethod(
                 this, [this, found, draft] { take(found, draft); }, Qt::QueuedConnection);
@@ -125,13 +125,13 @@ void Precision::start() {
       });
 }
 
-void Precision::take(const simulation::Power& power, int draft) {
+void Precision::take(const rehearsal::Power& power, int draft) {
   if (draft != draft_) return;
   power_ = power;
-  auto figure = simulation::figure_of(power, protocol_->title);
+  auto figure = rehearsal::figure_of(power, protocol_->title);
   figure.columns = 1;
   figure.caption.clear();
-  figure_ = figure.charts.empty() ? QVariant() : to_variant(desk::drawing_of(std::move(figure)));
+  figure_ = figure.charts.empty() ? QVariant() : to_variant(view::drawing_of(std::move(figure)));
   Q_EMIT changed();
 }
 

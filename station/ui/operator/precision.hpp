@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "station/protocol/protocol.hpp"
-#include "station/simulation/power.hpp"
+#include "station/rehearsal/power.hpp"
 #include "station/ui/platform/newest_job.hpp"
 #include "station/ui/shared/phrases.hpp"
 
@@ -49,14 +49,14 @@ class Precision : public QObject {
 
  private:
   void start();
-  void take(const simulation::Power& power, int draft);
+  void take(const rehearsal::Power& power, int draft);
 
   std::optional<protocol::Protocol> protocol_;
   bool watched_ = false, busy_ = false, stale_ = false;
   double progress_ = 0;
-  std::optional<simulation::Power> power_;
+  std::optional<rehearsal::Power> power_;
   QVariant figure_;
-  texts::Phrase problem_;
+  core::Phrase problem_;
   int draft_ = 0;  ///< number of the draft, so that numbers of an earlier one are not shown
   // The last member, so that its thread ends before the objects that it uses are destroyed.
   NewestJob job_;

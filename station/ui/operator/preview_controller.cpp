@@ -4,31 +4,31 @@
 #include <sstream>
 #include <utility>
 
-#include "station/desk/scene_figures.hpp"
-#include "station/setup/prepare.hpp"
-#include "station/texts/texts.hpp"
+#include "station/core/texts.hpp"
+#include "station/session/prepare.hpp"
 #include "station/ui/operator/facts.hpp"
+#include "station/view/scene_figures.hpp"
 
 namespace turnpoint::ui {
 namespace {
 
 rig::Rig rig_of(const std::string& path) {
   std::ostringstream messages;
-  return setup::calibrated_rig(path, "", messages);
+  return session::calibrated_rig(path, "", messages);
 }
 
 }  // namespace
 
-PreviewController::PreviewController(const desk::PreviewRequest& request, QObject* parent)
+PreviewController::PreviewController(const view::PreviewRequest& request, QObject* parent)
     : QObject(parent),
       preview_(protocol::load(request.protocol), rig_of(request.rig)),
       scenes_(preview_.scenes()) {
   std::vector<std::string> assumed;
-  factors_ = desk::factors_for(preview_.protocol(), request.set, assumed);
+  factors_ = view::factors_for(preview_.protocol(), request.set, assumed);
   if (!request.scene.empty()) {
     const auto found = std::find(scenes_.begin(), scenes_.end(), request.scene);
     if (found == scenes_.end())
-      throw texts::Refusal(texts::phrase("refusal.no_scene", {texts::plain(request.scene)}));
+      throw core::Refusal(core::phrase("refusal.no_scene", {core::plain(request.scene)}));
     scene_ = static_cast<int>(found - scenes_.begin());
   }
   worker_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
@@ -111,9 +111,9 @@ PreviewController::Drawn PreviewController::draw(const Wanted& wanted) {
     drawn.look.problem = error.what();
   }
   if (!drawn.look.problem.empty()) return drawn;
-  drawn.surface = to_variant(desk::drawing_of_surface(drawn.look, preview_.rig(), wanted.language));
-  drawn.profile = to_variant(desk::drawing_of(desk::profile_figure({drawn.look}, wanted.language)));
-  drawn.spectrum = to_variant(desk::drawing_of(desk::spectrum_figure(drawn.look, wanted.language)));
+  drawn.surface = to_variant(view::drawing_of_surface(drawn.look, preview_.rig(), wanted.language));
+  drawn.profile = to_variant(view::drawing_of(view::profile_figure({drawn.look}, wanted.language)));
+  drawn.spectrum = to_variant(view::drawing_of(view::spectrum_figure(drawn.look, wanted.language)));
   return drawn;
 }
 

@@ -9,8 +9,8 @@
 #include <optional>
 #include <thread>
 
-#include "station/desk/preview.hpp"
 #include "station/ui/operator/figure_view.hpp"
+#include "station/view/preview.hpp"
 
 namespace turnpoint::ui {
 
@@ -37,9 +37,9 @@ class PreviewController : public QObject {
   Q_PROPERTY(QVariant spectrum READ spectrum NOTIFY changed)
 
  public:
-  /// Throws text::BadInput if a file is wrong, and terms::UsageError if the protocol lacks the scene or
+  /// Throws core::BadInput if a file is wrong, and core::UsageError if the protocol lacks the scene or
   /// factor.
-  explicit PreviewController(const desk::PreviewRequest& request, QObject* parent = nullptr);
+  explicit PreviewController(const view::PreviewRequest& request, QObject* parent = nullptr);
   ~PreviewController() override;
 
   QString title() const;
@@ -67,7 +67,7 @@ class PreviewController : public QObject {
  private:
   /// A scene with its figures, as made on the worker thread.
   struct Drawn {
-    desk::SceneLook look;
+    view::SceneLook look;
     QVariant surface, profile, spectrum;
   };
   struct Wanted {
@@ -80,13 +80,13 @@ class PreviewController : public QObject {
   Drawn draw(const Wanted& wanted);
   void take(Drawn drawn);
 
-  desk::Preview preview_;
+  view::Preview preview_;
   std::vector<std::string> scenes_;
   protocol::Factors factors_;
   int scene_ = 0;
   QString language_ = "en";
   bool busy_ = false;
-  desk::SceneLook look_;
+  view::SceneLook look_;
   QVariant surface_, profile_, spectrum_;
   std::mutex mutex_;
   std::condition_variable_any arrived_;

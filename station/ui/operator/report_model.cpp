@@ -4,13 +4,13 @@
 #include <exception>
 #include <utility>
 
-#include "station/texts/texts.hpp"
+#include "station/core/texts.hpp"
 #include "station/ui/operator/facts.hpp"
 #include "station/ui/operator/figure_view.hpp"
 
 namespace turnpoint::ui {
 
-void ReportModel::take(desk::ReportPages pages) {
+void ReportModel::take(view::ReportPages pages) {
   QMetaObject::invokeMethod(
       this,
       [this, pages = std::move(pages)]() mutable {
@@ -38,12 +38,12 @@ void ReportModel::save(int picture) {
   const QString folder =
       folder_ + "/" + file_name(title() + " (" + run_mode() + ", " + status() + ")").left(80);
   // Files have the same names in every language.
-  const QString file = file_name(QString::fromStdString(texts::text(name.toStdString(), "en")));
+  const QString file = file_name(QString::fromStdString(core::text(name.toStdString(), "en")));
   try {
     save_drawing(drawing, folder, file);
-    saved_ = texts::plain((folder + "/" + file + ".svg, .pdf").toStdString());
+    saved_ = core::plain((folder + "/" + file + ".svg, .pdf").toStdString());
   } catch (const std::exception& error) {
-    saved_ = texts::phrase_of(error);
+    saved_ = core::phrase_of(error);
   }
   Q_EMIT changed();
 }
@@ -55,9 +55,9 @@ QVariantList ReportModel::forces() const { return to_list(pages_.forces); }
 QVariantList ReportModel::health() const { return to_list(pages_.health); }
 QVariantList ReportModel::statements() const { return to_list(pages_.statements); }
 
-std::vector<std::pair<QString, desk::Drawing>> ReportModel::all_pictures() const {
-  std::vector<std::pair<QString, desk::Drawing>> list;
-  const auto add = [&list](const char* name, const desk::Drawing& drawing) {
+std::vector<std::pair<QString, view::Drawing>> ReportModel::all_pictures() const {
+  std::vector<std::pair<QString, view::Drawing>> list;
+  const auto add = [&list](const char* name, const view::Drawing& drawing) {
     if (drawing) list.emplace_back(name, drawing);
   };
   if (pages_.compares_instructions) add("report.speed_accuracy", pages_.trade);

@@ -2,8 +2,8 @@
 #include <QObject>
 #include <QQmlEngine>
 
-#include "station/desk/report_pages.hpp"
 #include "station/ui/shared/phrases.hpp"
+#include "station/view/report_pages.hpp"
 
 namespace turnpoint::ui {
 
@@ -34,7 +34,7 @@ class ReportModel : public QObject {
   using QObject::QObject;
 
   /// Takes the finished report. May be called on any thread.
-  void take(desk::ReportPages pages);
+  void take(view::ReportPages pages);
   void clear();
   /// Sets the folder in which figures are saved. Each report gets its own folder in it.
   void save_in(const std::string& folder) { folder_ = QString::fromStdString(folder); }
@@ -61,11 +61,11 @@ class ReportModel : public QObject {
   void changed();
 
  private:
-  std::vector<std::pair<QString, desk::Drawing>> all_pictures() const;
-  desk::ReportPages pages_;
+  std::vector<std::pair<QString, view::Drawing>> all_pictures() const;
+  view::ReportPages pages_;
   bool ready_ = false;
   QString folder_;
-  texts::Phrase saved_;
+  core::Phrase saved_;
 };
 
 }  // namespace turnpoint::ui

@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <sstream>
 
-#include "station/calibration/apply.hpp"
-#include "station/calibration/calibration.hpp"
+#include "station/core/number.hpp"
 #include "station/maintenance/doctor.hpp"
+#include "station/rig/apply.hpp"
+#include "station/rig/calibration.hpp"
 #include "station/rig/rig.hpp"
+#include "station/session/prepare.hpp"
 #include "station/session/self_test_rig.hpp"
-#include "station/setup/prepare.hpp"
-#include "station/text/number.hpp"
 #include "station/ui/operator/facts.hpp"
 
 namespace turnpoint::ui {
@@ -28,7 +28,7 @@ QVariantMap fact(const char* label, const QVariant& value, const char* text = ""
 }
 
 /// The keys of the texts for what was measured for a calibration.
-QStringList measured(const calibration::Calibration& made) {
+QStringList measured(const rig::Calibration& made) {
   QStringList parts;
   const auto add = [&parts](bool there, const char* what) {
     if (there) parts += what;
@@ -43,7 +43,7 @@ QStringList measured(const calibration::Calibration& made) {
   return parts;
 }
 
-QVariantList facts_of(const calibration::Calibration& made, const std::string& path, int left_days) {
+QVariantList facts_of(const rig::Calibration& made, const std::string& path, int left_days) {
   auto parts = fact("operator.fact_measured", "");
   parts["parts"] = measured(made);
   QVariantList facts{
@@ -56,8 +56,8 @@ QVariantList facts_of(const calibration::Calibration& made, const std::string& p
   return facts;
 }
 
-const char* word(lines::Finding::Status status) {
-  using Status = lines::Finding::Status;
+const char* word(io::Finding::Status status) {
+  using Status = io::Finding::Status;
   return status == Status::ok ? "ok" : status == Status::warning ? "warning" : "failed";
 }
 
@@ -69,17 +69,17 @@ const char* word(session::Request::Kind kind) {
 }
 
 /// Rounds to this number of decimals. What rounds to zero has no sign.
-texts::Phrase fixed(double value, int decimals) {
+core::Phrase fixed(double value, int decimals) {
   const double unit = std::pow(10.0, -decimals);
-  return texts::plain(fmt::format("{:.{}f}", std::abs(value) < unit / 2 ? 0.0 : value, decimals));
+  return core::plain(fmt::format("{:.{}f}", std::abs(value) < unit / 2 ? 0.0 : value, decimals));
 }
 
 /// Returns rows for the page: uncertainty and resonance of the force calibration, and each weight with its
 /// residual.
 QVariantList weights_of(const maintenance::ForceResult& result, const std::string& file) {
-  using texts::phrase;
+  using core::phrase;
   QVariantList list;
-  const auto add = [&list](const texts::Phrase& name, bool good, const texts::Phrase& what) {
+  const auto add = [&list](const core::Phrase& name, bool good, const core::Phrase& what) {
     list += QVariantMap{{"name", to_variant(name)},
                         {"verdict", good ? "ok" : "warning"},
                         {"what", to_variant(what)},
@@ -89,16 +89,16 @@ QVariantList weights_of(const maintenance::ForceResult& result, const std::strin
       phrase(
           "operator.weights_uncertainty_text",
           {fixed(result.sd.position_mm, 2), fixed(result.sd.friction, 4), fixed(1e3 * result.sd.lateral_N, 1),
-           fixed(result.zero_moved_mN, 2), texts::plain(std::filesystem::path(file).filename().string())}));
+           fixed(result.zero_moved_mN, 2), core::plain(std::filesystem::path(file).filename().string())}));
   add(phrase("operator.weights_resonance"), result.resonance_Hz.has_value(),
       result.resonance_Hz ? phrase("operator.weights_resonance_text",
-                                   {texts::plain(text::number(*result.resonance_Hz, 3)),
-                                    texts::plain(text::number(result.cells.usable_Hz.value(), 3))})
+                                   {core::plain(core::number(*result.resonance_Hz, 3)),
+                                    core::plain(core::number(result.cells.usable_Hz.value(), 3))})
                           : phrase("operator.weights_resonance_unknown"));
   for (std::size_t k = 0; k < result.steps.size(); ++k) {
     const auto& rest = result.residuals[k];
-    const std::vector<texts::Phrase> values{fixed(1e3 * rest.normal_N, 2), fixed(1e3 * rest.lateral_N, 2),
-                                            fixed(rest.position_mm, 2)};
+    const std::vector<core::Phrase> values{fixed(1e3 * rest.normal_N, 2), fixed(1e3 * rest.lateral_N, 2),
+                                           fixed(rest.position_mm, 2)};
     const bool once = result.steps[k].remark.empty();
     add(result.steps[k].name(), once,
         once ? phrase("operator.weights_residual", values)
@@ -115,7 +115,7 @@ double share_of_limit(const session::Check& check) {
 
 }  // namespace
 
-RigController::RigController(const setup::StationRequest& request, QObject* parent)
+RigController::RigController(const session::StationRequest& request, QObject* parent)
     : QObject(parent),
       rig_(request.rig),
       data_folder_(std::filesystem::absolute(request.database).parent_path().string()),
@@ -131,13 +131,13 @@ void RigController::open() {
   try {
     const auto rig = rig::load(rig_);
     has_cells_ = rig::has_force_cells(rig);
-    const auto file = calibration::newest_for(rig.path);
+    const auto file = rig::newest_for(rig.path);
     if (!file.empty()) {
-      const auto made = calibration::load(file);
-      const auto today = calibration::today();
-      const int left_days = calibration::days_left(made, today);
+      const auto made = rig::load_calibration(file);
+      const auto today = rig::today();
+      const int left_days = rig::days_left(made, today);
       calibration_ = facts_of(made, file, left_days);
-      const auto problems = calibration::problems(made, rig.sha256, today);
+      const auto problems = rig::problems(made, rig.sha256, today);
       for (const auto& problem : problems)
         calibration_ += fact("operator.fact_not_used", to_variant(problem));
       calibration_state_ = !problems.empty() ? "bad" : left_days <= kSoon_days ? "ageing" : "good";
@@ -158,7 +158,7 @@ void RigController::run(const QString& what, NewestJob::Job job) {
   Q_EMIT changed();
   worker_.start([this, job = std::move(job)](const std::stop_token& stop) -> std::function<void()> {
     std::function<void()> result;
-    std::vector<texts::Phrase> errors;
+    std::vector<core::Phrase> errors;
     try {
       result = job(stop);
     } catch (const std::exception& error) {
@@ -178,7 +178,7 @@ void RigController::examine() {
   findings_.clear();
   run("doctor", [this](const std::stop_token&) -> std::function<void()> {
     std::ostringstream messages;  // not shown, because the page shows the calibration elsewhere
-    auto findings = maintenance::examine(setup::calibrated_rig(rig_, "", messages), data_folder_);
+    auto findings = maintenance::examine(session::calibrated_rig(rig_, "", messages), data_folder_);
     return [this, findings = std::move(findings)] { findings_ = findings; };
   });
 }
@@ -187,7 +187,7 @@ void RigController::selfTest() {
   checks_.clear();
   run("self_test", [this](const std::stop_token&) -> std::function<void()> {
     std::ostringstream messages;
-    const auto rig = setup::calibrated_rig(rig_, "", messages);
+    const auto rig = session::calibrated_rig(rig_, "", messages);
     auto checks = session::self_test(
         rig,
         [this](const session::Request& request) {

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "station/lines/probe.hpp"
+#include "station/io/probe.hpp"
+#include "station/session/prepare.hpp"
 #include "station/session/self_test.hpp"
-#include "station/setup/prepare.hpp"
 #include "station/ui/operator/calibration_guide.hpp"
 #include "station/ui/operator/weighing.hpp"
 #include "station/ui/platform/newest_job.hpp"
@@ -54,7 +54,7 @@ class RigController : public QObject {
   Q_PROPERTY(turnpoint::ui::CalibrationGuide* guide READ guide CONSTANT)
 
  public:
-  explicit RigController(const setup::StationRequest& request, QObject* parent = nullptr);
+  explicit RigController(const session::StationRequest& request, QObject* parent = nullptr);
 
   QString path() const { return QString::fromStdString(rig_); }
   QVariantList calibration() const { return calibration_; }
@@ -93,7 +93,7 @@ class RigController : public QObject {
   QVariantList calibration_;
   QString calibration_state_ = "none";
   QString busy_, asked_, asked_button_;
-  std::vector<lines::Finding> findings_;
+  std::vector<io::Finding> findings_;
   std::vector<session::Check> checks_;
   QVariantList errors_;
   bool has_cells_ = false;

@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <utility>
 
-#include "station/desk/report_pages.hpp"
 #include "station/store/backup.hpp"
 #include "station/store/export.hpp"
 #include "station/store/session_log.hpp"
 #include "station/ui/operator/facts.hpp"
+#include "station/view/report_pages.hpp"
 
 namespace turnpoint::ui {
 
@@ -17,9 +17,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using texts::phrase, texts::plain;
+using core::phrase, core::plain;
 
-QVariantMap to_map(const desk::SessionLine& session) {
+QVariantMap to_map(const view::SessionLine& session) {
   return {{"id", QString::fromStdString(session.session_id)},
           {"person", QString::fromStdString(session.person)},
           {"protocol", QString::fromStdString(session.protocol)},
@@ -32,10 +32,10 @@ QVariantMap to_map(const desk::SessionLine& session) {
 }
 
 /// Describes in words what a withdrawal deletes, or would delete.
-std::vector<texts::Phrase> words_of(const store::Withdrawal& gone, bool done) {
-  std::vector<texts::Phrase> words{phrase(done ? "operator.deleted" : "operator.would_delete",
-                                          {plain(gone.participant), plain(gone.sessions.size()),
-                                           plain(gone.trials), plain(gone.events), plain(gone.annotations)})};
+std::vector<core::Phrase> words_of(const store::Withdrawal& gone, bool done) {
+  std::vector<core::Phrase> words{phrase(done ? "operator.deleted" : "operator.would_delete",
+                                         {plain(gone.participant), plain(gone.sessions.size()),
+                                          plain(gone.trials), plain(gone.events), plain(gone.annotations)})};
   if (!gone.removed_copies.empty())
     words.push_back(phrase(done ? "operator.copies_deleted" : "operator.copies_would",
                            {plain(gone.removed_copies.size())}));
@@ -57,7 +57,7 @@ store::WithdrawOptions withdrawal_of(const std::string& person, const std::strin
   return options;
 }
 
-texts::Phrase what_is_not_searched(const store::WithdrawOptions& options) {
+core::Phrase what_is_not_searched(const store::WithdrawOptions& options) {
   return options.backup_directory.empty()
              ? phrase("operator.backups_unsearched")
              : phrase("operator.backups_included", {plain(options.backup_directory)});
@@ -65,7 +65,7 @@ texts::Phrase what_is_not_searched(const store::WithdrawOptions& options) {
 
 }  // namespace
 
-SessionsController::SessionsController(const setup::StationRequest& request, maintenance::DiskSources disks,
+SessionsController::SessionsController(const session::StationRequest& request, maintenance::DiskSources disks,
                                        QObject* parent)
     : QObject(parent),
       database_(fs::absolute(request.database).string()),
@@ -89,7 +89,7 @@ void SessionsController::open() {
 }
 
 void SessionsController::read_list() {
-  all_ = desk::session_lines(database_);
+  all_ = view::session_lines(database_);
   if (line() == nullptr) chosen_ = all_.empty() ? "" : all_.front().session_id;
 }
 
@@ -109,7 +109,7 @@ void SessionsController::lookForDisks() {
   Q_EMIT changed();
 }
 
-const desk::SessionLine* SessionsController::line() const {
+const view::SessionLine* SessionsController::line() const {
   const auto found = std::find_if(all_.begin(), all_.end(),
                                   [this](const auto& session) { return session.session_id == chosen_; });
   return found == all_.end() ? nullptr : &*found;
@@ -154,7 +154,7 @@ void SessionsController::makeReport(const QString& language) {
   if (line() == nullptr || line()->trials == 0) return;
   report_.clear();
   act([this, id = chosen_, language = language.toStdString()] {
-    report_.take(desk::report_pages(database_, id, language));
+    report_.take(view::report_pages(database_, id, language));
     return Done{};
   });
 }
@@ -205,7 +205,7 @@ void SessionsController::backUpTo(int place) {
     // setting the backup refuses that.
     if (place > 0) options.destination = store::Destination::disk;
     const auto report = store::backup(database_, options);
-    std::vector<texts::Phrase> said{
+    std::vector<core::Phrase> said{
         phrase("operator.backed_up", {plain(report.path), plain(report.sessions), plain(report.trials)})};
     if (place == 0) said.push_back(phrase("operator.backup_here"));
     if (!report.unrecorded.empty()) said.push_back(plain(report.unrecorded));
@@ -251,14 +251,14 @@ void SessionsController::withdraw() {
 QVariantList SessionsController::sessions() const {
   QVariantList list;
   for (const auto& session : all_)
-    if (desk::matches(session, search_.toStdString())) list += to_map(session);
+    if (view::matches(session, search_.toStdString())) list += to_map(session);
   return list;
 }
 
 int SessionsController::selected() const {
   int index = 0;
   for (const auto& session : all_) {
-    if (!desk::matches(session, search_.toStdString())) continue;
+    if (!view::matches(session, search_.toStdString())) continue;
     if (session.session_id == chosen_) return index;
     ++index;
   }

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "station/desk/session_list.hpp"
 #include "station/maintenance/disks.hpp"
-#include "station/setup/prepare.hpp"
+#include "station/session/prepare.hpp"
 #include "station/store/withdraw.hpp"
 #include "station/ui/operator/report_model.hpp"
 #include "station/ui/platform/newest_job.hpp"
 #include "station/ui/shared/phrases.hpp"
+#include "station/view/session_list.hpp"
 
 namespace turnpoint::ui {
 
@@ -43,7 +43,7 @@ class SessionsController : public QObject {
   Q_PROPERTY(turnpoint::ui::ReportModel* report READ report CONSTANT)
 
  public:
-  explicit SessionsController(const setup::StationRequest& request, maintenance::DiskSources disks = {},
+  explicit SessionsController(const session::StationRequest& request, maintenance::DiskSources disks = {},
                               QObject* parent = nullptr);
 
   QString search() const { return search_; }
@@ -83,24 +83,24 @@ class SessionsController : public QObject {
 
  private:
   struct Done {
-    std::vector<texts::Phrase> said;
+    std::vector<core::Phrase> said;
     std::function<void()> then = {};  ///< what else to do on the GUI thread; may be empty
   };
   void act(std::function<Done()> action);
-  const desk::SessionLine* line() const;
+  const view::SessionLine* line() const;
   std::string folder_of(int place) const;
   bool is_place(int place) const { return place >= 0 && place <= static_cast<int>(disks_.size()); }
   void read_list();
 
   std::string database_;
   maintenance::DiskSources sources_;
-  std::vector<desk::SessionLine> all_;
+  std::vector<view::SessionLine> all_;
   std::vector<maintenance::Disk> disks_;
   QString search_;
   std::string chosen_;  ///< id of the chosen session
-  texts::Phrase said_;
+  core::Phrase said_;
   bool busy_ = false, failed_ = false, unreadable_ = false;
-  texts::Phrase consequence_;
+  core::Phrase consequence_;
   std::string withdrawing_;  ///< participant whose withdrawal `consequence_` describes
   ReportModel report_;
   NewestJob

@@ -8,14 +8,14 @@
 
 namespace turnpoint::ui {
 
-using Kind = desk::CheckWords::Remark::Kind;
+using Kind = view::CheckWords::Remark::Kind;
 
-StudiesController::StudiesController(setup::StationRequest request, Checker checker, QObject* parent)
+StudiesController::StudiesController(session::StationRequest request, Checker checker, QObject* parent)
     : QObject(parent), request_(std::move(request)), checker_(std::move(checker)), worker_(*this) {}
 
 void StudiesController::open() {
   const auto before = selected_ < 0 ? std::string() : protocols_[static_cast<std::size_t>(selected_)].path;
-  protocols_ = desk::list_studies(request_.protocols, request_.database);
+  protocols_ = view::list_studies(request_.protocols, request_.database);
   const auto found = std::find_if(protocols_.begin(), protocols_.end(),
                                   [&](const auto& entry) { return entry.path == before; });
   selected_ = -1;
@@ -34,11 +34,11 @@ void StudiesController::select(int index) {
   worker_.start([this, path = protocols_[static_cast<std::size_t>(index)].path,
                  rig = request_.rig](const std::stop_token& stop) -> std::function<void()> {
     try {
-      return [this, words = desk::words_of(checker_(path, rig, stop))] { take(words); };
+      return [this, words = view::words_of(checker_(path, rig, stop))] { take(words); };
     } catch (const protocol::Abandoned&) {
       return {};
     } catch (const std::exception& error) {
-      desk::CheckWords words;
+      view::CheckWords words;
       for (auto& problem : phrases_of(error))
         words.remarks.push_back({Kind::problem, "", 0, std::move(problem), {}});
       return [this, words] { take(words); };
@@ -57,7 +57,7 @@ QString StudiesController::path(int index) const {
   return QString::fromStdString(protocols_[static_cast<std::size_t>(index)].path);
 }
 
-void StudiesController::take(desk::CheckWords words) {
+void StudiesController::take(view::CheckWords words) {
   words_ = std::move(words);
   checking_ = false;
   Q_EMIT changed();

@@ -5,10 +5,10 @@
 #include <QVariantList>
 #include <vector>
 
-#include "station/desk/choices.hpp"
-#include "station/setup/prepare.hpp"
+#include "station/session/prepare.hpp"
 #include "station/ui/operator/check_protocol.hpp"
 #include "station/ui/platform/newest_job.hpp"
+#include "station/view/choices.hpp"
 
 namespace turnpoint::ui {
 
@@ -34,7 +34,7 @@ class StudiesController : public QObject {
 
  public:
   /// `checker` runs on the worker thread.
-  explicit StudiesController(setup::StationRequest request, Checker checker = check_protocol,
+  explicit StudiesController(session::StationRequest request, Checker checker = check_protocol,
                              QObject* parent = nullptr);
 
   QVariantList protocols() const;
@@ -57,12 +57,12 @@ class StudiesController : public QObject {
   void changed();
 
  private:
-  void take(desk::CheckWords words);
+  void take(view::CheckWords words);
 
-  setup::StationRequest request_;
+  session::StationRequest request_;
   Checker checker_;
-  std::vector<desk::ProtocolEntry> protocols_;
-  desk::CheckWords words_;
+  std::vector<view::ProtocolEntry> protocols_;
+  view::CheckWords words_;
   int selected_ = -1;
   bool checking_ = false;
   NewestJob

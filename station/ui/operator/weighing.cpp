@@ -6,7 +6,7 @@
 #include <exception>
 #include <utility>
 
-#include "station/texts/texts.hpp"
+#include "station/core/texts.hpp"
 
 namespace turnpoint::ui {
 
@@ -25,7 +25,7 @@ void read(maintenance::BridgeReader& bridges, Weighing::Shown& shown) {
     for (std::size_t cell = 0; cell < 3; ++cell)
       shown.cells[cell] = shown.converter ? now.ratio[cell] : std::round(1e5 * now.ratio[cell]) / 100 + 0.0;
   } catch (const std::exception& error) {
-    shown.unread = texts::phrase_of(error);
+    shown.unread = core::phrase_of(error);
   }
 }
 
@@ -61,13 +61,13 @@ std::optional<maintenance::ForceResult> Weighing::run(const rig::Rig& rig, const
                                                       const std::stop_token& stop) {
   const auto bridges = maintenance::open_bridges(rig);
   maintenance::WeightStep now;
-  texts::Phrase silent;  // why a tap was not noticed
+  core::Phrase silent;  // why a tap was not noticed
   const auto ready = [&](const maintenance::WeightStep& step) {
     now = step;
     if (!silent.empty()) now.remark = std::exchange(silent, {});
     return await(*bridges, {now, {}, {}, false, {}}, show, stop) == Answer::read;
   };
-  const auto failed = [&](const texts::Phrase& why) {
+  const auto failed = [&](const core::Phrase& why) {
     // A tap is asked for again, and may be left out.
     if (now.tap != maintenance::Tap::none)
       silent = why;

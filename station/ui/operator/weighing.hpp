@@ -21,12 +21,12 @@ class Weighing {
   struct Shown {
     /// what the operator is asked to do; empty while the cells are read
     std::optional<maintenance::WeightStep> step;
-    texts::Phrase trouble;  ///< why a reading failed; the step can then not be left out
+    core::Phrase trouble;  ///< why a reading failed; the step can then not be left out
     /// what the cells read now: in thousandths of the excitation, or in the unit of a converter that has no
     /// excitation to compare with
     std::array<double, 3> cells{};
     bool converter = false;
-    texts::Phrase unread;  ///< why they cannot be read now; usually ""
+    core::Phrase unread;  ///< why they cannot be read now; usually ""
   };
   using Show = std::function<void(Shown)>;
 

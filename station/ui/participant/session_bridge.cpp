@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <utility>
 
-#include "station/terms/limits.hpp"
+#include "station/core/limits.hpp"
 
 namespace turnpoint::ui {
 
 SessionBridge::SessionBridge(Clock clock, Sink sink, QObject* parent)
     : QObject(parent), clock_(std::move(clock)), sink_(std::move(sink)), page_(this) {
   flush_.setSingleShot(true);
-  flush_.setInterval(static_cast<int>(terms::kTouchToAnswer_ns / 1'000'000) + 1);
+  flush_.setInterval(static_cast<int>(core::kTouchToAnswer_ns / 1'000'000) + 1);
   connect(&flush_, &QTimer::timeout, this, &SessionBridge::flush);
 }
 
@@ -60,7 +60,7 @@ void SessionBridge::note_touch(int id, QPointF position, const QObject* window) 
 }
 
 void SessionBridge::flush() {
-  const auto due_ns = clock_() - terms::kTouchToAnswer_ns;
+  const auto due_ns = clock_() - core::kTouchToAnswer_ns;
   for (const auto& touch : pending_)
     if (touch.time_ns <= due_ns) push_touch(session::InputKind::touch_down, 0, touch);
   std::erase_if(pending_, [&](const Pending& p) { return p.time_ns <= due_ns; });

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <utility>
 
-#include "station/desk/report_pages.hpp"
-#include "station/setup/open_touch.hpp"
+#include "station/core/texts.hpp"
+#include "station/session/open_touch.hpp"
 #include "station/system/clocks.hpp"
-#include "station/texts/texts.hpp"
+#include "station/view/report_pages.hpp"
 
 namespace turnpoint::ui {
 
@@ -76,10 +76,10 @@ void SessionRunner::begin(session::Setup setup, const std::string& language) {
   empty.language = setup_.language;
   empty.run_mode = store::name(setup_.run_mode);
   bridge_.show(empty);
-  live_.take(std::optional<desk::FingerGauges>{});
-  view_ = std::make_unique<desk::LiveView>(
-      setup_.protocol, setup_.rig, [this](desk::LiveState state) { live_.take(std::move(state)); }, language_,
-      [this](desk::FingerGauges gauges) { live_.take(std::optional(std::move(gauges))); });
+  live_.take(std::optional<view::FingerGauges>{});
+  view_ = std::make_unique<view::LiveView>(
+      setup_.protocol, setup_.rig, [this](view::LiveState state) { live_.take(std::move(state)); }, language_,
+      [this](view::FingerGauges gauges) { live_.take(std::optional(std::move(gauges))); });
   inputs_.page_alive(system::monotonic_ns());
   life_.start(kLife_ms);
   thread_ = std::jthread([this] { run(); });
@@ -96,12 +96,12 @@ void SessionRunner::run() {
   over_ = true;
   try {
     if (summary_ && summary_->trials > 0)
-      report_.take(desk::report_pages(summary_->database, summary_->session_id, language_));
+      report_.take(view::report_pages(summary_->database, summary_->session_id, language_));
   } catch (const std::exception& error) {
     // The session is complete and stored, even if its report cannot be made.
-    desk::ReportPages pages;
-    pages.title = texts::text("report.none", language_);
-    pages.statements = {texts::phrase_of(error)};
+    view::ReportPages pages;
+    pages.title = core::text("report.none", language_);
+    pages.statements = {core::phrase_of(error)};
     report_.take(pages);
   }
   Q_EMIT over();
@@ -109,8 +109,8 @@ void SessionRunner::run() {
 
 /// Opens the reader for the kernel's time stamps of touches, if the rig file names a touch panel.
 void SessionRunner::open_touch() {
-  touch_ = setup::open_touch(setup_.rig, [this](touch::TouchPanelState state) {
-    if (state == touch::TouchPanelState::back) return;
+  touch_ = session::open_touch(setup_.rig, [this](io::TouchPanelState state) {
+    if (state == io::TouchPanelState::back) return;
     session::Input input;
     input.time_ns = system::monotonic_ns();
     input.kind = session::InputKind::fault;
@@ -136,7 +136,7 @@ void SessionRunner::show_failure() {
     page.early = refused.early();
   } catch (const std::exception& error) {
     // for the operator; the participant's page does not show it
-    page.detail = texts::say(texts::phrase_of(error), language_);
+    page.detail = core::say(core::phrase_of(error), language_);
   }
   bridge_.show(page);
 }

@@ -8,14 +8,14 @@
 #include <optional>
 #include <thread>
 
-#include "station/desk/live_view.hpp"
 #include "station/session/session.hpp"
 #include "station/ui/operator/live_model.hpp"
 #include "station/ui/operator/report_model.hpp"
 #include "station/ui/participant/frame_watch.hpp"
 #include "station/ui/participant/session_bridge.hpp"
+#include "station/view/live_view.hpp"
 
-namespace turnpoint::touch {
+namespace turnpoint::io {
 class TouchReader;
 }
 
@@ -40,7 +40,7 @@ class SessionRunner : public QObject {
   void watch(QQuickWindow* window);
 
   /// Begins a session, after the previous one has ended. `language` is that of the operator. Throws the
-  /// errors of touch::TouchReader if the rig's touch panel does not exist.
+  /// errors of io::TouchReader if the rig's touch panel does not exist.
   void begin(session::Setup setup, const std::string& language = "en");
   bool running() const { return thread_.joinable() && !over_; }
   void ask_to_stop();
@@ -67,8 +67,8 @@ class SessionRunner : public QObject {
   FrameWatch frames_;
   std::optional<std::int64_t> flash_ns_;  ///< when the last flash was due
   QTimer life_;                           ///< reports to the session that the pages' event loop is running
-  std::unique_ptr<touch::TouchReader> touch_;
-  std::unique_ptr<desk::LiveView> view_;
+  std::unique_ptr<io::TouchReader> touch_;
+  std::unique_ptr<view::LiveView> view_;
   std::optional<session::Summary> summary_;
   std::exception_ptr failure_;
   std::atomic<bool> over_ = false;

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "station/terms/limits.hpp"
+#include "station/core/limits.hpp"
 
 namespace turnpoint::ui {
 
@@ -24,7 +24,7 @@ struct Touch {
 class TouchJudge {
  public:
   struct Rules {
-    std::int64_t settle_ns = terms::kOneTouch_ns;
+    std::int64_t settle_ns = core::kOneTouch_ns;
     /// a larger contact is a palm: a thumb pressed flat makes a contact of about 18 mm, a palm one of 30 mm
     /// or more
     double palm_mm = 24;

@@ -13,7 +13,7 @@
 
 #include "station/cli/screens.hpp"
 #include "station/maintenance/doctor.hpp"
-#include "station/setup/places.hpp"
+#include "station/session/places.hpp"
 #include "station/ui/platform/screen.hpp"
 
 namespace turnpoint::ui {
@@ -46,7 +46,7 @@ std::unique_ptr<QTemporaryFile> choose_platform() {
   const auto wanted = qgetenv("QT_QPA_PLATFORM");
   const bool desktop = qEnvironmentVariableIsSet("DISPLAY") || qEnvironmentVariableIsSet("WAYLAND_DISPLAY");
   if (wanted.isEmpty() ? desktop : !wanted.startsWith("eglfs")) return nullptr;
-  if (const auto card = setup::screen_card(); !card.empty()) {
+  if (const auto card = session::screen_card(); !card.empty()) {
     if (wanted.isEmpty()) qputenv("QT_QPA_PLATFORM", "eglfs");
     return eglfs_config(card);
   }
@@ -99,7 +99,7 @@ class StartMessages {
 void tell_refused_input() {
   const QString platform = QGuiApplication::platformName();
   if (platform != "eglfs" && platform != "linuxfb") return;
-  for (const auto& device : lines::try_input_devices().refused)
+  for (const auto& device : io::try_input_devices().refused)
     std::cerr << "input: " << device
               << "; touches and keys of this device are not received (see turnpoint doctor)\n";
 }

@@ -3,7 +3,7 @@
 #include <QFont>
 #include <QGuiApplication>
 
-#include "station/terms/usage_error.hpp"
+#include "station/core/usage_error.hpp"
 
 namespace turnpoint::ui {
 
@@ -19,7 +19,7 @@ double pixels_per_mm(const QScreen& screen) {
     bool is_number = false;
     const double dpi = stated.toDouble(&is_number);
     if (!is_number || !believable(dpi)) {
-      throw terms::UsageError("TURNPOINT_DPI: " + stated.toStdString() + " dpi; allowed are 60 to 500 dpi");
+      throw core::UsageError("TURNPOINT_DPI: " + stated.toStdString() + " dpi; allowed are 60 to 500 dpi");
     }
     return dpi / kInch_mm;
   }
@@ -31,8 +31,8 @@ int panel_rotation_deg() {
   const QString stated = qEnvironmentVariable("TURNPOINT_ROTATION", "0");
   for (const int degrees : {0, 90, 180, 270})
     if (stated == QString::number(degrees)) return degrees;
-  throw terms::UsageError("TURNPOINT_ROTATION: \"" + stated.toStdString() +
-                          "\"; allowed are 0, 90, 180 and 270 degrees");
+  throw core::UsageError("TURNPOINT_ROTATION: \"" + stated.toStdString() +
+                         "\"; allowed are 0, 90, 180 and 270 degrees");
 }
 
 void set_fonts() {

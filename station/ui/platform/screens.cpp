@@ -5,9 +5,9 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "station/setup/places.hpp"
+#include "station/core/toml.hpp"
+#include "station/session/places.hpp"
 #include "station/store/error.hpp"
-#include "station/text/toml.hpp"
 #include "station/ui/operator/design_controller.hpp"
 #include "station/ui/operator/latency_controller.hpp"
 #include "station/ui/operator/operator_controller.hpp"
@@ -62,15 +62,15 @@ void show_until_closed(const Application& application, const QString& page, cons
 
 }  // namespace
 
-session::Summary run_on_screen(setup::RunRequest request, std::optional<session::Setup> prepared) {
+session::Summary run_on_screen(session::RunRequest request, std::optional<session::Setup> prepared) {
   ChosenSession chosen;
   chosen.ask_code = !prepared && request.participant.empty();
-  if (chosen.ask_code) request.participant = setup::kCodeToCome;
-  chosen.setup = prepared ? std::move(*prepared) : setup::prepare(request);
+  if (chosen.ask_code) request.participant = session::kCodeToCome;
+  chosen.setup = prepared ? std::move(*prepared) : session::prepare(request);
   chosen.ask_language = !prepared && request.language.empty() && chosen.setup.protocol.languages.size() > 1;
   chosen.arm = true;  // starting a session from the command line is the operator's request to arm
   const Application application;
-  StationWindow window(place_on(application, request.fullscreen), {nullptr, desk::operator_code()},
+  StationWindow window(place_on(application, request.fullscreen), {nullptr, view::operator_code()},
                        chosen.setup.database);
   use_second_screen(application, window);
   stop_in_order(application, window);
@@ -81,11 +81,11 @@ session::Summary run_on_screen(setup::RunRequest request, std::optional<session:
   return *summary;
 }
 
-void run_station(const setup::StationRequest& request) {
+void run_station(const session::StationRequest& request) {
   const Application application;
   OperatorController operating(request, check_protocol, OperatorController::Checks::when_allowed);
   StationWindow window(place_on(application, request.fullscreen),
-                       {&operating, desk::operator_code(), request.locked}, request.database);
+                       {&operating, view::operator_code(), request.locked}, request.database);
   QObject::connect(&window.window(), &QQuickWindow::frameSwapped, &operating,
                    &OperatorController::allow_checks,
                    static_cast<Qt::ConnectionType>(Qt::QueuedConnection | Qt::SingleShotConnection));
@@ -101,7 +101,7 @@ void run_station(const setup::StationRequest& request) {
   }
 }
 
-void show_preview(const desk::PreviewRequest& request) {
+void show_preview(const view::PreviewRequest& request) {
   const Application application;
   PreviewController controller(request);
   show_until_closed(application, "PreviewWindow.qml", QVariant::fromValue(&controller));
@@ -111,12 +111,12 @@ void show_design(const cli::DesignRequest& request) {
   const std::filesystem::path file = request.file;
   const bool exists = !request.file.empty() && std::filesystem::exists(file);
   if (exists)
-    text::read_text_file(request.file);  // throws, before a window opens, if it is not a readable text file
+    core::read_text_file(request.file);  // throws, before a window opens, if it is not a readable text file
   const Application application;
-  DesignController controller({file.parent_path().string(), request.rig, setup::shipped("protocols")});
+  DesignController controller({file.parent_path().string(), request.rig, session::shipped("protocols")});
   if (exists) {
     if (!controller.open(QString::fromStdString(request.file)))
-      throw std::runtime_error(texts::say(controller.trouble_phrase(), "en"));
+      throw std::runtime_error(core::say(controller.trouble_phrase(), "en"));
   } else {
     controller.startNew();
     controller.suggest(QString::fromStdString(file.stem().string()));
@@ -124,7 +124,7 @@ void show_design(const cli::DesignRequest& request) {
   show_until_closed(application, "DesignWindow.qml", QVariant::fromValue(&controller));
 }
 
-std::optional<calibration::PanelLatency> measure_latency(const maintenance::LatencyRequest& request) {
+std::optional<rig::PanelLatency> measure_latency(const maintenance::LatencyRequest& request) {
   const Application application;
   LatencyController controller(request.reference);
   controller.open(rig::load(request.rig));

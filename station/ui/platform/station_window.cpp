@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "station/setup/places.hpp"
+#include "station/session/places.hpp"
 #include "station/ui/platform/first_page.hpp"
 #include "station/ui/platform/load_page.hpp"
 #include "station/ui/platform/screen.hpp"
@@ -19,7 +19,7 @@ namespace turnpoint::ui {
 namespace {
 
 bool is_known(const std::string& database, const QString& code) {
-  const auto known = desk::known_participants(database);
+  const auto known = view::known_participants(database);
   return std::find(known.begin(), known.end(), code.toStdString()) != known.end();
 }
 
@@ -46,8 +46,8 @@ StationWindow::StationWindow(const Place& place, const Operator& allowed, const 
     sessions_ = std::make_unique<SessionsController>(request, allowed.disks);
     rig_ = std::make_unique<RigController>(request);
     design_ = std::make_unique<DesignController>(
-        DesignPlace{desk::folder_for_studies(request.protocols, request.database), request.rig,
-                    setup::shipped("protocols")});
+        DesignPlace{view::folder_for_studies(request.protocols, request.database), request.rig,
+                    session::shipped("protocols")});
     connect(operating_, &OperatorController::chosen, this, &StationWindow::ask);
   }
   window_ = &load_page(engine_, "Main.qml",
@@ -117,7 +117,7 @@ void StationWindow::close() {
   operating_->refresh();
   const auto& page = runner_.bridge().page()->page();
   if (page.kind == session::PageKind::failed && !page.detail.empty())
-    operating_->tell_failure(texts::plain(page.detail));
+    operating_->tell_failure(core::plain(page.detail));
 }
 
 }  // namespace turnpoint::ui

@@ -7,7 +7,6 @@
 #include <optional>
 #include <string>
 
-#include "station/desk/operator_code.hpp"
 #include "station/ui/operator/design_controller.hpp"
 #include "station/ui/operator/operator_controller.hpp"
 #include "station/ui/operator/operator_lock.hpp"
@@ -16,6 +15,7 @@
 #include "station/ui/operator/studies_controller.hpp"
 #include "station/ui/participant/session_runner.hpp"
 #include "station/ui/participant/start_controller.hpp"
+#include "station/view/operator_code.hpp"
 
 namespace turnpoint::ui {
 
@@ -37,7 +37,7 @@ class StationWindow : public QObject {
   struct Operator {
     /// the operator's page, which must outlive the window; null if there is none
     OperatorController* page = nullptr;
-    desk::OperatorCode code;  ///< the code that opens the operator's view from the participant's pages
+    view::OperatorCode code;  ///< the code that opens the operator's view from the participant's pages
     bool locked = false;      ///< true if the operator's page is locked from the beginning
     maintenance::DiskSources disks = {};  ///< where the page of sessions looks for USB disks
     std::string code_file = {};           ///< where a new code is stored; "" for the usual place

@@ -3,12 +3,12 @@
 #include <QDate>
 #include <QLocale>
 
-#include "station/texts/texts.hpp"
+#include "station/core/texts.hpp"
 
 namespace turnpoint::ui {
 
 QString Catalogue::text(const QString& key, const QString& language) {
-  return QString::fromStdString(texts::text(key.toStdString(), language.toStdString()));
+  return QString::fromStdString(core::text(key.toStdString(), language.toStdString()));
 }
 
 bool Catalogue::mirrored(const QString& language) {

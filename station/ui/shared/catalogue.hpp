@@ -5,7 +5,7 @@
 
 namespace turnpoint::ui {
 
-/// Gives pages the station's own texts, from texts::text(), and says how texts of a language are shown.
+/// Gives pages the station's own texts, from core::text(), and says how texts of a language are shown.
 class Catalogue : public QObject {
   Q_OBJECT
   QML_ELEMENT

@@ -3,14 +3,14 @@
 #include <QSettings>
 #include <algorithm>
 
-#include "station/texts/texts.hpp"
+#include "station/core/texts.hpp"
 
 namespace turnpoint::ui {
 
 OperatorScreen::OperatorScreen(QObject* parent) : QObject(parent) {}
 
 void OperatorScreen::set_language(const QString& language) {
-  const auto spoken = texts::languages();
+  const auto spoken = core::languages();
   if (std::find(spoken.begin(), spoken.end(), language.toStdString()) == spoken.end()) return;
   language_ = language;
   keep();

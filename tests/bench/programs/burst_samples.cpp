@@ -8,9 +8,9 @@
 #include <numbers>
 #include <vector>
 
-#include "station/drive/synth.hpp"
+#include "station/audio/synth.hpp"
 
-using namespace turnpoint::drive;
+using namespace turnpoint::audio;
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <exception>
 
-#include "station/iio/converter.hpp"
+#include "station/io/converter.hpp"
 #include "station/sensing/own_clock.hpp"
 #include "station/system/clocks.hpp"
 
@@ -14,17 +14,17 @@ using namespace turnpoint;
 
 int main(int argc, char** argv) {
   if (argc != 7) return std::fprintf(stderr, "cell_samples DEVICE RATE_HZ SECONDS A B LATERAL\n"), 2;
-  iio::Config config;
+  io::Config config;
   config.device = argv[1];
   config.rate_Hz = std::atof(argv[2]);
   config.channels = {argv[4], argv[5], argv[6]};
-  drive::ClockFit playback;  // frame 0 at time 0
+  audio::ClockFit playback;  // frame 0 at time 0
   playback.ns_per_frame = 1e9 / 192'000;
   playback.pairs = 1024;
   sensing::OwnClock clock({.rate_Hz = config.rate_Hz});
   int status = 0;
   try {
-    const auto converter = iio::open(config);
+    const auto converter = io::open(config);
     std::puts("ready");
     const auto end_ns = system::monotonic_ns() + static_cast<long long>(1e9 * std::atof(argv[3]));
     while (system::monotonic_ns() < end_ns) {

@@ -6,10 +6,10 @@
 #include <cstdlib>
 #include <exception>
 
-#include "station/drive/engine.hpp"
+#include "station/audio/engine.hpp"
 #include "station/system/clocks.hpp"
 
-using namespace turnpoint::drive;
+using namespace turnpoint::audio;
 using namespace turnpoint::system;
 
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <exception>
 
-#include "station/lines/buttons.hpp"
+#include "station/io/buttons.hpp"
 #include "station/system/clocks.hpp"
 
 using namespace turnpoint;
@@ -12,22 +12,22 @@ using namespace turnpoint;
 namespace {
 
 void run(const std::string& buttons, const std::string& contact, double seconds) {
-  lines::ButtonsHandlers handlers;
-  handlers.press = [](const lines::Press& press) {
+  io::ButtonsHandlers handlers;
+  handlers.press = [](const io::Press& press) {
     std::printf("press %d %lld\n", press.button, static_cast<long long>(press.time_ns));
     std::fflush(stdout);
   };
-  handlers.contact = [](const touch::Contact& touch) {
+  handlers.contact = [](const io::Contact& touch) {
     std::printf("contact %d %lld %.3f\n", touch.on ? 1 : 0, static_cast<long long>(touch.time_ns),
                 touch.position.value_or(-1));
     std::fflush(stdout);
   };
-  handlers.glitch = [](const lines::Glitch& glitch) {
+  handlers.glitch = [](const io::Glitch& glitch) {
     std::printf("glitch %s %lld %d %lld\n", glitch.line.c_str(), static_cast<long long>(glitch.time_ns),
                 glitch.edges, static_cast<long long>(glitch.length_ns));
     std::fflush(stdout);
   };
-  handlers.fault = [](const lines::ButtonsFault& fault) {
+  handlers.fault = [](const io::ButtonsFault& fault) {
     std::printf("fault %s\n", fault.what.c_str());
     std::fflush(stdout);
   };
@@ -35,11 +35,10 @@ void run(const std::string& buttons, const std::string& contact, double seconds)
     std::printf("back %lld\n", static_cast<long long>(time_ns));
     std::fflush(stdout);
   };
-  using Buttons = std::optional<lines::ButtonsConfig>;
-  using Contact = std::optional<lines::ContactConfig>;
-  const auto opened =
-      lines::open_buttons(buttons.empty() ? Buttons{} : lines::ButtonsConfig{buttons},
-                          contact.empty() ? Contact{} : lines::ContactConfig{contact}, handlers);
+  using Buttons = std::optional<io::ButtonsConfig>;
+  using Contact = std::optional<io::ContactConfig>;
+  const auto opened = io::open_buttons(buttons.empty() ? Buttons{} : io::ButtonsConfig{buttons},
+                                       contact.empty() ? Contact{} : io::ContactConfig{contact}, handlers);
   std::printf("ready\n");
   std::fflush(stdout);
   system::sleep_until_ns(system::monotonic_ns() + static_cast<std::int64_t>(seconds * 1e9));

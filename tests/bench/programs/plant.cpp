@@ -38,9 +38,9 @@
 #include <utility>
 #include <vector>
 
-#include "station/plant/plant.hpp"
 #include "station/rig/rig.hpp"
 #include "station/session/simulated_room.hpp"
+#include "station/simulation/plant.hpp"
 
 using namespace turnpoint;
 
@@ -83,11 +83,11 @@ Arguments read(int argc, char** argv) {
   return arguments;
 }
 
-std::int64_t frame_at(const plant::Setup& setup, const std::string& seconds) {
+std::int64_t frame_at(const simulation::Setup& setup, const std::string& seconds) {
   return std::llround(std::stod(seconds) * setup.rate_Hz);
 }
 
-plant::Setup setup_from(const Arguments& arguments) {
+simulation::Setup setup_from(const Arguments& arguments) {
   const auto rig = rig::load(arguments.text("rig"));
   auto setup = session::laboratory_of(rig);
   setup.playback_channels = std::max(setup.playback_channels, rig.output.device_channels);
@@ -95,16 +95,16 @@ plant::Setup setup_from(const Arguments& arguments) {
   setup.wires.crosstalk_V_per_full_scale = 1e-3 * arguments.number("crosstalk_mV");
   if (arguments.text("noise") == "off") setup.finger.normal_noise = setup.finger.friction_noise = 0;
   if (!arguments.text("touch").empty())
-    setup.finger.touches = {{frame_at(setup, arguments.text("touch")), plant::kNever}};
+    setup.finger.touches = {{frame_at(setup, arguments.text("touch")), simulation::kNever}};
   return setup;
 }
 
-plant::FaultKind fault_named(const std::string& name) {
-  if (const auto kind = plant::find_fault(name)) return *kind;
+simulation::FaultKind fault_named(const std::string& name) {
+  if (const auto kind = simulation::find_fault(name)) return *kind;
   throw std::invalid_argument("not a fault: " + name);
 }
 
-void add_faults(plant::Plant& plant, const Arguments& arguments) {
+void add_faults(simulation::Plant& plant, const Arguments& arguments) {
   for (const auto& text : arguments.faults) {
     const auto at = text.find('@');
     if (at == std::string::npos) throw std::invalid_argument("not a fault: " + text);
@@ -122,14 +122,14 @@ std::vector<double> tones_from(const Arguments& arguments) {
 /// A weight that is put down or taken away within 0.1 s, without a jerk that would make the cells ring.
 class Weight {
  public:
-  void put(const plant::Load& load) {
+  void put(const simulation::Load& load) {
     before_ = now();
     after_ = load;
     step_ = 0;
   }
   bool moves() const { return step_ < kSteps; }
   /// Moves the weight on by a millisecond.
-  plant::Load next() {
+  simulation::Load next() {
     ++step_;
     return now();
   }
@@ -137,8 +137,8 @@ class Weight {
  private:
   static constexpr int kSteps = 100;
 
-  plant::Load now() const {
-    const double share = plant::minimum_jerk(static_cast<double>(step_) / kSteps);
+  simulation::Load now() const {
+    const double share = simulation::minimum_jerk(static_cast<double>(step_) / kSteps);
     const auto between = [&](double from, double to) { return from + share * (to - from); };
     // What is not there has no place: a weight that comes or goes stays where it is.
     const double from_m = before_.normal_N > 0 ? before_.x_m : after_.x_m;
@@ -147,18 +147,18 @@ class Weight {
             between(from_m, to_m)};
   }
 
-  plant::Load before_, after_;
+  simulation::Load before_, after_;
   int step_ = kSteps;
 };
 
-void obey(plant::Plant& plant, Weight& weight, const std::string& line) {
+void obey(simulation::Plant& plant, Weight& weight, const std::string& line) {
   const auto space = line.find(' ');
   const std::string word = line.substr(0, space),
                     rest = space == std::string::npos ? "" : line.substr(space + 1);
   if (word == "fault") {
     const auto amount = rest.find_first_of("0123456789");
-    plant::Fault fault{fault_named(amount == std::string::npos ? rest : rest.substr(0, amount - 1)),
-                       plant.frames() + 1};
+    simulation::Fault fault{fault_named(amount == std::string::npos ? rest : rest.substr(0, amount - 1)),
+                            plant.frames() + 1};
     if (amount != std::string::npos) fault.amount = std::stod(rest.substr(amount));
     plant.add(fault);
   } else if (word == "repair")
@@ -170,7 +170,7 @@ void obey(plant::Plant& plant, Weight& weight, const std::string& line) {
   else if (word == "steady")
     plant.steady_finger();
   else if (word == "load") {
-    plant::Load load;
+    simulation::Load load;
     std::istringstream(rest) >> load.normal_N >> load.lateral_N >> load.x_m;
     load.x_m *= 1e-3;
     weight.put(load);
@@ -234,7 +234,7 @@ std::int32_t sample_of(double full_scale) {
   return static_cast<std::int32_t>(std::clamp(full_scale * 0x1p31, -0x1p31, 0x1p31 - 1));
 }
 
-void print(const plant::Truth& truth) {
+void print(const simulation::Truth& truth) {
   std::printf("%lld %.4f %.4f %.5f %.4f %.2f\n", static_cast<long long>(truth.frame), truth.normal_N,
               truth.lateral_N, truth.finger.contact_m, truth.amplitude_um, truth.temperature_C);
   std::fflush(stdout);
@@ -247,7 +247,7 @@ class TruthFile {
     if (!path.empty()) file_.open(path);
     if (!path.empty() && !file_) throw std::runtime_error(path + ": " + std::strerror(errno));
   }
-  void write(const plant::Truth& truth) {
+  void write(const simulation::Truth& truth) {
     if (file_.is_open())
       file_ << truth.frame << ' ' << truth.normal_N << ' ' << truth.lateral_N << ' '
             << 1e3 * truth.finger.contact_m << '\n';
@@ -258,7 +258,7 @@ class TruthFile {
 };
 
 /// Advances the plant, a millisecond at a time.
-void advance(plant::Plant& plant, Weight& weight, TruthFile& truth, std::span<const double> played,
+void advance(simulation::Plant& plant, Weight& weight, TruthFile& truth, std::span<const double> played,
              std::span<double> captured) {
   const auto inputs = static_cast<std::size_t>(plant.setup().playback_channels);
   const auto outputs = static_cast<std::size_t>(plant.setup().capture.count);
@@ -272,7 +272,7 @@ void advance(plant::Plant& plant, Weight& weight, TruthFile& truth, std::span<co
 }
 
 void run(const Arguments& arguments) {
-  plant::Plant plant(setup_from(arguments));
+  simulation::Plant plant(setup_from(arguments));
   plant.set_tones(tones_from(arguments));
   add_faults(plant, arguments);
   Commands commands(arguments.text("commands"));

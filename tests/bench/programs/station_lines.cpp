@@ -9,37 +9,37 @@
 #include <exception>
 #include <string>
 
-#include "station/lines/amplifier.hpp"
-#include "station/lines/buttons.hpp"
+#include "station/io/amplifier.hpp"
+#include "station/io/buttons.hpp"
 
 namespace {
 
-using turnpoint::drive::AmplifierState;
+using turnpoint::audio::AmplifierState;
 
 void say(const std::string& line) {
   std::puts(line.c_str());
   std::fflush(stdout);
 }
 
-bool begin(turnpoint::drive::Amplifier& amplifier) {
+bool begin(turnpoint::audio::Amplifier& amplifier) {
   amplifier.audio_alive();
   amplifier.session_alive();
   auto refusal = amplifier.clear();
   if (!refusal) refusal = amplifier.arm();
   if (!refusal) refusal = amplifier.enable();
-  if (refusal) say("refused " + turnpoint::terms::describe(*refusal));
+  if (refusal) say("refused " + turnpoint::core::describe(*refusal));
   return !refusal;
 }
 
 void run_amplifier(const std::string& uri) {
-  const auto amplifier = turnpoint::lines::open_amplifier(uri);
+  const auto amplifier = turnpoint::io::open_amplifier(uri);
   bool running = begin(*amplifier);
   for (say("ready");; ::usleep(10'000)) {
     amplifier->audio_alive();
     amplifier->session_alive();
     if (running && amplifier->state() == AmplifierState::faulted) {
       say(std::string("fault ") + name(amplifier->state()) + " " + std::to_string(amplifier->reaction_ns()) +
-          " " + turnpoint::terms::describe(amplifier->fault()));
+          " " + turnpoint::core::describe(amplifier->fault()));
       running = false;
     } else if (!running) {
       ::usleep(200'000);
@@ -51,13 +51,13 @@ void run_amplifier(const std::string& uri) {
 
 void run_buttons(const std::string& uri) {
   std::vector<std::string> names;
-  turnpoint::lines::ButtonsHandlers handlers;
+  turnpoint::io::ButtonsHandlers handlers;
   handlers.press = [&names](const auto& press) {
     say("press " + names.at(static_cast<std::size_t>(press.button)) + " " + std::to_string(press.time_ns));
   };
   handlers.fault = [](const auto& fault) { say("fault " + fault.what); };
   const auto buttons =
-      turnpoint::lines::open_buttons(turnpoint::lines::ButtonsConfig{uri}, std::nullopt, std::move(handlers));
+      turnpoint::io::open_buttons(turnpoint::io::ButtonsConfig{uri}, std::nullopt, std::move(handlers));
   names = buttons->names();
   say("ready");
   ::pause();

@@ -21,7 +21,7 @@
 #include <thread>
 #include <vector>
 
-#include "station/lines/amplifier.hpp"
+#include "station/io/amplifier.hpp"
 #include "station/system/clocks.hpp"
 
 namespace {
@@ -30,13 +30,13 @@ using turnpoint::system::monotonic_ns;
 
 constexpr int edges_us[] = {50, 100, 150, 200, 300, 500, 1000, 10'000, 1'000'000'000};
 
-void check(const turnpoint::drive::Amplifier::Refusal& refusal) {
-  if (refusal) throw std::runtime_error("refused: " + turnpoint::terms::describe(*refusal));
+void check(const turnpoint::audio::Amplifier::Refusal& refusal) {
+  if (refusal) throw std::runtime_error("refused: " + turnpoint::core::describe(*refusal));
 }
 
 /// Starts four threads that use all the processor time they can get, and a fifth that simulates the session
 /// with a lower priority.
-std::vector<std::jthread> crowd(turnpoint::drive::Amplifier& amplifier) {
+std::vector<std::jthread> crowd(turnpoint::audio::Amplifier& amplifier) {
   std::vector<std::jthread> threads;
   for (int k = 0; k < 4; ++k)
     threads.emplace_back([](const std::stop_token& stop) {
@@ -116,7 +116,7 @@ class Stop {
 
 int run(int count, const Stop& stop) {
   const auto amplifier =
-      turnpoint::lines::open_amplifier("gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB");
+      turnpoint::io::open_amplifier("gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB");
   const auto threads = crowd(*amplifier);
   std::mt19937 random(17);
   Times times;

@@ -1,0 +1,530 @@
+#include "station/protocol/protocol_keys.hpp"
+
+#include <limits>
+
+#include "station/core/trial.hpp"
+#include "station/procedure/procedure_keys.hpp"
+#include "station/procedure/spec.hpp"
+#include "station/protocol/protocol.hpp"
+#include "station/protocol/triggers.hpp"
+
+namespace turnpoint::protocol {
+
+// The short names of this file are nobody else's.
+namespace declarations {
+namespace {
+
+using core::Key;
+using core::Keys;
+using core::Range;
+using namespace core::key;
+using Ends = Range::Ends;
+using Words = std::vector<std::string>;
+
+const Range any_value{-1e6, 1e6};
+// A position below one millimetre was probably written in metres, so it is refused.
+const Range position_mm{1, 1e5, Ends::closed, "mm"};
+const Range displacement_um{0, 1000, Ends::open_low, "um"};
+const Range share{0, 1, Ends::open};
+const Range deadline_s{0, 3600, Ends::open_low, "s"};
+const Range seconds{0, 3600, Ends::closed, "s"};
+constexpr int most = static_cast<int>(most_choices);
+
+Key name(const char* key, const char* help) {
+  return string(key, help)
+      .matching("^[A-Za-z0-9_-]{1,64}$", "at most 64 letters, digits, _ and -")
+      .required();
+}
+
+/// A number of seconds, fixed or drawn evenly between two.
+Key time(const char* key, const char* help) {
+  return several(
+      key,
+      {number("", seconds, ""),
+       table("", {interval("uniform", seconds, "the shortest and the longest time").required()}, "")},
+      help);
+}
+
+Key one_or_more(const char* key, const char* help) {
+  return several(key, {string("", ""), strings("", "")}, help);
+}
+
+Key by_factor(const char* key, const char* help) {
+  return table(
+      key,
+      Keys{}.with_free_names(several("FACTOR", {number("", any_value, ""), string("", "")}, "its value")),
+      help);
+}
+
+Keys audience() {
+  return {integers("sessions", 1, 100, "planned sessions that have it").without_it("all"),
+          strings("groups", "groups of participants that have it").holding(0).without_it("all")};
+}
+
+Key choices(const char* help) {
+  return tables(
+      "choices",
+      {name("id", "what is stored with the data"), localised("label", "what the button says").required()},
+      help);
+}
+
+Keys rating() {
+  Keys keys{
+      integer("points", 2, most, "number of buttons").only_without("line"),
+      interval("line", any_value, "ends of a line without points").only_without("points"),
+      integer("decimals", 0, 3, "decimals of a value on the line").by_default("0").only_with("line"),
+      tables("labels",
+             {number("at", any_value, "the value").required(), localised("text", "what it means").required()},
+             "what values mean, from the lowest to the highest, both ends among them")
+          .required()
+          .holding(2)};
+  return keys.one_of({"points", "line"});
+}
+
+Keys typed() {
+  return {number("low", {0, 1e6}, "smallest number that may be typed")
+              .without_it("the smallest above 0 with these decimals"),
+          number("high", {0, 1e6, Ends::open_low}, "largest number that may be typed").by_default("1000"),
+          integer("decimals", 0, 3, "decimals that may be typed").by_default("0")};
+}
+
+Keys factor() {
+  Keys keys{
+      string("name", "a name that ends with the unit, such as \"offset_mm\"")
+          .matching(
+              "^[A-Za-z_][A-Za-z0-9_]*$",
+              "letters, digits and _, not beginning with a digit; end the name with the unit: \"offset_mm\"")
+          .required(),
+      interval("range", any_value, "lowest and highest value"),
+      several("levels", {numbers("", any_value, ""), strings("", "")},
+              "the values: all numbers, or all names"),
+      several("draw",
+              {word("", {"uniform", "without-repetition", "per-participant"}, ""),
+               table("",
+                     {table("normal",
+                            {number("mean", any_value, "mean").required(),
+                             number("sd", {0, 2e6, Ends::open_low}, "standard deviation").required()},
+                            "a normal distribution, cut off at the range")
+                          .required()},
+                     "")},
+              "how a value is drawn: with a range \"uniform\" or normal, with levels the two others")};
+  return keys.some_of({"range", "levels"});
+}
+
+Key edge() {
+  return several("edge",
+                 {word("", {"turning", "peak", "p70", "p50", "p25", "p10"}, ""),
+                  table("", {number("friction", share, "relative friction at the boundary").required()}, "")},
+                 "which place the boundary is")
+      .required()
+      .only_with("boundary_mm");
+}
+
+Key scene() {
+  Keys tone{
+      expression("boundary_mm", position_mm, "where it ends").only_without("frequency_Hz"), edge(),
+      expression("frequency_Hz", {0, 1e6, Ends::open_low, "Hz"}, "its frequency").only_without("boundary_mm"),
+      expression("displacement_um", displacement_um, "peak displacement at its last maximum").required(),
+      number("phase_deg", {-360, 360, Ends::closed, "degrees"}, "its phase").by_default("0")};
+  return table(
+      "NAME",
+      {string("base", "scene from which everything is taken that this one does not state"),
+       expression("boundary_mm", position_mm, "where the boundary is, from the wide end"), edge(),
+       expression("displacement_um", displacement_um, "peak displacement at the last maximum"),
+       expression("friction", share, "mean relative friction on the vibrating side"),
+       expression("displacement_under_finger_um", displacement_um, "peak displacement under a finger"),
+       expression("finger_mm", position_mm, "where this finger is, from the wide end"),
+       tables("tones", tone.one_of({"boundary_mm", "frequency_Hz"}), "explicit tones"),
+       table("zone",
+             {number("from_mm", {0, 1e5, Ends::closed, "mm"}, "where it begins")
+                  .without_it("that of the base; else required"),
+              expression("friction", share, "mean relative friction inside")
+                  .without_it("that of the base; else required"),
+              integer("tones", 1, 16, "number of tones").without_it("that of the base; else required")},
+             "a stretch of even friction that ends at the boundary"),
+       expression("friction_contrast_dB",
+                  {-std::numeric_limits<double>::infinity(), 0, Ends::open_high, "dB"},
+                  "by how much the friction is lower than that of the base"),
+       number("rove_dB", {0, 40, Ends::closed, "dB"}, "the level is drawn within this range in each trial")
+           .by_default("0"),
+       number("ramp_ms", {1, 2000, Ends::closed, "ms"}, "length of the ramps").by_default("50"),
+       table("tolerance",
+             {number("boundary_mm", {0, 1000, Ends::open_low, "mm"}, "of the boundary"),
+              number("level_dB", {0, 60, Ends::open_low, "dB"}, "of the level"),
+              number("friction", share, "of the friction")},
+             "the largest error that the physics model may have")},
+      "what the surface presents");
+}
+
+Keys task() {
+  const Words several_scenes{"3ifc", "4ifc", "same-different", "oddity", "abx", "match-to-sample"};
+  const Words intervals{"single-interval", "2ifc", "adjustment"};
+  Keys number_keys = typed();
+  number_keys.list.push_back(string("standard", "scene that begins each trial"));
+  number_keys.list.push_back(number("modulus", {0, 1e6}, "the number that stands for the standard")
+                                 .required()
+                                 .only_with("standard"));
+  const auto comparisons = [](const char* of, const char* help) {
+    return table("", Keys{}.with_free_names(string(of, help)), "");
+  };
+  Keys keys{
+      word("kind",
+           {"single-interval", "2ifc", "3ifc", "4ifc", "same-different", "oddity", "abx", "match-to-sample",
+            "adjustment"},
+           "what a trial is")
+          .required(),
+      list("intervals", {string("", ""), strings("", "").holding(1, 2)},
+           "the scene of each interval; two scenes for a change after a foreperiod")
+          .holding(1, 2)
+          .required()
+          .only_with("kind", intervals),
+      string("standard", "the scene that most intervals present")
+          .required()
+          .only_with("kind", several_scenes),
+      string("target", "the scene that differs").required().only_with("kind", several_scenes),
+      word("odd", {"either", "target", "standard"}, "which scene is presented once")
+          .by_default("\"either\"")
+          .only_with("kind", {"oddity"}),
+      number("duration_s", {0, 600, Ends::open_low, "s"}, "length of an interval")
+          .without_it("until the answer, in one interval; else required"),
+      number("gap_s", {0, 60, Ends::closed, "s"}, "pause between two intervals")
+          .without_it("required with several intervals"),
+      time("foreperiod_s", "time before the second scene of an interval")
+          .without_it("required with a second scene"),
+      number("transition_ms", {1, 5000, Ends::closed, "ms"}, "length of the change to the second scene")
+          .without_it("required with a second scene"),
+      word("device", {"touch", "buttons", "either"}, "how people answer").required(),
+      word("sound", {"none", "masking_noise"}, "what headphones play").by_default("\"none\""),
+      localised("question", "what is asked").required(),
+      choices("the answers").holding(1, most_choices),
+      several("correct", {string("", ""), comparisons("SCENE", "a comparison, such as \"change > 0\"")},
+              "the scene whose interval is right; or for each of the two scenes, when it is")
+          .required()
+          .only_with("kind", {"2ifc"}),
+      several("correct", {comparisons("CHOICE", "a comparison, such as \"offset_mm < 0\"")},
+              "for each choice, when it is the right answer")
+          .only_with("kind", {"single-interval"}),
+      string("present", "a comparison that says which trials have a signal").only_with("rating"),
+      string("adjusts", "the factor that the slider sets").required().only_with("kind", {"adjustment"}),
+      number("step", {0, 1e6, Ends::open_low}, "smallest step of the slider")
+          .required()
+          .only_with("kind", {"adjustment"}),
+      table("rating", rating(), "a rating instead of choices"),
+      table("number", number_keys, "a typed number instead of choices"),
+      table("confidence",
+            {localised("question", "what is asked after the answer").required(),
+             list("labels", {localised("", "")},
+                  "what the participant can say, from the least sure to the surest")
+                 .holding(2, most_choices)
+                 .required()},
+            "how sure the participant is"),
+  };
+  return keys.some_of({"choices", "rating", "number"});
+}
+
+Keys timing() {
+  Words zeros;
+  for (const auto zero : core::response_zeros) zeros.emplace_back(core::name(zero));
+  return {
+      word("response_zero", zeros, "from when response times count").required(),
+      number("explore_s", {0, 600, Ends::open_low, "s"}, "time to explore before the answer"),
+      expression("deadline_s", deadline_s, "latest answer after response_zero")
+          .without_it("none")
+          .only_without("response_signal"),
+      table(
+          "response_signal",
+          {expression("after_s", {0.02, 60, Ends::closed, "s"}, "when the signal comes, after response_zero")
+               .required(),
+           number("window_s", {0.05, 10, Ends::closed, "s"}, "answers count until this time after the signal")
+               .required(),
+           word("by", {"screen", "flash", "tone", "buzz"}, "what the signal is").by_default("\"screen\""),
+           string("scene", "scene that the surface presents as the signal")
+               .required()
+               .only_with("by", {"buzz"}),
+           number("length_ms", {20, 500, Ends::closed, "ms"}, "length of the buzz")
+               .required()
+               .only_with("by", {"buzz"})},
+          "a signal to answer at once"),
+      time("iti_s", "pause between trials").required(),
+      expression("anticipation_s", {0, 10, Ends::closed, "s"}, "answers before this time are too early")
+          .by_default("0")
+          .only_without("response_signal"),
+  };
+}
+
+Keys pass_of_trials() {
+  return {number("accuracy", {0, 1, Ends::open_low}, "proportion of right answers that passes").required(),
+          integer("retries", 0, 20, "how often the block may be repeated").required()};
+}
+
+/// The keys of a block of trials; with the condition of a [[block]] if it may have another kind.
+Keys trials(bool of_block) {
+  Keys keys{
+      strings("procedures", "procedures that choose the levels"),
+      string("level", "the factor of the fixed levels"),
+      numbers("levels", any_value, "fixed levels to present"),
+      integer("trials", 1, 100000, "number of trials").without_it("until the procedures end"),
+      word("feedback", {"none", "trial", "block"}, "when the participant learns what was right")
+          .by_default("\"none\""),
+      boolean("practice", "its trials are not analysed"),
+      table("pass", pass_of_trials(), "when practice is passed").only_with("practice", {"true"}),
+      word("interleave", {"none", "random", "alternate", "passes"}, "how several procedures alternate"),
+      table(
+          "catch",
+          Keys{number("rate", {0, 0.5, Ends::open_low}, "share of catch trials").required()}.with_free_names(
+              several("FACTOR", {number("", any_value, ""), numbers("", any_value, "")}, "its easy levels")),
+          "easy trials among the others"),
+      string("instruction", "name of a table of [instructions]"),
+  };
+  if (of_block)
+    for (auto& key : keys.list) {
+      if (key.conditions.empty()) key.only_with("kind", {"trials"});
+    }
+  return keys;
+}
+
+Key break_after() {
+  return table("break_after",
+               {integer("trials", 1, 100000, "trials before each break").required(),
+                number("min_s", seconds, "its shortest length").by_default("0")},
+               "breaks within the block");
+}
+
+Keys block() {
+  const Words strokes{"training", "friction-table"}, table_only{"friction-table"};
+  const Range place{0, 10000, Ends::closed, "mm"};
+  Keys keys{
+      name("name", "a name, which is stored with the data"),
+      word("kind", {"trials", "training", "friction-table"}, "what the block is").by_default("\"trials\"")};
+  keys.and_also(trials(true));
+  keys.and_also({
+      break_after(),
+      number("duration_s", {0.5, 20, Ends::closed, "s"}, "time of a stroke")
+          .required()
+          .only_with("kind", strokes),
+      integer("strokes", 1, 200, "number of strokes").by_default("10").only_with("kind", {"training"}),
+      table("pass",
+            {integer("strokes", 1, 200, "good strokes that pass").required(),
+             integer("retries", 0, 20, "how often the block may be repeated").required()},
+            "when the training is passed")
+          .only_with("kind", {"training"}),
+      string("scene", "the scene whose strength is changed").required().only_with("kind", table_only),
+      number("from_mm", place, "where strokes begin").required().only_with("kind", table_only),
+      number("to_mm", place, "where strokes end, at least 20 mm further")
+          .required()
+          .only_with("kind", table_only),
+      numbers("displacement_um", {0, 100, Ends::open_low, "um"}, "displacements, ascending")
+          .holding(3)
+          .required()
+          .only_with("kind", table_only),
+      integer("repeats", 3, 50, "strokes of each displacement in each direction")
+          .by_default("6")
+          .only_with("kind", table_only),
+      boolean("use", "whether the measured table replaces that of the rig in this session")
+          .only_with("kind", table_only),
+  });
+  return keys.and_also(audience());
+}
+
+Keys sequence() {
+  auto below = trials(false);
+  below.list.push_back(break_after());
+  Keys keys{
+      name("name", "a name, which is stored with the data"),
+      word("design", {"latin-square"}, "how the order differs between participants").required(),
+      string("over", "the factor that differs between the blocks").required(),
+      integer("cycles", 1, 100, "how often all blocks are presented").by_default("1"),
+      boolean("mirror", "the blocks follow again in reverse order"),
+      word("each_session", {"all", "one"}, "levels that each planned session presents").by_default("\"all\""),
+      table("block", below, "what each block presents").required(),
+  };
+  return keys.and_also(audience());
+}
+
+Keys procedure() {
+  Keys keys{
+      name("name", "a name, which is stored with the data"),
+      string("copy", "procedure above, from which everything is taken that this one does not state"),
+      word("kind", procedure::kind_names(), "how it chooses levels")
+          .without_it("that of the copied one; else required"),
+      string("level", "the factor that it sets").without_it("that of the copied one; else required"),
+  };
+  keys.and_also(procedure::procedure_keys());
+  return keys.and_also({
+      by_factor("with", "values that other factors have in its trials"),
+      string("for_each", "factor: one procedure is made for each of its levels"),
+      boolean("continues", "goes on from its state in the participant's earlier sessions"),
+  });
+}
+
+Keys questionnaire() {
+  Keys item{
+      name("id", "what is stored with the answer"),
+      localised("question", "what is asked").required(),
+      choices("the answers").holding(2, most_choices),
+      table("rating", rating(), "a rating"),
+      table("number", typed(), "a typed number"),
+      one_or_more("when",
+                  "comparisons with answers and scores above, all of which must hold for it to be asked"),
+      several("simulated", {string("", ""), number("", any_value, "")}, "the answer in simulated sessions")};
+  Keys keys{name("name", "a name, which is stored with the data"),
+            string("after_each", "block or sequence after each of whose blocks it comes"),
+            tables("item", item.one_of({"choices", "rating", "number"}), "its questions")
+                .required()
+                .holding(1, 200)};
+  return keys.and_also(audience());
+}
+
+Keys explanation() {
+  Keys example{localised("label", "what the button says").required(),
+               string("scene", "the scene to present").required(), by_factor("with", "values of factors"),
+               number("duration_s", {0.2, 10, Ends::closed, "s"}, "how long").by_default("2")};
+  Keys keys{name("name", "a name, which is stored with the data"),
+            string("after_each", "block or sequence after each of whose blocks it comes"),
+            tables("page",
+                   {localised("text", "what it says").required(),
+                    string("picture", "PNG or JPEG file, as seen from this file"),
+                    tables("examples", example, "scenes to feel").holding(0, 4)},
+                   "its pages")
+                .required()};
+  return keys.and_also(audience());
+}
+
+Keys consent() {
+  Keys keys{name("name", "a name, which is stored with the data"),
+            localised("text", "what people agree to").required(),
+            localised("agree", "what the button says that agrees").required(),
+            localised("refuse", "what the other button says").required(),
+            localised("farewell", "what is said to those who refuse").required()};
+  return keys.and_also(audience());
+}
+
+Keys screening() {
+  Keys keys{
+      name("name", "a name, which is stored with the data"),
+      one_or_more("pass", "comparisons that must all hold, such as \"practice.accuracy >= 0.8\"").required(),
+      localised("farewell", "what is said to those who do not pass").required()};
+  return keys.and_also(audience());
+}
+
+Key seed() {
+  auto whole = integer("", 0, 0, "");
+  whole.range.high = 9007199254740992;
+  return several("seed", {word("", {"per-session"}, ""), whole},
+                 "\"per-session\", or a whole number from 0 to 2^53")
+      .required();
+}
+
+const Keys& all() {
+  static const Keys keys{
+      word("format", {"friction-protocol/1"}, "the version of this format").required(),
+      table("protocol",
+            {name("id", "a short name; exported data are written to a folder with this name"),
+             string("version", "a text such as \"1.0.0\"; increase it with each change").required(),
+             string("title", "a title for the researcher").required(),
+             strings("languages", "the languages of all texts, such as [\"en\", \"ja\"]").required()},
+            "what the study is")
+          .required(),
+      table("random", {seed()}, "the seed of all draws"),
+      tables("factor", factor(), "what can differ between trials"),
+      table("scene", Keys{}.with_free_names(scene()).holding(1),
+            "what the surface presents: one table [scene.NAME] for each scene")
+          .required(),
+      table("task", task(), "what a trial is and how people answer").required(),
+      table("timing", timing(), "when things happen in a trial").required(),
+      tables("procedure", procedure(), "how levels are chosen"),
+      tables("block", block(), "blocks of trials"),
+      tables("sequence", sequence(), "counterbalanced blocks, one for each level of a factor"),
+      table(
+          "instructions",
+          Keys{}.with_free_names(table("NAME",
+                                       {localised("text", "what is said before a block").required(),
+                                        localised("late_message", "what is said after a missed deadline"),
+                                        expression("deadline_s", deadline_s, "latest answer in these blocks")
+                                            .without_it("that of [timing]"),
+                                        interval("target_accuracy", {0, 1}, "accuracy to aim at")},
+                                       "an instruction")),
+          "instructions of blocks"),
+      table("analysis",
+            {one_or_more("by", "factors for each of whose levels a curve is fitted"),
+             expression("difficulty", {-1e9, 1e9}, "how difficult a trial is"),
+             words("show",
+                   {"psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime", "response-signal", "trace"},
+                   "parts of the report")
+                 .without_it("all that apply"),
+             word("incomplete_sessions", {"leave_out", "count"}, "whether unfinished sessions count")
+                 .without_it("as [sessions] says"),
+             table("response_time_exclude",
+                   {number("below_s", {0, 10, Ends::closed, "s"}, "shorter response times").by_default("0"),
+                    number("mad", {0, 100, Ends::open_low, "median absolute deviations"},
+                           "response times further from the median")
+                        .without_it("none")},
+                   "response times that are left out")},
+            "what the report shows"),
+      table(
+          "exclusion",
+          Keys{integer("fewer_trials_than", 1, 100000, "fewer counted trials"),
+               number("accuracy_below", share, "a lower proportion of right answers"),
+               number("catch_accuracy_below", {0, 1, Ends::open_low}, "the same in catch trials"),
+               number("timeouts_above", {0, 1, Ends::open_high}, "a larger share of missed deadlines"),
+               number("anticipations_above", {0, 1, Ends::open_high},
+                      "a larger share of answers that are too early"),
+               number("median_time_below_s", {0, 600, Ends::open_low, "s"}, "a shorter median response time"),
+               number("median_time_above_s", {0, 600, Ends::open_low, "s"}, "a longer median response time"),
+               boolean("incomplete", "an unfinished session")}
+              .holding(1),
+          "participants that a report of a study leaves out"),
+      table(
+          "resume",
+          {word("incomplete", {"ask", "resume", "restart", "block"}, "what happens to an interrupted session")
+               .by_default("\"ask\""),
+           number("max_age_h", {0, 8760, Ends::open_low, "h"}, "how long it can be resumed").by_default("24"),
+           integer("warmup", 0, 100, "practice trials after resuming").by_default("0"),
+           word("restart_unit", {"block"}, "what is repeated").without_it("nothing")},
+          "interrupted sessions"),
+      table(
+          "sensing",
+          {interval("normal_N", {0.1, 5, Ends::closed, "N"}, "force of the finger"),
+           interval("speed_mm_s", {10, 1000, Ends::closed, "mm/s"}, "speed of the finger"),
+           number("fraction", {0, 1, Ends::open_low}, "share of a stroke that must be within these")
+               .by_default("0.8"),
+           integer("strokes", 1, 100, "strokes of a trial").by_default("2"),
+           word("outside", {"mark", "repeat"}, "what happens to trials with other movements")
+               .by_default("\"mark\""),
+           integer("repeats", 1, 10, "how often one trial is presented again")
+               .by_default("2")
+               .only_with("outside", {"repeat"}),
+           boolean("guidance", "tells the participant after a trial what to change"),
+           boolean("live_guidance", "shows force and speed during a stroke").only_with("guidance", {"true"})},
+          "how the finger should move"),
+      table("triggers",
+            {words("send", trigger_event_names(), "events that get a code")
+                 .by_default("[\"trial\", \"onset\", \"change\", \"response\"]")
+                 .holding(1),
+             tables("code",
+                    {word("event", trigger_event_names(), "the event").required(),
+                     string("condition", "only in this condition"),
+                     integer("code", 1, 255, "its code").required()},
+                    "codes that differ from the standard ones")
+                 .holding(0)},
+            "codes for an EEG amplifier or a recorder"),
+      tables("consent", consent(), "a page on which people agree"),
+      tables("questionnaire", questionnaire(), "questions"),
+      tables("explanation", explanation(), "pages that explain"),
+      tables("screening", screening(), "ends the session of those who do not fit"),
+      table("sessions",
+            {integer("count", 2, 100, "planned sessions of each participant").required(),
+             integer("min_days", 0, 366, "days between two of them, at least").by_default("0"),
+             word("incomplete", {"repeat", "count"}, "whether an unfinished one is repeated")
+                 .by_default("\"repeat\"")},
+            "several visits"),
+  };
+  return keys;
+}
+
+}  // namespace
+}  // namespace declarations
+
+const core::Keys& protocol_keys() { return declarations::all(); }
+
+}  // namespace turnpoint::protocol

@@ -1,0 +1,256 @@
+#include "station/rehearsal/power_session.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "station/analysis/trade.hpp"
+#include "station/core/number.hpp"
+#include "station/core/usage_error.hpp"
+#include "station/protocol/answers.hpp"
+#include "station/protocol/sources.hpp"
+#include "station/protocol/visits.hpp"
+#include "station/rehearsal/parallel.hpp"
+#include "station/rehearsal/rehearsal.hpp"
+#include "station/report/stored_estimates.hpp"
+#include "station/report/stored_trials.hpp"
+#include "station/report/summary.hpp"
+#include "station/trial/earlier_trials.hpp"
+
+namespace turnpoint::rehearsal {
+
+namespace {
+
+std::optional<analysis::Interval> interval_of(const std::optional<analysis::ParameterInterval>& found) {
+  return found ? std::optional(found->interval) : std::nullopt;
+}
+
+/// Adds the procedures' own threshold estimates; of the method of limits also those of each direction. Of a
+/// procedure with a second dimension or a criterion, which no fit has, adds the estimates of all parameters.
+void add_estimates(const Rehearsal& rehearsal, const protocol::Protocol& protocol, const std::string& session,
+                   std::vector<Finding>& findings) {
+  for (const auto& estimate : rehearsal.estimates) {
+    const auto* spec = protocol::find_procedure(protocol, estimate.procedure);
+    if (!spec || (!estimate.parameter.starts_with("threshold") && !has_parameters_of_its_own(*spec)))
+      continue;
+    std::optional<analysis::Interval> interval;
+    if (estimate.interval) interval = {estimate.interval->first, estimate.interval->second, 0.95};
+    findings.push_back({"procedure " + estimate.procedure + session, estimate.parameter,
+                        report::unit_of(estimate.parameter, *spec), estimate.mean, interval});
+  }
+}
+
+/// The seeds of one participant's sessions differ by multiples of this number. It is larger than any number
+/// of observers, so sessions of different participants never have the same seed.
+constexpr std::uint64_t kSeedStep = std::uint64_t{1} << 40U;
+
+/// The blocks of all sessions of one participant, numbered as if they were one session.
+std::vector<core::BlockRecord> joined(const std::vector<Rehearsal>& sessions) {
+  std::vector<core::BlockRecord> blocks;
+  int first_block = 0, first_trial = 0;
+  for (const auto& session : sessions) {
+    int last_block = first_block;
+    for (auto block : session.blocks) {
+      block.start.block_index += first_block;
+      last_block = std::max(last_block, block.start.block_index);
+      for (auto& row : block.trials) row.trial_index += first_trial;
+      blocks.push_back(std::move(block));
+    }
+    first_block = last_block + 1, first_trial += session.trials;
+  }
+  return blocks;
+}
+
+std::string slope_unit(const analysis::FitOptions& options, const std::string& level_unit) {
+  switch (options.function) {
+    case core::Function::normal:
+      return level_unit;
+    case core::Function::logistic:
+      return level_unit.empty() ? "" : "1/" + level_unit;
+    case core::Function::weibull:
+      break;
+  }
+  return "exponent";
+}
+
+void add_fits(const report::SessionData& data, const std::string& unit, SessionOutcome& outcome) {
+  for (const auto& judged : report::judgements_of(data))
+    if (judged.exponent)
+      outcome.findings.push_back({source_of("numbers", judged.condition), "exponent", "",
+                                  judged.exponent->value, judged.exponent->interval});
+  if (report::judges(data.design)) return;
+  if (data.design == report::Design::adjustment) {
+    for (const auto& settings : analysis::settings(data.trials, data.conditions))
+      if (settings.mean)
+        outcome.findings.push_back({source_of(source_of("settings", settings.procedure), settings.condition),
+                                    "PSE", unit, settings.mean->value, settings.mean->interval});
+    return;
+  }
+  if (data.design == report::Design::categories) {
+    for (const auto& confusion :
+         analysis::confusions(data.trials, data.conditions, static_cast<int>(data.choices.size())))
+      if (confusion.right)
+        outcome.findings.push_back({source_of("answers", confusion.condition), "proportion correct", "",
+                                    confusion.right->value, confusion.right->interval});
+    return;
+  }
+  for (const auto& named : report::fits_of(data)) {
+    outcome.fits.emplace_back(named.name, named.fit.options);
+    if (!named.fit.parameters) continue;
+    const auto& p = *named.fit.parameters;
+    const auto source = source_of("fit", named.name);
+    const auto& part = report::analysis_of(named, data);
+    const auto& own = part.level_unit;
+    const bool two_sided = part.design == report::Design::two_sided;
+    auto& findings = outcome.findings;
+    findings.push_back(
+        {source, two_sided ? "PSE" : "threshold", own, p.threshold, interval_of(named.intervals.threshold)});
+    const bool posterior = named.intervals.method == analysis::IntervalMethod::posterior;
+    if (!posterior || report::slope_estimated(named))
+      findings.push_back({source, spread_name(named.fit.options), slope_unit(named.fit.options, own), p.slope,
+                          interval_of(named.intervals.slope)});
+    const auto level_75 =
+        posterior ? named.intervals.level_75
+                  : analysis::level_at(named.fit.options.function, named.fit.options.scale, p, 0.75);
+    if (level_75)
+      findings.push_back({source, "75 % point", own, *level_75, interval_of(named.intervals.interval_75)});
+  }
+}
+
+/// Adds the estimates of d' for each condition: over all trials and, if the levels are fixed, at each level.
+void add_discriminations(const protocol::Protocol& protocol, const report::SessionData& data,
+                         std::vector<Finding>& findings) {
+  if (data.deciding.empty() || !report::shows(data, "dprime")) return;
+  const bool fixed = std::none_of(protocol.procedures.begin(), protocol.procedures.end(),
+                                  [](const auto& spec) { return procedure::follows_answers(spec); });
+  for (const auto& entry :
+       analysis::discriminate(data.trials, data.conditions, data.deciding, data.alternatives)) {
+    if (entry.level && !fixed) continue;
+    for (const auto& [model, estimate] : entry.d_primes)
+      findings.push_back({source_of("answers", entry.condition),
+                          d_prime_name(model, entry.level, data.level_unit), "SD", estimate.value,
+                          estimate.interval});
+  }
+}
+
+void add_differences(const analysis::Trade& trade, std::vector<Finding>& findings) {
+  for (const auto& difference : trade.differences)
+    if (difference.estimate)
+      findings.push_back({difference.second + " - " + difference.first, difference.measure, difference.unit,
+                          difference.estimate->value, difference.estimate->interval});
+}
+
+void require_possible(const protocol::Protocol& protocol, const PowerOptions& options) {
+  if (options.observers < 1 || options.interval_sessions < 0 || options.replicates < 40 ||
+      options.threads < 1)
+    throw std::invalid_argument(
+        "power: there must be at least 1 observer, 1 thread and 40 replicates, and the number of sessions "
+        "with intervals must not be negative");
+  if (options.part.number < 1 || options.part.number > options.part.of || options.part.of > options.observers)
+    throw std::invalid_argument("power: each part must have at least one session");
+  if (protocol::judges(protocol.task) && !(protocol.task.value && protocol.task.value->typed))
+    throw core::UsageError(protocol.path +
+                           ": ratings have no threshold, so there is nothing to estimate; simulate sessions "
+                           "with `turnpoint run --observer sim` and analyse their export");
+  // A study simulates thousands of sessions at once, and would have to start a program for each of their
+  // blocks.
+  std::vector<core::Problem> problems;
+  for (const auto& spec : protocol.procedures)
+    if (spec.kind == procedure::Kind::program)
+      problems.push_back(
+          {spec.program.place,
+           core::plain("procedure \"" + spec.name +
+                       "\" is a separate program, which a power study does not run"),
+           core::plain("use a procedure of another kind for the study, or simulate sessions with "
+                       "`turnpoint run --observer sim` and analyse their export")});
+  if (!problems.empty()) throw core::BadInput(problems);
+}
+
+}  // namespace
+
+std::string source_of(const std::string& what, const std::string& instruction) {
+  return instruction.empty() ? what : what + " " + instruction;
+}
+
+std::string session_suffix(const protocol::Protocol& protocol, int number) {
+  return protocol.sessions ? ", session " + std::to_string(number) : "";
+}
+
+std::string d_prime_name(analysis::Deciding model, const std::optional<double>& level,
+                         const std::string& unit) {
+  std::string name = std::string("d', ") + analysis::name(model);
+  return level ? name + ", at " + core::number(*level, 4) + (unit.empty() ? "" : " ") + unit : name;
+}
+
+const char* spread_name(const analysis::FitOptions& options) {
+  return options.function == core::Function::normal ? "spread" : "slope";
+}
+
+SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerOptions& options,
+                                int session) {
+  const simulation::Observer observer(options.observer);
+  SessionOutcome outcome;
+  const auto seed = options.seed + static_cast<std::uint64_t>(session);
+  auto sits = rehearser(observer);
+  sits.answer = [&](const trial::TrialSpec& trial, const simulation::Question& q) {
+    outcome.generating.add(protocol, trial, q, observer);
+    return observer.answer(q);
+  };
+  report::SessionData data;
+  data.seed = seed;
+  std::vector<Rehearsal> sessions;
+  procedure::EarlierTrials earlier;
+  for (int number = 1; number <= protocol::session_count(protocol); ++number) {
+    sessions.push_back(rehearse(protocol, {session, number},
+                                seed + static_cast<std::uint64_t>(number - 1) * kSeedStep, sits, earlier));
+    trial::add_earlier_trials(protocol, sessions.back().blocks, earlier);
+  }
+  report::add_trials(joined(sessions), protocol, data);
+  data.replicates = session < options.interval_sessions ? options.replicates : 0;
+  const auto& unit = data.level_unit;
+  for (std::size_t i = 0; i < sessions.size(); ++i) {
+    add_estimates(sessions[i], protocol, session_suffix(protocol, static_cast<int>(i) + 1), outcome.findings);
+    outcome.presented += sessions[i].trials;
+    outcome.duration_s += sessions[i].duration_s;
+  }
+  add_fits(data, unit, outcome);
+  add_discriminations(protocol, data, outcome.findings);
+  if (data.replicates > 0)
+    add_differences(analysis::trade(data.trials, report::trade_options(data)), outcome.findings);
+  outcome.design = data.design;
+  for (const auto& trial : data.trials)
+    if (trial.type == core::TrialType::experimental && trial.correct)
+      ++outcome.scored, outcome.right += *trial.correct ? 1 : 0;
+  return outcome;
+}
+
+std::vector<SessionOutcome> simulate_sessions(const protocol::Protocol& protocol,
+                                              const PowerOptions& options) {
+  require_possible(protocol, options);
+  const auto& [number, of] = options.part;
+  const int count = sessions_of(options.part, options.observers);
+  std::vector<SessionOutcome> outcomes(static_cast<std::size_t>(count));
+  const int done = in_parallel(
+      count, options.threads, options.progress,
+      [&, number = number, of = of](int i) {
+        outcomes[static_cast<std::size_t>(i)] = simulate_session(protocol, options, number - 1 + i * of);
+      },
+      options.stop);
+  outcomes.resize(static_cast<std::size_t>(done));
+  return outcomes;
+}
+
+void complete(const protocol::Protocol& protocol, const PowerOptions& options,
+              std::vector<SessionOutcome>& outcomes) {
+  auto quick = options;
+  quick.interval_sessions = 0;
+  GeneratingValues known;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    if (i > 0 && known.has_all_of(outcomes[i].generating)) continue;
+    const auto again = simulate_session(protocol, quick, static_cast<int>(i));
+    outcomes[i].generating.take_questions(again.generating);
+    if (i == 0) outcomes[i].fits = again.fits, outcomes[i].design = again.design;
+    known.add(again.generating);
+  }
+}
+
+}  // namespace turnpoint::rehearsal

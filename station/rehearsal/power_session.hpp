@@ -1,0 +1,65 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "station/analysis/psychometric_fit.hpp"
+#include "station/protocol/protocol.hpp"
+#include "station/rehearsal/power.hpp"
+#include "station/rehearsal/power_truth.hpp"
+#include "station/report/session_data.hpp"
+
+namespace turnpoint::rehearsal {
+
+/// One number that the analysis of one session estimated. Source, parameter and unit have the same meaning as
+/// in Recovery.
+struct Finding {
+  std::string source, parameter, unit;
+  double value = 0;
+  std::optional<analysis::Interval> interval;
+};
+
+/// What the analysis of one simulated session found.
+struct SessionOutcome {
+  std::vector<Finding> findings;
+  GeneratingValues generating;
+  /// condition and options of each psychometric fit
+  std::vector<std::pair<std::string, analysis::FitOptions>> fits;
+  report::Design design = report::Design::forced_choice;
+  int presented = 0, scored = 0, right = 0;
+  double duration_s = 0;
+};
+
+/// Simulates session number `session` (from 0) of a study and analyses it. Depends on nothing but its
+/// arguments.
+SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerOptions& options, int session);
+
+/// Simulates the sessions of options.part, in order: number - 1, number - 1 + of, number - 1 + 2 of, ... If a
+/// stop is requested, there are fewer sessions. Throws like power().
+std::vector<SessionOutcome> simulate_sessions(const protocol::Protocol& protocol,
+                                              const PowerOptions& options);
+
+/// Summarises sessions 0, 1, 2, ... of a study.
+Power power_of(const protocol::Protocol& protocol, const PowerOptions& options,
+               const std::vector<SessionOutcome>& outcomes);
+
+/// Completes sessions 0, 1, 2, ... that were read from files of `turnpoint power --part`. The files do not
+/// contain the questions of each condition and the options of the fits. To get these, the first session with
+/// each condition is simulated again, without intervals.
+void complete(const protocol::Protocol& protocol, const PowerOptions& options,
+              std::vector<SessionOutcome>& outcomes);
+
+/// Returns the text of Finding::source: `what`, followed by the condition if there is one.
+std::string source_of(const std::string& what, const std::string& condition);
+/// Returns the text that follows the name of a procedure in Finding::source: ", session 2" for the second of
+/// several planned sessions, otherwise "".
+std::string session_suffix(const protocol::Protocol& protocol, int number);
+/// Returns the name of the parameter d' that was estimated with this model, at this level (with its unit) or
+/// over all levels.
+std::string d_prime_name(analysis::Deciding model, const std::optional<double>& level,
+                         const std::string& unit);
+/// "spread" or "slope", whichever the fitted function has.
+const char* spread_name(const analysis::FitOptions& options);
+
+}  // namespace turnpoint::rehearsal

@@ -1,0 +1,250 @@
+#include "station/rehearsal/power_truth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "physics/root.hpp"
+#include "station/analysis/diffusion.hpp"
+#include "station/analysis/proportion.hpp"
+#include "station/procedure/description.hpp"
+#include "station/protocol/conditions.hpp"
+#include "station/trial/question.hpp"
+
+namespace turnpoint::rehearsal {
+
+namespace {
+
+/// Returns the probability of the answer that the procedure tracks, or of the right answer if it tracks none,
+/// as a function of the level. Empty if this probability depends on more than the level.
+std::function<double(double)> share_of_ones(const protocol::Protocol& protocol, const procedure::Spec& spec,
+                                            const simulation::Observer& observer) {
+  trial::TrialSpec trial;
+  trial.procedure = spec.name;
+  trial.level = 0;
+  const auto& timing = protocol.timing;
+  if (timing.signal || (timing.deadline_s && !timing.deadline_s->is_constant())) return {};
+  if (timing.deadline_s) trial.deadline_s = timing.deadline_s->constant;
+  auto question = trial::question_of(trial, protocol, 0);
+  int choice = 0;
+  if (question.decides == simulation::Decides::right_answer) {
+    if (!spec.tracks.empty()) return {};
+    question.correct = 0;
+  } else {
+    const auto& choices = protocol.task.choices;
+    const auto tracked = std::find_if(choices.begin(), choices.end(),
+                                      [&](const auto& entry) { return entry.id == spec.tracks; });
+    if (tracked == choices.end()) return {};
+    choice = static_cast<int>(tracked - choices.begin());
+  }
+  return [question, choice, &observer](double level) mutable {
+    question.level = level;
+    return observer.share(question, choice);
+  };
+}
+
+/// Returns the level between `low` and `high` at which a monotone function crosses `value`; empty if it does
+/// not cross.
+std::optional<double> crossing(const std::function<double(double)>& share, double low, double high,
+                               double value) {
+  const bool rises = share(high) > share(low);
+  const auto below = [&](double level) { return (share(level) < value) == rises; };
+  if (!below(low) || below(high)) return std::nullopt;
+  return physics::bisect({high, low}, [&](double level) { return !below(level); }).middle();
+}
+
+/// A range of levels that is wide enough, in any unit, to reach both asymptotes of the observer's
+/// psychometric function.
+struct Reach {
+  double low = 0, high = 0;
+};
+Reach reach_of(const simulation::Question& question) {
+  if (question.decibel) return {-400, 400};
+  return {question.decides == simulation::Decides::side ? -1e6 : 0, 1e6};
+}
+
+/// Returns 0 for a level below 1e-9 of the threshold, because bisection leaves rounding errors in the last
+/// digits.
+std::optional<double> without_rounding(const std::optional<double>& level, double threshold) {
+  return level && std::fabs(*level) < 1e-9 * std::fabs(threshold) ? 0 : level;
+}
+
+}  // namespace
+
+std::optional<double> settled_level(const protocol::Protocol& protocol, const procedure::Spec& spec,
+                                    const simulation::Observer& observer) {
+  const auto share = share_of_ones(protocol, spec, observer);
+  if (!share) return std::nullopt;
+  trial::TrialSpec trial;
+  trial.procedure = spec.name;
+  const auto question = trial::question_of(trial, protocol, 0);
+  const auto [low, high] = reach_of(question);
+  const double threshold = observer.parameters().threshold.value_or(question.default_threshold);
+  const auto crosses = [&, low = low, high = high](double value) {
+    return without_rounding(crossing(share, low, high, value), threshold);
+  };
+  const auto& kind = procedure::description(spec.kind);
+  // The method of limits looks for the level at which both answers are equally likely. It does not converge
+  // on that level, so its bias is a property of the design.
+  const auto target = kind.choice == procedure::Choice::series
+                          ? std::optional(0.5)
+                          : kind.settles_at(spec, share(low), share(high));
+  return target ? crosses(*target) : std::nullopt;
+}
+
+bool has_parameters_of_its_own(const procedure::Spec& spec) { return spec.second || spec.signal_detection; }
+
+std::map<std::string, double> true_parameters(const protocol::Protocol& protocol, const procedure::Spec& spec,
+                                              const simulation::Observer& observer) {
+  std::map<std::string, double> truth;
+  const auto& p = observer.parameters();
+  auto flat = p;
+  flat.gradient = 0, flat.floor.reset();
+  if (const auto level = settled_level(protocol, spec, simulation::Observer(flat)))
+    truth["threshold"] = *level;
+  if (!has_parameters_of_its_own(spec)) return truth;
+  if (spec.second) truth["gradient"] = p.gradient;
+  if (p.floor) {
+    flat.threshold = p.floor;
+    if (const auto level = settled_level(protocol, spec, simulation::Observer(flat))) truth["floor"] = *level;
+  }
+  trial::TrialSpec trial;
+  trial.procedure = spec.name;
+  const auto question = trial::question_of(trial, protocol, 0);
+  const auto& deadline = protocol.timing.deadline_s;
+  const bool own_function = deadline && deadline->is_constant() &&
+                            observer.bound(deadline->constant) == p.bound && p.drift_sd == 0 &&
+                            p.start_range == 0;
+  if (!own_function) return truth;
+  const bool weibull = question.decides == simulation::Decides::right_answer &&
+                       question.finding == simulation::Finding::weibull &&
+                       spec.function == procedure::Function::weibull;
+  const bool presence = spec.signal_detection && question.decides == simulation::Decides::presence;
+  if (weibull || presence) truth["slope"] = p.slope, truth["lapse"] = p.lapse * (1 - 1.0 / question.answers);
+  if (presence) truth["criterion"] = p.criterion;
+  return truth;
+}
+
+void GeneratingValues::add(const protocol::Protocol& protocol, const trial::TrialSpec& trial,
+                           const simulation::Question& question, const simulation::Observer& observer) {
+  if (trial.type != core::TrialType::experimental || !trial.level) return;
+  std::string instruction;
+  if (const auto found = trial.factors.find("instruction"); found != trial.factors.end())
+    if (const auto* text = std::get_if<std::string>(&found->second)) instruction = *text;
+  const auto& meaning = protocol.meanings.at(protocol::meaning_of(protocol, trial.procedure, ""));
+  const auto condition =
+      protocol::condition_in(meaning, protocol::condition_of(protocol, trial.factors, instruction));
+  auto [entry, is_new] = conditions_.try_emplace(condition);
+  auto& made = entry->second;
+  if (is_new) made.question = question;
+  made.one_deadline =
+      made.one_deadline && !question.signal_s && made.question.deadline_s == question.deadline_s;
+  if (!trial.correct) return;
+  ++made.trials;
+  made.correct += observer.share(question, *trial.correct);
+}
+
+void GeneratingValues::add(const GeneratingValues& other) {
+  for (const auto& [condition, more] : other.conditions_) {
+    auto [entry, is_new] = conditions_.try_emplace(condition, more);
+    if (is_new) continue;
+    auto& made = entry->second;
+    made.one_deadline =
+        made.one_deadline && more.one_deadline && made.question.deadline_s == more.question.deadline_s;
+    made.trials += more.trials, made.correct += more.correct;
+  }
+}
+
+std::map<std::string, GeneratingValues::Sum> GeneratingValues::sums() const {
+  std::map<std::string, Sum> sums;
+  for (const auto& [condition, made] : conditions_)
+    sums[condition] = {made.question.deadline_s, made.one_deadline, made.trials, made.correct};
+  return sums;
+}
+
+GeneratingValues GeneratingValues::of_sums(const std::map<std::string, Sum>& sums) {
+  GeneratingValues values;
+  for (const auto& [condition, sum] : sums) {
+    auto& made = values.conditions_[condition];
+    made.question.deadline_s = sum.deadline_s, made.one_deadline = sum.one_deadline;
+    made.trials = sum.trials, made.correct = sum.correct;
+  }
+  return values;
+}
+
+void GeneratingValues::take_questions(const GeneratingValues& other) {
+  for (auto& [condition, made] : conditions_)
+    if (const auto found = other.conditions_.find(condition); found != other.conditions_.end())
+      made.question = found->second.question;
+}
+
+bool GeneratingValues::has_all_of(const GeneratingValues& other) const {
+  return std::all_of(other.conditions_.begin(), other.conditions_.end(),
+                     [&](const auto& entry) { return conditions_.count(entry.first) > 0; });
+}
+
+const GeneratingValues::Condition* GeneratingValues::find(const std::string& condition) const {
+  const auto found = conditions_.find(condition);
+  if (found != conditions_.end()) return &found->second;
+  return condition.empty() && conditions_.size() == 1 ? &conditions_.begin()->second : nullptr;
+}
+
+std::optional<double> GeneratingValues::share_correct(const std::string& condition) const {
+  const auto* made = find(condition);
+  if (!made || made->trials == 0) return std::nullopt;
+  return made->correct / made->trials;
+}
+
+std::optional<double> GeneratingValues::share_correct_at(const std::string& condition, double level,
+                                                         const simulation::Observer& observer) const {
+  const auto* made = find(condition);
+  if (!made || !made->one_deadline || made->question.decides != simulation::Decides::right_answer)
+    return std::nullopt;
+  auto question = made->question;
+  question.level = level, question.correct = 0;
+  return observer.share(question, 0);
+}
+
+std::optional<double> GeneratingValues::boundary(const std::string& condition,
+                                                 const simulation::Observer& observer) const {
+  const auto* made = find(condition);
+  if (!made || !made->one_deadline) return std::nullopt;
+  return 2 * analysis::kDiffusionScale * observer.bound(made->question.deadline_s);
+}
+
+FitTruth GeneratingValues::fit(const std::string& condition, const analysis::FitOptions& options,
+                               const simulation::Observer& observer) const {
+  const auto* made = find(condition);
+  if (!made || !made->one_deadline) return {};
+  const auto& p = observer.parameters();
+  auto question = made->question;
+  question.absent = false, question.correct = 0;
+  const auto decides = question.decides;
+  const int choice = decides == simulation::Decides::right_answer ? 0 : question.positive;
+  const auto share = [&](double level) {
+    question.level = level;
+    return observer.share(question, choice);
+  };
+  const auto [low, high] = reach_of(question);
+  const double threshold = p.threshold.value_or(question.default_threshold);
+  const auto crosses = [&, low = low, high = high](double value) {
+    return without_rounding(crossing(share, low, high, value), threshold);
+  };
+  FitTruth truth;
+  const double way = analysis::sigmoid(options.function, 0);
+  truth.threshold = decides == simulation::Decides::side
+                        ? question.cut + p.bias
+                        : crosses(share(low) + way * (share(high) - share(low)));
+  truth.level_75 = crosses(0.75);
+  const bool own_function =
+      observer.bound(question.deadline_s) == p.bound && p.drift_sd == 0 && p.start_range == 0;
+  if (own_function && decides == simulation::Decides::right_answer &&
+      question.finding == simulation::Finding::weibull && options.function == core::Function::weibull)
+    truth.slope = p.slope;
+  if (own_function && decides == simulation::Decides::side && p.slope == 1 &&
+      options.function == core::Function::normal && options.scale == analysis::Scale::linear)
+    truth.slope = std::fabs(threshold) / analysis::normal_quantile(0.75);
+  return truth;
+}
+
+}  // namespace turnpoint::rehearsal

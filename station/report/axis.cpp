@@ -1,0 +1,109 @@
+#include "station/report/axis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "station/core/number.hpp"
+
+namespace turnpoint::report {
+
+namespace {
+
+/// Two numbers whose relative difference is below this are treated as equal. Such a difference is a rounding
+/// error, and dividing it into ticks would give an enormous number of them.
+constexpr double kRounding = 1e-9;
+
+bool differ(double low, double high) {
+  return high - low > kRounding * std::max(std::abs(low), std::abs(high));
+}
+
+void check(const Axis& axis) {
+  const bool positive = axis.scale == AxisScale::linear || axis.low > 0;
+  if (!differ(axis.low, axis.high) || !std::isfinite(axis.low) || !std::isfinite(axis.high) || !positive)
+    throw std::invalid_argument(
+        "axis \"" + axis.label + "\" from " + core::number(axis.low) + " to " + core::number(axis.high) +
+        ": the limits must be finite and in ascending order, and above 0 on a log axis");
+}
+
+/// Formats a tick's value with a typographic minus sign.
+std::string label(double value) {
+  auto result = core::number(std::abs(value) < 1e-12 ? 0 : value, 6);
+  if (result[0] == '-') result = "\u2212" + result.substr(1);
+  return result;
+}
+
+std::vector<Tick> linear_ticks(const Axis& axis, int wanted) {
+  const double rough = (axis.high - axis.low) / std::max(wanted, 2);
+  const double decade = std::pow(10.0, std::floor(std::log10(rough)));
+  const double round = rough / decade < 1.5   ? decade
+                       : rough / decade < 3.5 ? 2 * decade
+                       : rough / decade < 7.5 ? 5 * decade
+                                              : 10 * decade;
+  const double step = axis.counts ? std::max(1.0, round) : round;
+  std::vector<Tick> result;
+  const double slack = 1e-9 * (axis.high - axis.low);
+  for (double n = std::ceil((axis.low - slack) / step); n * step <= axis.high + slack; ++n)
+    result.push_back({n * step, label(n * step)});
+  return result;
+}
+
+/// Formats a power of ten with a raised exponent.
+std::string power_of_ten(int exponent) {
+  static const char* const raised[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
+                                       "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+  std::string result = exponent < 0 ? "10\u207b" : "10";
+  for (const char digit : std::to_string(std::abs(exponent))) result += raised[digit - '0'];
+  return result;
+}
+
+std::vector<Tick> log_ticks(const Axis& axis, int wanted) {
+  const int first = static_cast<int>(std::floor(std::log10(axis.low)));
+  const int last = static_cast<int>(std::ceil(std::log10(axis.high)));
+  const bool decades_only = 2 * (last - first) > wanted;
+  const bool powers = decades_only && (first < -4 || last > 4);
+  // Over many decades, each decade gets a tick, but only every second, third, ... tick gets a label.
+  const int labelled = (last - first) / std::max(1, 2 * wanted) + 1;
+  std::vector<Tick> result;
+  for (int decade = first; decade <= last; ++decade)
+    for (const double mantissa : {1.0, 2.0, 5.0}) {
+      if (decades_only && mantissa > 1) continue;
+      const double value = mantissa * std::pow(10.0, decade);
+      if (value < axis.low * (1 - 1e-9) || value > axis.high * (1 + 1e-9)) continue;
+      const bool quiet = decades_only && decade % labelled != 0;
+      result.push_back({value, quiet ? "" : powers ? power_of_ten(decade) : label(value)});
+    }
+  return result.size() >= 2 ? result : linear_ticks(axis, wanted);
+}
+
+}  // namespace
+
+std::vector<Tick> ticks(const Axis& axis, int wanted) {
+  check(axis);
+  return axis.scale == AxisScale::linear ? linear_ticks(axis, wanted) : log_ticks(axis, wanted);
+}
+
+double position(const Axis& axis, double value) {
+  if (axis.scale == AxisScale::linear) return (value - axis.low) / (axis.high - axis.low);
+  return std::log(value / axis.low) / std::log(axis.high / axis.low);
+}
+
+Axis fitted(std::string name, const std::vector<double>& values, double margin, AxisScale scale) {
+  const bool logarithmic = scale == AxisScale::log10;
+  double low = INFINITY, high = -INFINITY;
+  for (const double value : values) {
+    if (!std::isfinite(value) || (logarithmic && value <= 0)) continue;
+    const double on_axis = logarithmic ? std::log10(value) : value;
+    low = std::min(low, on_axis);
+    high = std::max(high, on_axis);
+  }
+  if (low > high) low = 0, high = 1;
+  double room = margin * (high - low);
+  if (!differ(low, high)) room = std::max(0.5 * std::abs(low), 0.5);
+  low -= room;
+  high += room;
+  if (logarithmic) return {std::move(name), std::pow(10.0, low), std::pow(10.0, high), scale};
+  return {std::move(name), low, high, scale};
+}
+
+}  // namespace turnpoint::report

@@ -1,0 +1,429 @@
+#include "station/report/chart.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "station/report/canvas.hpp"
+#include "station/report/palette.hpp"
+#include "station/report/rule_labels.hpp"
+#include "station/report/svg.hpp"
+
+namespace turnpoint::report {
+
+constexpr double kText_px = 12;
+inline const std::string kInk = "#222222";  ///< colour of text and axes
+
+/// Draws the style's marker, filled or open, with a nominal radius in px (see marker_radii_px).
+void marker(Canvas& canvas, Point at, double radius, const Style& style, bool open);
+
+/// One entry of the legend. Layers with the same name and series share one entry.
+struct LegendEntry {
+  std::string name;
+  int series = 0;
+  bool line = false, points = false, open_points = false, area = false;
+};
+
+/// Returns an entry for each layer of the chart that has a name.
+std::vector<LegendEntry> legend_of(const Chart& chart);
+
+/// Draws the legend between title and data, in rows that fit the width (px). Returns its height in px.
+/// Without a canvas it draws nothing.
+double draw_legend(Canvas* canvas, const std::vector<LegendEntry>& entries, double left, double top,
+                   double width);
+
+void marker(Canvas& canvas, Point at, double radius, const Style& style, bool open) {
+  const Paint paint{style.colour, open ? "#ffffff" : style.colour, 1.6, "", 1};
+  const auto [x, y] = at;
+  const double r = radius;
+  switch (style.marker) {
+    case Marker::circle:
+      canvas.circle(at, r, paint);
+      break;
+    case Marker::square:
+      canvas.rectangle({x - 0.89 * r, y - 0.89 * r}, 1.78 * r, 1.78 * r, paint);
+      break;
+    case Marker::triangle:
+      canvas.polygon({{x, y - 1.25 * r}, {x + 1.15 * r, y + 0.8 * r}, {x - 1.15 * r, y + 0.8 * r}}, paint);
+      break;
+    case Marker::diamond:
+      canvas.polygon({{x, y - 1.3 * r}, {x + 1.3 * r, y}, {x, y + 1.3 * r}, {x - 1.3 * r, y}}, paint);
+      break;
+    case Marker::down:
+      canvas.polygon({{x, y + 1.25 * r}, {x + 1.15 * r, y - 0.8 * r}, {x - 1.15 * r, y - 0.8 * r}}, paint);
+      break;
+    case Marker::cross:
+      canvas.line({x - r, y - r}, {x + r, y + r}, {style.colour, "", 2, "", 1});
+      canvas.line({x - r, y + r}, {x + r, y - r}, {style.colour, "", 2, "", 1});
+      break;
+  }
+}
+
+std::vector<LegendEntry> legend_of(const Chart& chart) {
+  std::vector<LegendEntry> entries;
+  const auto add = [&](const std::string& name, int series, bool LegendEntry::*what) {
+    if (name.empty()) return;
+    for (auto& entry : entries)
+      if (entry.name == name && entry.series == series) {
+        entry.*what = true;
+        return;
+      }
+    entries.push_back({name, series, false, false, false, false});
+    entries.back().*what = true;
+  };
+  for (const auto& layer : chart.layers) {
+    if (const auto* line = std::get_if<Line>(&layer)) add(line->name, line->series, &LegendEntry::line);
+    if (const auto* dots = std::get_if<Points>(&layer)) {
+      const bool open =
+          !dots->open.empty() && std::find(dots->open.begin(), dots->open.end(), false) == dots->open.end();
+      add(dots->name, dots->series, open ? &LegendEntry::open_points : &LegendEntry::points);
+    }
+    if (const auto* band = std::get_if<Band>(&layer)) add(band->name, band->series, &LegendEntry::area);
+    if (const auto* bars = std::get_if<Histogram>(&layer)) add(bars->name, bars->series, &LegendEntry::area);
+  }
+  return entries;
+}
+
+double draw_legend(Canvas* canvas, const std::vector<LegendEntry>& entries, double left, double top,
+                   double width) {
+  constexpr double sample = 24, gap = 18, row = 18;
+  double x = left, y = top;
+  for (const auto& entry : entries) {
+    const double need = sample + 6 + text_width(entry.name, kText_px);
+    if (x > left && x + need > left + width) x = left, y += row;
+    if (canvas) {
+      const auto look = style(entry.series);
+      if (entry.area)
+        canvas->rectangle({x, y + 3}, sample, 10, {"", look.colour, 0, "", entry.line ? 0.18 : 0.85});
+      if (entry.line) canvas->line({x, y + 8}, {x + sample, y + 8}, {look.colour, "", 2, look.dash, 1});
+      if (entry.points || entry.open_points) marker(*canvas, {x + sample / 2, y + 8}, 4, look, !entry.points);
+      canvas->text({x + sample + 6, y + 12}, entry.name, kText_px, Anchor::start, kInk);
+    }
+    x += need + gap;
+  }
+  return entries.empty() ? 0 : y - top + row + 6;
+}
+
+namespace {
+
+constexpr double kTitle = 13.5, kPad = 10, kTick = 5, kCaptionLine = 16;
+const std::string kSoft = "#545454", kGrid = "#e6e6e6";
+
+void check(bool good, const std::string& what) {
+  if (!good) throw std::invalid_argument("plot: " + what);
+}
+
+struct Draw {
+  Canvas& canvas;
+  const Frame& frame;
+
+  void operator()(const Band& band) const {
+    check(band.x.size() == band.low.size() && band.x.size() == band.high.size(),
+          "the lists of a band must have the same length");
+    std::vector<Point> outline;
+    for (std::size_t i = 0; i < band.x.size(); ++i) outline.push_back(frame.at(band.x[i], band.low[i]));
+    for (std::size_t i = band.x.size(); i-- > 0;) outline.push_back(frame.at(band.x[i], band.high[i]));
+    if (!outline.empty()) canvas.polygon(outline, {"", style(band.series).colour, 0, "", 0.18});
+  }
+
+  void operator()(const Histogram& bars) const {
+    check(bars.edges.size() == bars.heights.size() + 1, "a histogram must have one more edge than heights");
+    for (std::size_t i = 0; i < bars.heights.size(); ++i) {
+      if (bars.heights[i] == 0) continue;
+      const auto from = frame.at(bars.edges[i], bars.heights[i]), to = frame.at(bars.edges[i + 1], 0);
+      canvas.rectangle(from, to.first - from.first, to.second - from.second,
+                       {"#ffffff", style(bars.series).colour, 0.8, "", 0.85});
+    }
+  }
+
+  void operator()(const HeatMap& map) const {
+    const std::size_t columns = map.x_edges.size() - 1, rows = map.y_edges.size() - 1;
+    check(!map.x_edges.empty() && !map.y_edges.empty() && map.values.size() == columns * rows,
+          "a heat map needs one value for each column and row");
+    check(map.low < map.high, "a heat map needs a range of values");
+    for (std::size_t row = 0; row < rows; ++row)
+      for (std::size_t column = 0; column < columns; ++column) {
+        const double value = map.values[row * columns + column];
+        if (!std::isfinite(value)) continue;
+        const auto from = frame.at(map.x_edges[column], map.y_edges[row + 1]);
+        const auto to = frame.at(map.x_edges[column + 1], map.y_edges[row]);
+        const auto colour = shade((value - map.low) / (map.high - map.low));
+        canvas.rectangle(from, to.first - from.first, to.second - from.second, {colour, colour, 0.4, "", 1});
+      }
+  }
+
+  /// Draws only the rule's line. Its label is drawn after everything else, in a free place.
+  void operator()(const Rule& rule) const {
+    if (!is_shown(rule, frame)) return;
+    const bool flat = rule.direction == Rule::Direction::horizontal;
+    const auto from = flat ? frame.at(frame.across->low, rule.at) : frame.at(rule.at, frame.up->low);
+    const auto to = flat ? frame.at(frame.across->high, rule.at) : frame.at(rule.at, frame.up->high);
+    canvas.line(from, to, {kSoft, "", 1, "3 3", 1});
+  }
+
+  void operator()(const Line& curve) const {
+    check(curve.x.size() == curve.y.size(),
+          "line \"" + curve.name + "\": the lists of x and y must have the same length");
+    const auto look = style(curve.series);
+    std::vector<Point> run;
+    const auto flush = [&] {
+      if (run.size() > 1) canvas.polyline(run, {look.colour, "", 2, look.dash, 1});
+      run.clear();
+    };
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+      if (drawable(*frame.across, curve.x[i]) && drawable(*frame.up, curve.y[i]))
+        run.push_back(frame.at(curve.x[i], curve.y[i]));
+      else
+        flush();
+    }
+    flush();
+  }
+
+  void operator()(const Points& dots) const {
+    const std::size_t n = dots.x.size();
+    const auto fits = [n](std::size_t size) { return size == 0 || size == n; };
+    check(dots.y.size() == n && fits(dots.low.size()) && dots.low.size() == dots.high.size() &&
+              fits(dots.weight.size()) && fits(dots.open.size()),
+          "points \"" + dots.name + "\": the lists must have the same length");
+    const auto look = style(dots.series);
+    const auto radii = marker_radii_px(dots);
+    for (std::size_t i = 0; i < dots.low.size(); ++i)
+      if (drawable(*frame.up, dots.low[i]) && drawable(*frame.up, dots.high[i]))
+        canvas.line(frame.at(dots.x[i], dots.low[i]), frame.at(dots.x[i], dots.high[i]),
+                    {look.colour, "", 1.3, "", 1});
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!drawable(*frame.across, dots.x[i]) || !drawable(*frame.up, dots.y[i])) continue;
+      marker(canvas, frame.at(dots.x[i], dots.y[i]), radii[i], look, !dots.open.empty() && dots.open[i]);
+    }
+  }
+};
+
+const HeatMap* heat_map(const Chart& chart) {
+  for (const auto& layer : chart.layers)
+    if (const auto* map = std::get_if<HeatMap>(&layer)) return map;
+  return nullptr;
+}
+
+void draw_colour_bar(Canvas& canvas, const Frame& frame, double from, const HeatMap& map) {
+  const double left = from + 12, width = 12;
+  constexpr int steps = 32;
+  for (int i = 0; i < steps; ++i) {
+    const auto colour = shade((i + 0.5) / steps);
+    canvas.rectangle({left, frame.y + frame.height * (steps - 1 - i) / steps}, width,
+                     frame.height / steps + 0.5, {"", colour, 0, "", 1});
+  }
+  const Axis axis{map.name, map.low, map.high, AxisScale::linear};
+  for (const auto& tick : ticks(axis, 4))
+    canvas.text({left + width + 5, frame.y + (1 - position(axis, tick.value)) * frame.height + 4}, tick.label,
+                kText_px - 1, Anchor::start, kSoft);
+  canvas.text({left + width + 46, frame.y + frame.height / 2}, map.name, kText_px, Anchor::middle, kInk, 400,
+              90);
+}
+
+void draw_axes(Canvas& canvas, const Frame& frame, const std::vector<Tick>& across,
+               const std::vector<Tick>& up) {
+  const double bottom = frame.y + frame.height;
+  for (const auto& tick : up) {
+    const double y = frame.at(frame.across->low, tick.value).second;
+    canvas.line({frame.x, y}, {frame.x + frame.width, y}, {kGrid, "", 1, "", 1});
+    canvas.text({frame.x - kTick - 3, y + 4}, tick.label, kText_px, Anchor::end, kInk);
+  }
+  double free_from = -1e9;
+  for (const auto& tick : across) {
+    const double x = frame.at(tick.value, frame.up->low).first;
+    canvas.line({x, bottom}, {x, bottom + kTick}, {kInk, "", 1, "", 1});
+    const double half = text_width(tick.label, kText_px) / 2;
+    if (x - half < free_from) continue;  // skip labels that would touch the previous one
+    canvas.text({x, bottom + kTick + 13}, tick.label, kText_px, Anchor::middle, kInk);
+    free_from = x + half + 6;
+  }
+  canvas.line({frame.x, bottom}, {frame.x + frame.width, bottom}, {kInk, "", 1, "", 1});
+  canvas.text({frame.x + frame.width / 2, bottom + 37}, frame.across->label, kText_px, Anchor::middle, kInk);
+}
+
+/// Returns those ticks of the horizontal axis whose labels fit. On a log axis, some ticks have no label.
+std::vector<Tick> ticks_with_room(const Axis& axis, double width) {
+  for (int wanted = 7; wanted > 2 && axis.scale == AxisScale::linear; --wanted) {
+    const auto some = ticks(axis, wanted);
+    double free_from = -1e9;
+    const bool fit = std::all_of(some.begin(), some.end(), [&](const Tick& tick) {
+      const double x = position(axis, tick.value) * width, half = text_width(tick.label, kText_px) / 2;
+      const bool free = x - half >= free_from;
+      free_from = x + half + 6;
+      return free;
+    });
+    if (fit) return some;
+  }
+  return ticks(axis, axis.scale == AxisScale::linear ? 2 : 7);
+}
+
+struct Place {
+  double left = 0, top = 0, width = 0, height = 0;
+};
+
+/// How a chart's area is divided among title, legend and data.
+struct Division {
+  double left = 0, width = 0, legend_top = 0;  ///< left end and width of the data area; top of the legend
+  std::vector<Tick> up;
+  std::vector<LegendEntry> entries;
+  Labelled labelled;
+};
+
+Division divided(const Chart& chart, const Place& place, VerticalLabels where, int wanted_ticks) {
+  Division d;
+  d.up = ticks(chart.y, wanted_ticks);
+  double labels = 0;
+  for (const auto& tick : d.up) labels = std::max(labels, text_width(tick.label, kText_px));
+  d.left = place.left + kPad + 18 + labels + kTick + 3;
+  d.width = place.left + place.width - kPad - 6 - (heat_map(chart) ? 72 : 0) - d.left;
+  d.legend_top = place.top + kPad + (chart.title.empty() ? 4 : 26);
+  d.entries = legend_of(chart);
+  Frame frame{d.left, d.legend_top, d.width, 0, &chart.x, &chart.y};
+  frame.y += draw_legend(nullptr, d.entries, d.left, 0, d.width);
+  frame.height = place.top + place.height - kPad - 38 - frame.y;
+  d.labelled = place_labels(chart, frame, where);
+  return d;
+}
+
+/// Divides a chart's area among title, legend and data. The vertical axis gets as many ticks as fit with a
+/// distance of one and a half lines of text.
+Division divided(const Chart& chart, const Place& place, VerticalLabels where) {
+  for (int wanted = 5;; --wanted) {
+    auto d = divided(chart, place, where, wanted);
+    const double needed = 1.5 * kText_px * static_cast<double>(d.up.size() - 1);
+    if (wanted == 2 || needed <= d.labelled.frame.height) return d;
+  }
+}
+
+Division divided_with_room(const Chart& chart, const Place& place, VerticalLabels where) {
+  auto d = divided(chart, place, where);
+  check(d.labelled.frame.width > 40 && d.labelled.frame.height > 40,
+        "chart \"" + chart.title + "\" leaves no room for its data");
+  return d;
+}
+
+/// Draws a chart's title above its data. A long title begins further left, and shrinks if that is not enough.
+void draw_title(Canvas& canvas, const std::string& title, const Place& place, double left) {
+  const double right = place.left + place.width - kPad;
+  const double width = text_width(title, kTitle);
+  const double begin = std::max(place.left + kPad, std::min(left, right - width));
+  const double size = width > right - begin ? kTitle * (right - begin) / width : kTitle;
+  canvas.text({begin, place.top + kPad + 14}, title, size, Anchor::start, kInk, 600);
+}
+
+void draw_chart(Canvas& canvas, const Chart& chart, const Place& place, const Division& d) {
+  const auto& frame = d.labelled.frame;
+  draw_title(canvas, chart.title, place, d.left);
+  draw_legend(&canvas, d.entries, d.left, d.legend_top, d.width);
+  draw_axes(canvas, frame, ticks_with_room(chart.x, frame.width), d.up);
+  canvas.text({place.left + kPad + 10, frame.y + frame.height / 2}, chart.y.label, kText_px, Anchor::middle,
+              kInk, 400, 90);
+  const auto clip = drawn_in(frame);
+  canvas.begin_clip({clip.left, clip.top}, clip.right - clip.left, clip.bottom - clip.top);
+  for (const auto& layer : chart.layers) std::visit(Draw{canvas, frame}, layer);
+  canvas.end_clip();
+  for (const auto& label : d.labelled.labels)
+    canvas.text(label.at, label.text, kLabelText_px, label.anchor, kSoft);
+  if (const auto* map = heat_map(chart)) draw_colour_bar(canvas, frame, d.left + d.width, *map);
+}
+
+/// Charts side by side must have data areas of the same height: if one chart has a label above its data, all
+/// charts leave room for one.
+VerticalLabels labels_of(const std::vector<Chart>& charts, const std::vector<Place>& places) {
+  for (std::size_t i = 0; i < charts.size(); ++i)
+    for (const auto& label : divided(charts[i], places[i], VerticalLabels::beside).labelled.labels)
+      if (label.anchor == Anchor::middle) return VerticalLabels::above;
+  return VerticalLabels::beside;
+}
+
+/// Breaks the caption into lines that fit the width.
+std::vector<std::string> caption_lines(const std::string& caption, double width) {
+  std::vector<std::string> lines;
+  std::istringstream words(caption);
+  for (std::string word; words >> word;) {
+    if (lines.empty() || text_width(lines.back() + " " + word, kText_px) > width)
+      lines.push_back(word);
+    else
+      lines.back() += " " + word;
+  }
+  return lines;
+}
+
+}  // namespace
+
+void draw(Canvas& canvas, const Figure& figure) {
+  check(!figure.charts.empty(), "a figure needs a chart");
+  check(figure.columns > 0, "the number of columns must be at least 1");
+  const int count = static_cast<int>(figure.charts.size());
+  const int columns = std::min(figure.columns, count), rows = (count + columns - 1) / columns;
+  const double width = columns * figure.chart_width_px, charts = rows * figure.chart_height_px;
+  std::vector<Place> places;
+  for (int i = 0; i < count; ++i)
+    places.push_back({i % columns * figure.chart_width_px, i / columns * figure.chart_height_px,
+                      figure.chart_width_px, figure.chart_height_px});
+  const auto where = labels_of(figure.charts, places);
+  std::vector<Division> divisions;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    divisions.push_back(divided_with_room(figure.charts[i], places[i], where));
+  const auto caption = caption_lines(figure.caption, width - 4 * kPad);
+  const double height =
+      charts + (caption.empty() ? 0 : kPad + kCaptionLine * static_cast<double>(caption.size()));
+  canvas.begin(width, height, figure.title);
+  canvas.rectangle({0, 0}, width, height, {"", "#ffffff", 0, "", 1});
+  for (std::size_t i = 0; i < places.size(); ++i)
+    draw_chart(canvas, figure.charts[i], places[i], divisions[i]);
+  double y = charts + kText_px;
+  for (const auto& line : caption) {
+    canvas.text({2 * kPad, y}, line, kText_px, Anchor::start, kSoft);
+    y += kCaptionLine;
+  }
+}
+
+std::string render(const Figure& figure) {
+  Svg svg;
+  draw(svg, figure);
+  return svg.finish();
+}
+
+Figure laid_out(Figure figure, double width_px, double height_px) {
+  check(width_px > 0 && height_px > 0, "the size of a figure must be above 0");
+  constexpr double best = 1.5, least_width = 200, least_height = 165;
+  const auto count = static_cast<int>(figure.charts.size());
+  Figure chosen = figure;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int columns = 1; columns <= count; ++columns) {
+    const int rows = (count + columns - 1) / columns;
+    const double larger = std::max({1.0, least_width * columns / width_px, least_height * rows / height_px});
+    const double width = width_px * larger;
+    const auto caption = static_cast<double>(caption_lines(figure.caption, width - 4 * kPad).size());
+    figure.columns = columns;
+    figure.chart_width_px = width / columns;
+    figure.chart_height_px = std::max(
+        least_height, (height_px * larger - (caption > 0 ? kPad + kCaptionLine * caption : 0)) / rows);
+    // Prefer the layout whose charts are closest to the best proportions, and whose document grows least.
+    const double off =
+        std::abs(std::log(figure.chart_width_px / figure.chart_height_px / best)) + 2 * std::log(larger);
+    if (off < nearest) nearest = off, chosen = figure;
+  }
+  return chosen;
+}
+
+Histogram histogram(const std::vector<double>& values, double low, double high, int bins) {
+  check(low < high && bins > 0,
+        "a histogram needs at least one bin, and its low limit must be below the high one");
+  Histogram result;
+  for (int i = 0; i <= bins; ++i) result.edges.push_back(low + (high - low) * i / bins);
+  result.heights.assign(static_cast<std::size_t>(bins), 0);
+  for (const double value : values) {
+    if (!(value >= low && value <= high)) continue;
+    const auto bin = std::min(static_cast<int>((value - low) / (high - low) * bins), bins - 1);
+    result.heights[static_cast<std::size_t>(bin)] += 1;
+  }
+  return result;
+}
+
+}  // namespace turnpoint::report

@@ -1,0 +1,98 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "station/report/axis.hpp"
+#include "station/report/canvas.hpp"
+
+namespace turnpoint::report {
+
+/// Data series are numbered. Each number has its own colour (Okabe & Ito, safe for colour-blind readers),
+/// dash and marker, so that readers can match the legend without seeing colours. After 6 series the styles
+/// repeat; kNeutral is grey.
+constexpr int kNeutral = -1;
+
+/// A curve. A point that is not finite leaves a gap.
+struct Line {
+  std::vector<double> x, y;
+  int series = 0;
+  std::string name;  ///< name in the legend; "" leaves it out
+};
+
+/// Markers. If `low` and `high` are given (one value per point), each marker has a vertical error bar.
+/// `weight`, such as a number of trials, scales the area of each marker. If `open` is given, it says which
+/// markers are open, such as those of wrong answers.
+struct Points {
+  std::vector<double> x, y, low, high, weight;
+  std::vector<bool> open;
+  int series = 0;
+  std::string name;
+};
+
+/// The area between two curves.
+struct Band {
+  std::vector<double> x, low, high;
+  int series = 0;
+  std::string name;
+};
+
+/// Bars that start at 0. There is one more edge than there are heights.
+struct Histogram {
+  std::vector<double> edges, heights;
+  int series = 0;
+  std::string name;
+};
+
+/// A grid of coloured cells. `values` are listed row by row, starting at the lowest y. In each direction
+/// there is one more edge than there are cells. The colours run from light blue at `low` to dark blue at
+/// `high`. Cells whose value is not finite stay empty.
+struct HeatMap {
+  std::vector<double> x_edges, y_edges, values;
+  double low = 0, high = 1;
+  std::string name;  ///< label of the colour bar
+};
+
+/// A thin dashed line across the chart with a small label, for example at the chance level, a deadline or a
+/// threshold.
+struct Rule {
+  enum class Direction { horizontal, vertical } direction = Direction::horizontal;
+  double at = 0;
+  std::string label;
+};
+
+using Layer = std::variant<Band, Histogram, HeatMap, Rule, Line, Points>;
+
+struct Chart {
+  std::string title;
+  Axis x, y;
+  std::vector<Layer> layers;  ///< drawn one over another, the first at the bottom
+};
+
+/// A figure of one or more charts, arranged in rows of `columns` charts.
+struct Figure {
+  std::string title;  ///< title of the document; screen readers read it aloud
+  std::vector<Chart> charts;
+  int columns = 1;
+  double chart_width_px = 420, chart_height_px = 300;
+  std::string caption;  ///< text below the charts, broken into lines; "" for none
+};
+
+/// Draws the figure. Throws std::invalid_argument for lists of different lengths, axes without a range, or a
+/// figure without charts. If a chart leaves no room for its data, it throws before anything is drawn.
+void draw(Canvas& canvas, const Figure& figure);
+
+/// Returns the figure as an SVG document. The same figure always gives the same bytes.
+std::string render(const Figure& figure);
+
+/// Returns the figure laid out for a document of this size. The number of columns is chosen so that the
+/// charts have the best proportions. Text is never made smaller: if there is not enough room, the document
+/// becomes larger and keeps its proportions.
+Figure laid_out(Figure figure, double width_px, double height_px);
+
+/// Counts `values` in at most `bins` bins of equal width. The bins reach from `low` to `high`, rounded
+/// outwards.
+Histogram histogram(const std::vector<double>& values, double low, double high, int bins);
+
+}  // namespace turnpoint::report

@@ -1,8 +1,0 @@
-#pragma once
-
-namespace turnpoint::terms {
-
-/// The shape of a psychometric function between its lower and upper asymptotes.
-enum class Function { weibull, normal, logistic };
-
-}  // namespace turnpoint::terms

@@ -1,0 +1,254 @@
+#include "station/view/document.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+namespace turnpoint::view {
+
+namespace {
+
+[[noreturn]] void no_such(const Path& path) {
+  std::string all;
+  for (const auto& name : path) all += (all.empty() ? "" : ".") + name;
+  throw std::logic_error("the text has no key " + all);
+}
+
+/// Collects this part and the parts below it, as far as they are tables with headers, in the order of the
+/// file.
+void collect_tables(const Part& part, std::vector<const Part*>& tables) {
+  if (part.kind == Part::Kind::table) tables.push_back(&part);
+  for (const auto& below : part.parts)
+    if (below.kind != Part::Kind::scalar) collect_tables(below, tables);
+}
+
+std::vector<const Part*> tables_of(const Part& part) {
+  std::vector<const Part*> tables;
+  collect_tables(part, tables);
+  std::sort(tables.begin(), tables.end(),
+            [](const Part* a, const Part* b) { return a->value.begin < b->value.begin; });
+  return tables;
+}
+
+/// Collects the lines of all keys below a table that consists of dotted keys.
+void collect_entries(const Part& part, std::vector<Span>& lines) {
+  if (part.kind != Part::Kind::dotted) return lines.push_back({part.key.begin, part.value.end});
+  for (const auto& below : part.parts) collect_entries(below, lines);
+}
+
+/// Finds the innermost part below this one whose text contains the offset `at`, and appends the names on the
+/// way to it to `way`. Returns false if there is none.
+bool way_to(const Part& part, std::size_t at, Path& way) {
+  const Part* own = nullptr;
+  for (const auto& below : part.parts) {
+    way.push_back(below.name);
+    if (way_to(below, at, way)) return true;
+    way.pop_back();
+    const bool spans = below.kind != Part::Kind::table_array && below.kind != Part::Kind::dotted;
+    if (spans && below.key.begin <= at && at < below.value.end) own = &below;
+  }
+  if (own != nullptr) way.push_back(own->name);
+  return own != nullptr;
+}
+
+}  // namespace
+
+std::string toml_string(const std::string& text) {
+  std::string all = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      all += std::string("\\") + c;
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
+      char code[8];
+      std::snprintf(code, sizeof code, "\\u%04X", static_cast<unsigned>(c));
+      all += c == '\n' ? "\\n" : c == '\t' ? "\\t" : code;
+    } else {
+      all += c;
+    }
+  }
+  return all + "\"";
+}
+
+std::string key_of(const std::string& name) {
+  const bool bare = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
+  return bare ? name : toml_string(name);
+}
+
+Document::Document(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {
+  root_ = core::parts_of(text_, file_);
+  const auto first = text_.find('\n');
+  if (first != std::string::npos && first > 0 && text_[first - 1] == '\r') line_break_ = "\r\n";
+}
+
+const Part* Document::find(const Path& path) const {
+  const auto* part = &root_;
+  for (const auto& name : path)
+    if (part = part->find(name); part == nullptr) return nullptr;
+  return part;
+}
+
+std::string Document::written(const Path& path) const {
+  const auto* part = find(path);
+  return part == nullptr ? "" : text_.substr(part->value.begin, part->value.end - part->value.begin);
+}
+
+Path Document::at(int line, int column) const {
+  std::size_t at = text_.starts_with("\xEF\xBB\xBF") ? 3 : 0;
+  for (int i = 1; i < line && at < text_.size(); ++i)
+    at = std::min(text_.find('\n', at), text_.size() - 1) + 1;
+  if (column <= 0) at = std::min(text_.find_first_not_of(" \t", at), text_.size());
+  for (int i = 1; i < column && at < text_.size(); ++i) do
+      ++at;
+    while (at < text_.size() && (static_cast<unsigned char>(text_[at]) & 0xC0) == 0x80);
+  Path path;
+  way_to(root_, at, path);
+  return path;
+}
+
+std::string Document::checked(std::string text) const {
+  core::parse_toml(text, file_);
+  return text;
+}
+
+std::string Document::with(const Path& path, const std::string& value) const {
+  // The text must be exactly one value. A line break in it could begin another key.
+  if (path.empty() || core::parse_toml("v = " + value, file_).entries.size() != 1) no_such(path);
+  const auto* part = find(path);
+  if (part == nullptr) return checked(inserted(path, value));
+  if (part->kind == Part::Kind::table || part->kind == Part::Kind::dotted ||
+      part->kind == Part::Kind::table_array)
+    throw std::logic_error("a table with a header cannot become a value");
+  auto text = text_;
+  return checked(text.replace(part->value.begin, part->value.end - part->value.begin, value));
+}
+
+std::string Document::new_line_at(std::size_t at, const std::string& line) const {
+  auto text = text_;
+  const bool at_start = at == 0 || (at == 3 && text.starts_with("\xEF\xBB\xBF"));
+  return text.insert(at, at_start ? line + line_break_ : line_break_ + line);
+}
+
+std::string Document::inside_braces(const Part& table, const std::string& entry) const {
+  auto text = text_;
+  if (table.parts.empty())
+    return text.replace(table.value.begin, table.value.end - table.value.begin, "{ " + entry + " }");
+  std::size_t end = 0;
+  for (const auto& part : table.parts) end = std::max(end, part.value.end);
+  return text.insert(end, ", " + entry);
+}
+
+std::string Document::inserted(const Path& path, const std::string& value) const {
+  std::size_t known = 0;
+  const auto* table = &root_;
+  const Part* header = &root_;  // the innermost table with a header on the way to the key
+  std::size_t below_header = 0;
+  const Part* braces = nullptr;  // the innermost inline table on the way to the key
+  std::size_t below_braces = 0;
+  while (known < path.size()) {
+    const auto* next = table->find(path[known]);
+    if (next == nullptr) break;
+    table = next;
+    ++known;
+    if (table->kind == Part::Kind::table) header = table, below_header = known, braces = nullptr;
+    if (table->kind == Part::Kind::inline_table) braces = table, below_braces = known;
+    if (table->kind == Part::Kind::array) braces = nullptr;
+  }
+  const auto names = [&path](std::size_t from) {
+    std::string all;
+    for (auto i = from; i < path.size(); ++i) all += (i == from ? "" : ".") + key_of(path[i]);
+    return all;
+  };
+  if (braces != nullptr && table->is_table())
+    return inside_braces(*braces, names(below_braces) + " = " + value);
+  if (table->kind == Part::Kind::array) {
+    auto text = text_;
+    if (known + 1 != path.size() || path[known] != std::to_string(table->parts.size())) no_such(path);
+    return table->parts.empty()
+               ? text.replace(table->value.begin, table->value.end - table->value.begin, "[" + value + "]")
+               : text.insert(table->parts.back().value.end, ", " + value);
+  }
+  if (!table->is_table()) no_such(path);
+  const bool by_headers = table->kind == Part::Kind::dotted && table->prefix.empty();
+  // A new table gets a header. It is added after the other tables of its list or, if there are none, at the
+  // end of the file.
+  if ((table == &root_ && path.size() > 1) || by_headers) {
+    std::string title;
+    for (std::size_t i = 0; i + 1 < path.size(); ++i) title += (i == 0 ? "" : ".") + key_of(path[i]);
+    const auto tables = tables_of(*table);
+    const auto at = by_headers && !tables.empty() ? tables.back()->value.end : text_.size();
+    const bool after_break = at == text_.size() && text_.ends_with('\n');
+    auto text = text_;
+    return text.insert(at, (after_break ? line_break_ : line_break_ + line_break_) + "[" + title + "]" +
+                               line_break_ + key_of(path.back()) + " = " + value +
+                               (after_break ? line_break_ : ""));
+  }
+  auto at = header->value.end;
+  if (table->kind == Part::Kind::dotted) {
+    std::vector<Span> lines;
+    collect_entries(*table, lines);
+    at = core::line_end(text_, lines.back().end);
+  }
+  return new_line_at(at, names(below_header) + " = " + value);
+}
+
+std::string Document::without(const Path& path) const {
+  const auto* part = find(path);
+  if (part == nullptr || path.empty()) no_such(path);
+  const auto* parent = find({path.begin(), path.end() - 1});
+  auto text = text_;
+  if (parent->kind == Part::Kind::array || parent->kind == Part::Kind::inline_table) {
+    // Remove the item with the comma after it or, for the last item, with the comma before it.
+    std::vector<Span> items;
+    for (const auto& item : parent->parts) items.push_back({item.key.begin, item.value.end});
+    const auto index = static_cast<std::size_t>(std::distance(
+        parent->parts.begin(),
+        std::find_if(parent->parts.begin(), parent->parts.end(), [&](const Part& p) { return &p == part; })));
+    const bool last = index + 1 == items.size();
+    const auto begin = last && index > 0 ? items[index - 1].end : items[index].begin;
+    const auto end = !last ? items[index + 1].begin : index > 0 ? items[index].end : parent->value.end - 1;
+    return checked(text.erase(begin, end - begin));
+  }
+  std::vector<Span> pieces;
+  for (const auto* table : tables_of(*part)) pieces.push_back(table->value);
+  if (part->kind != Part::Kind::table && pieces.empty()) collect_entries(*part, pieces);
+  for (auto piece = pieces.rbegin(); piece != pieces.rend(); ++piece) {
+    const auto before = text.rfind('\n', piece->begin == 0 ? std::string::npos : piece->begin - 1);
+    const auto begin = piece->begin == 0 || before == std::string::npos
+                           ? (text.starts_with("\xEF\xBB\xBF") ? 3 : 0)
+                           : before + 1;
+    auto end = std::min(text.find('\n', piece->end), text.size() - 1) + 1;
+    // After a table was removed, keep only one of the empty lines that were before and after it.
+    const auto empty_before = begin == 0 || text.substr(0, begin).ends_with("\n" + line_break_);
+    if (part->is_table() && empty_before && text.compare(end, line_break_.size(), line_break_) == 0)
+      end += line_break_.size();
+    text.erase(begin, end - begin);
+  }
+  return checked(text);
+}
+
+std::string Document::with_copy(const Path& path, const std::string& name) const {
+  const auto* part = find(path);
+  if (part == nullptr || part->kind != Part::Kind::table) no_such(path);
+  const auto* parent = find({path.begin(), path.end() - 1});
+  const bool of_list = parent->kind == Part::Kind::table_array;
+  const auto depth = part->header_names.size() - 1;
+  const auto tables = tables_of(*part);
+  std::string copy;
+  for (const auto* table : tables) {
+    auto own = text_.substr(table->value.begin, table->value.end - table->value.begin);
+    const auto* named = table == part ? part->find("name") : nullptr;
+    const auto replace = [&](const Span& span, const std::string& by) {
+      own.replace(span.begin - table->value.begin, span.end - span.begin, by);
+    };
+    if (!of_list) replace(table->header_names[depth], key_of(name));
+    if (of_list && named != nullptr) replace(named->value, toml_string(name));
+    copy += line_break_ + line_break_ + own;
+  }
+  auto text = text_;
+  return checked(text.insert(tables.back()->value.end, copy));
+}
+
+}  // namespace turnpoint::view

@@ -1,0 +1,274 @@
+#include "station/rehearsal/check.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+
+#include "station/core/read_file.hpp"
+#include "station/rehearsal/parallel.hpp"
+#include "station/rehearsal/rehearsal.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace turnpoint;
+
+namespace {
+
+std::vector<rehearsal::SessionLength> lengths(const protocol::Protocol& protocol, std::uint64_t first_seed,
+                                              int sessions) {
+  std::vector<rehearsal::SessionLength> all(static_cast<std::size_t>(sessions));
+  rehearsal::in_parallel(sessions, rehearsal::processors(), {}, [&](int i) {
+    all[static_cast<std::size_t>(i)] =
+        rehearsal::session_length(protocol, first_seed + static_cast<std::uint64_t>(i));
+  });
+  return all;
+}
+
+std::vector<double> values_of(const std::vector<rehearsal::SessionLength>& lengths,
+                              double rehearsal::SessionLength::*what) {
+  std::vector<double> values;
+  for (const auto& length : lengths) values.push_back(length.*what);
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("the duration estimated by check is that of a rehearsed session plus the time that people need",
+          "[check]") {
+  const std::string root = TURNPOINT_SOURCE_DIR;
+  const auto path = root + "/protocols/friction-2ifc.toml";
+  const auto check = rehearsal::check(path, root + "/tests/support/thin_plate.toml", {1});
+  const auto protocol = protocol::load(path);
+  const auto rehearsal = rehearsal::rehearse(
+      protocol, 0, 0, rehearsal::rehearser(simulation::Observer(simulation::Parameters{})));
+  REQUIRE(check.simulated_sessions == 1);
+  CHECK(check.trials.median == rehearsal.trials);
+  // In a task with two intervals nobody explores the surface. So the estimate adds only instructions and
+  // breaks to the time of the trials.
+  const auto order = protocol::block_order(protocol, 0);
+  double beside_s = 0;
+  for (const auto& [start, trials] : rehearsal.blocks) {
+    beside_s += 12;
+    if (const auto& rest = order[static_cast<std::size_t>(start.block_index)].break_after)
+      beside_s +=
+          rest->min_s * static_cast<double>((trials.size() - 1) / static_cast<std::size_t>(rest->trials));
+  }
+  CHECK(check.duration_s.median == Approx(rehearsal.duration_s + beside_s));
+}
+
+TEST_CASE("a procedure that continues has fewer trials on the second day, and check says how many",
+          "[check]") {
+  const std::string root = TURNPOINT_SOURCE_DIR;
+  TemporaryFolder folder;
+  auto text = core::read_file(root + "/protocols/friction-time-limit.toml");
+  const auto training = text.find("name = \"training\"");
+  REQUIRE(training != std::string::npos);
+  const auto stop = text.find("stop = ", training), end = text.find('\n', stop);
+  text.replace(stop, end - stop, "stop = { trials = 40 }");
+  const std::string path = folder / "a.toml";
+  std::ofstream(path) << text;
+  const auto check = rehearsal::check(path, root + "/tests/support/thin_plate.toml", {2});
+  REQUIRE(check.problems.empty());
+  std::map<int, double> trained;
+  for (const auto& block : check.blocks)
+    if (block.name == "training") trained[block.session] = block.trials.median;
+  CHECK(trained.at(1) == 30);
+  CHECK(trained.at(2) == 10);
+}
+
+TEST_CASE("a protocol that nobody can answer in time does not end, and check says so", "[check]") {
+  const std::string root = TURNPOINT_SOURCE_DIR;
+  TemporaryFolder folder;
+  auto text = core::read_file(root + "/protocols/friction-rating.toml");
+  const auto deadline = text.find("deadline_s"), end = text.find('\n', deadline);
+  REQUIRE(deadline != std::string::npos);
+  text.replace(deadline, end - deadline, "deadline_s = 0.05");
+  const std::string path = folder / "a.toml";
+  std::ofstream(path) << text;
+  const auto check = rehearsal::check(path, root + "/tests/support/thin_plate.toml", {1});
+  REQUIRE(check.problems.size() == 1);
+  CHECK(core::say(check.problems[0].what, "en").find("does not end") != std::string::npos);
+  CHECK(core::say(check.problems[0].what, "en").find("a.toml") == std::string::npos);
+}
+
+TEST_CASE("check says in which languages the station's own words are, and refuses what cannot be drawn",
+          "[check]") {
+  const std::string root = TURNPOINT_SOURCE_DIR, rig = root + "/tests/support/thin_plate.toml";
+  const auto [language, note] =
+      GENERATE(std::pair("ko", "the station does not speak \"ko\""),
+               std::pair("zh", "no native speaker has read the station's own words in \"zh\""));
+  const TemporaryFolder folder;
+  const auto path = folder / "study.toml";
+  auto text = core::read_file(root + "/protocols/friction-2ifc.toml");
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+      text.replace(at, from.size(), to);
+  };
+  replace("\"de\"", std::string("\"") + language + "\"");
+  replace("de = \"", std::string(language) + " = \"\u6211");
+  std::ofstream(path) << text;
+  rehearsal::CheckOptions options;
+  options.sessions = 0;
+  const auto check = rehearsal::check(path, rig, options);
+  REQUIRE(check.problems.empty());
+  REQUIRE(check.notes.size() == 1);
+  CHECK(core::say(check.notes[0].what, "en").find(note) == 0);
+
+  options.drawable = [](char32_t c) { return c < 0x3000; };
+  const auto refused = rehearsal::check(path, rig, options);
+  REQUIRE_FALSE(refused.problems.empty());
+  for (const auto& problem : refused.problems) {
+    CHECK(problem.place.file == path);
+    CHECK(problem.place.line > 0);
+    CHECK(core::format(problem).find("U+6211") != std::string::npos);
+  }
+}
+
+TEST_CASE("the duration estimated by check includes time to set a slider", "[check]") {
+  const std::string root = TURNPOINT_SOURCE_DIR;
+  const auto path = root + "/protocols/boundary-adjustment.toml";
+  const auto check = rehearsal::check(path, root + "/tests/support/thin_plate.toml", {1});
+  const auto protocol = protocol::load(path);
+  const double longest_s = protocol.timing.explore_s.value();
+  const double setting_s = longest_s < 15 ? longest_s : 15;
+  CHECK(check.duration_s.median > check.trials.median * setting_s);
+  CHECK(check.duration_s.median < check.trials.median * (setting_s + 5) + 60);
+}
+
+TEST_CASE("check adds sessions until the length is known to 3 %, and other sessions have this length",
+          "[check]") {
+  int missed = 0, told = 0;
+  for (const char* name :
+       {"friction-staircase", "friction-time-limit", "limits-boundary", "friction-training"}) {
+    INFO(name);
+    const auto protocol = protocol::load(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
+    const auto check = rehearsal::session_lengths(protocol);
+    const bool enough = check.duration_s.error <= rehearsal::kLengthPrecision * check.duration_s.median &&
+                        check.trials.error <= rehearsal::kLengthPrecision * check.trials.median;
+    CHECK((enough || check.simulated_sessions > 900));
+    if (!check.blocks.empty() && !check.blocks.front().visit.empty()) continue;
+    const auto others = lengths(protocol, 2000, 600);
+    const auto spread = rehearsal::spread_of(values_of(others, &rehearsal::SessionLength::duration_s));
+    for (const auto what : {&rehearsal::Spread::low, &rehearsal::Spread::median, &rehearsal::Spread::high}) {
+      const double apart = std::abs(check.duration_s.*what - spread.*what);
+      CHECK(apart <= 2 * (check.duration_s.error + spread.error));
+      missed += apart > check.duration_s.error + spread.error, ++told;
+    }
+    // a smaller stated error would not hold
+    const auto few = rehearsal::session_lengths(protocol, 2);
+    CHECK(few.duration_s.error < check.duration_s.high - check.duration_s.low);
+  }
+  CHECK(told >= 6);
+  CHECK(missed <= 1);
+}
+
+TEST_CASE("the error of a range holds the ranges of 95 % of other samples", "[check]") {
+  std::uint64_t state = 1;
+  const auto draw = [&state] {
+    double sum = 0;
+    for (int i = 0; i < 12; ++i) {
+      state = state * 6364136223846793005u + 1442695040888963407u;
+      sum += static_cast<double>(state >> 11) * 0x1p-53;
+    }
+    return sum - 6;
+  };
+  int held = 0, halves = 0;
+  constexpr int samples = 1000;
+  for (int i = 0; i < samples; ++i) {
+    std::vector<double> values(40);
+    for (auto& value : values) value = draw();
+    const auto spread = rehearsal::spread_of(values);
+    const double apart =
+        std::max({std::abs(spread.low + 1.645), std::abs(spread.median), std::abs(spread.high - 1.645)});
+    held += apart <= spread.error, halves += apart <= 0.5 * spread.error;
+  }
+  CHECK(held > 0.95 * samples);
+  CHECK(halves < 0.9 * samples);
+}
+
+TEST_CASE(
+    "response times from the finger's contact or lift-off, and tasks whose answers wait, can be simulated",
+    "[check]") {
+  const std::string root = TURNPOINT_SOURCE_DIR;
+  const auto text = core::read_file(root + "/protocols/friction-2ifc.toml");
+  const std::string key = "response_zero = \"interval_off\"";
+  REQUIRE(text.find(key) != std::string::npos);
+  const TemporaryFolder folder;
+  for (const std::string zero : {"first_contact", "lift_off", "go_cue", "interval_off"}) {
+    INFO(zero);
+    auto changed = text;
+    changed.replace(changed.find(key), key.size(), "response_zero = \"" + zero + "\"");
+    const auto path = folder / (zero + ".toml");
+    std::ofstream(path) << changed;
+    int trials = 0, answered = 0;
+    for (const auto& block :
+         rehearsal::rehearse(protocol::load(path), 0, 0,
+                             rehearsal::rehearser(simulation::Observer(simulation::Parameters{})))
+             .blocks)
+      for (const auto& row : block.trials) {
+        ++trials, answered += row.outcome == core::Outcome::answered;
+        if (zero != "first_contact") continue;
+        // the finger leaves the surface before the answer, for the time that it needs to reach the button
+        CHECK(row.decision_time_s.has_value() == (row.outcome == core::Outcome::answered));
+      }
+    CHECK(answered > 0.95 * trials);
+  }
+}
+
+TEST_CASE("simulated settings are around the place where the two scenes of the interval are equal",
+          "[check]") {
+  const std::string root = TURNPOINT_SOURCE_DIR;
+  const TemporaryFolder folder;
+  const auto mean_of =
+      [&](const std::string& standard, const std::string& intervals, const std::string& zero) {
+        const auto path = folder / "settings.toml";
+        std::ofstream(path) << R"(format = "friction-protocol/1"
+protocol = { id = "settings", version = "1.0.0", title = "Settings", languages = ["en"] }
+factor = [ { name = "strength", range = [0.4, 1.6] } ]
+procedure = [ { name = "settings", kind = "adjustment", level = "strength", start = [0.5, 1.5], repeats = 20 } ]
+block = [ { name = "main", procedures = ["settings"] } ]
+[scene.standard]
+boundary_mm = 158.0
+edge = "p50"
+displacement_um = )" << standard
+                            << R"(
+[scene.strip]
+base = "standard"
+displacement_um = "strength"
+[timing]
+response_zero = ")" << zero << R"("
+explore_s = 28.0
+deadline_s = 30.0
+iti_s = 2.0
+[task]
+kind = "adjustment"
+adjusts = "strength"
+step = 0.02
+device = "touch"
+question = { en = "?" }
+choices = [ { id = "done", label = { en = "Done" } } ]
+)" << intervals;
+        std::vector<double> settings;
+        for (const auto& block :
+             rehearsal::rehearse(
+                 protocol::load(path), 0, 3,
+                 rehearsal::rehearser(simulation::Observer(simulation::parse("sim:threshold=0.02,lapse=0"))))
+                 .blocks)
+          for (const auto& row : block.trials) {
+            CHECK(row.outcome == core::Outcome::answered);
+            settings.push_back(std::stod(row.response.value()));
+          }
+        double sum = 0;
+        for (const double setting : settings) sum += setting;
+        return sum / static_cast<double>(settings.size());
+      };
+  const std::string two =
+      "intervals = [[\"standard\", \"strip\"]]\nforeperiod_s = { uniform = [1.0, 1.5] }\ntransition_ms = "
+      "50\n";
+  CHECK(mean_of("0.7", two, "change") == Approx(0.7).margin(0.03));
+  CHECK(mean_of("1.3", two, "go_cue") == Approx(1.3).margin(0.03));
+  CHECK(mean_of("0.7", "intervals = [\"strip\"]\n", "first_contact") == Approx(1.0).margin(0.03));
+  CHECK(mean_of("0.7", "intervals = [\"strip\"]\n", "interval_off") == Approx(1.0).margin(0.03));
+}

@@ -1,0 +1,48 @@
+// Counts memory allocations while the plant advances.
+#include <cstdlib>
+#include <new>
+
+#include "tests/simulation/lab.hpp"
+#include "tests/support/catch.hpp"
+
+namespace {
+
+thread_local long allocations = 0;
+
+}  // namespace
+
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+using namespace turnpoint::simulation;
+
+TEST_CASE("advancing allocates no memory, whatever fails", "[plant]") {
+  Setup setup;
+  setup.surface = quiet_setup().surface;
+  setup.marker_channel = 2;
+  setup.finger.touches = {{0, 3000}, {5000, kNever}};
+  setup.loop_delay_frames = 800.37;
+  Plant plant(setup);
+  plant.set_tones({30e3, 36e3});
+  std::int64_t from = 1000;
+  for (const auto kind : {FaultKind::transducer_dead, FaultKind::transducer_half, FaultKind::resonance_off,
+                          FaultKind::frequency_off, FaultKind::drive_late, FaultKind::clip,
+                          FaultKind::broken_bridge, FaultKind::no_reference, FaultKind::finger_lifts,
+                          FaultKind::gap, FaultKind::warmer, FaultKind::sounding}) {
+    plant.add({kind, from, from + 2500});
+    from += 1000;
+  }
+  std::vector<double> played(4 * 20000), captured(8 * 20000);
+  for (std::size_t n = 0; n < 20000; ++n) played[4 * n] = 0.5 * cosine(30e3, static_cast<std::int64_t>(n));
+  const long before = allocations;
+  plant.advance(played, captured);
+  CHECK(allocations == before);
+  CHECK(plant.frames() == 20000);
+  const std::vector<double> counted(1000);
+  CHECK(allocations > before);
+}

@@ -1,0 +1,213 @@
+// Tests that the form of a protocol has every key of the file, and shows each value as a person would write
+// it.
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <set>
+#include <string>
+
+#include "station/core/read_file.hpp"
+#include "station/protocol/protocol.hpp"
+#include "station/view/form.hpp"
+#include "station/view/goals.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+using view::Document;
+using view::Field;
+using view::Part;
+using view::Path;
+
+namespace {
+
+const std::string root = TURNPOINT_SOURCE_DIR;
+
+const view::Schema& schema() {
+  static const view::Schema schema(core::read_file(root + "/protocols/protocol.schema.json"));
+  return schema;
+}
+
+std::vector<std::string> shipped() {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(root + "/protocols"))
+    if (entry.path().extension() == ".toml") files.push_back(entry.path().string());
+  return files;
+}
+
+const Field* find(const std::vector<view::Section>& form, const Path& path) {
+  for (const auto& section : form)
+    for (const auto& group : section.groups)
+      for (const auto& field : group.fields)
+        if (field.path == path) return &field;
+  return nullptr;
+}
+
+void each_scalar(const Part& part, Path& path, std::vector<Path>& all) {
+  if (part.kind == Part::Kind::scalar) all.push_back(path);
+  for (const auto& below : part.parts) {
+    path.push_back(below.name);
+    each_scalar(below, path, all);
+    path.pop_back();
+  }
+}
+
+bool leads_to(const Path& start, const Path& path) {
+  return start.size() <= path.size() && std::equal(start.begin(), start.end(), path.begin());
+}
+
+std::string question(const std::string& text) { return "v = " + text; }
+
+}  // namespace
+
+TEST_CASE("every value of every shipped protocol has exactly one field, which leaves the file as it is",
+          "[form]") {
+  REQUIRE(shipped().size() > 20);
+  for (const auto& file : shipped()) {
+    INFO(file);
+    const Document document(core::read_file(file), file);
+    const auto form = form_of(document, schema(), {});
+    std::vector<Path> scalars;
+    Path path;
+    each_scalar(document.root(), path, scalars);
+    for (const auto& scalar : scalars) {
+      if (scalar == Path{"format"}) continue;
+      INFO(Catch::Detail::stringify(scalar));
+      int fields = 0;
+      for (const auto& section : form)
+        for (const auto& group : section.groups)
+          for (const auto& field : group.fields) fields += field.present && leads_to(field.path, scalar);
+      CHECK(fields == 1);
+    }
+    for (const auto& section : form)
+      for (const auto& group : section.groups)
+        for (const auto& field : group.fields) {
+          INFO(Catch::Detail::stringify(field.path));
+          CHECK(view::changed(document, field, field.value) == document.text());
+          // To the parser, the value that the form writes equals the value in the file.
+          if (!field.present) continue;
+          const auto written = view::encoded(field, field.value);
+          const auto a = core::parse_toml(question(written), "").entries[0].value;
+          const auto b = core::value_of(*document.find(field.path));
+          CHECK(a.kind == b.kind);
+          CHECK(a.string == b.string);
+          CHECK(a.number == b.number);
+          CHECK(a.items.size() == b.items.size());
+        }
+  }
+}
+
+TEST_CASE("fields have the kind, words and limits of the schema, and the names that the file gives",
+          "[form]") {
+  const auto file = root + "/protocols/friction-2ifc.toml";
+  const Document document(core::read_file(file), file);
+  const auto form = form_of(document, schema(), {});
+  const auto* kind = find(form, {"task", "kind"});
+  REQUIRE(kind != nullptr);
+  CHECK(kind->value == "2ifc");
+  CHECK(std::count(kind->allowed.begin(), kind->allowed.end(), "oddity") == 1);
+  const auto* intervals = find(form, {"task", "intervals"});
+  CHECK(intervals->value == "reference, comparison");
+  CHECK(intervals->allowed == std::vector<std::string>{"reference", "comparison"});
+  CHECK(find(form, {"task", "question", "de"})->value == "In welchem Durchgang war es glatter?");
+  CHECK(find(form, {"task", "choices", "1", "label", "en"})->value == "Second");
+  CHECK(find(form, {"scene", "reference", "zone", "from_mm"})->value == "60.0");
+  CHECK(find(form, {"scene", "comparison", "friction_contrast_dB"})->kind == view::Rule::Kind::expression);
+  CHECK(find(form, {"timing", "iti_s", "uniform"})->value == "0.8, 1.2");
+  CHECK(find(form, {"procedure", "0", "stop", "trials"})->value == "96");
+  CHECK(find(form, {"block", "0", "levels"})->value == "-3.0, -5.0");
+  CHECK(find(form, {"block", "1", "catch", "contrast_dB"})->value == "-3.0");
+  const auto* absent = find(form, {"block", "0", "pass", "accuracy"});
+  REQUIRE(absent != nullptr);
+  CHECK_FALSE(absent->present);
+  CHECK(absent->high == 1.0);
+  CHECK(find(form, {"scene", "reference", "base"})->help.starts_with("Scene from which"));
+}
+
+TEST_CASE("what is typed into a field is what the reader of protocols reads", "[form]") {
+  const auto file = root + "/protocols/friction-2ifc.toml";
+  const auto type = [&](const std::string& source, const Path& path, const std::string& typed) {
+    const Document document(source, file);
+    const auto form = form_of(document, schema(), {});
+    const auto* field = find(form, path);
+    REQUIRE(field != nullptr);
+    return view::changed(document, *field, typed);
+  };
+  auto source = core::read_file(file);
+  source = type(source, {"block", "0", "levels"}, "-3, -4.5,-6");
+  source = type(source, {"block", "0", "trials"}, "9");
+  source = type(source, {"block", "0", "pass", "accuracy"}, "0.8");
+  source = type(source, {"block", "0", "pass", "retries"}, "2");
+  source = type(source, {"task", "question", "en"}, "Which was \"slicker\"?\nTell us.");
+  source = type(source, {"scene", "reference", "zone", "from_mm"}, "70");
+  source = type(source, {"scene", "comparison", "friction_contrast_dB"}, "contrast_dB - 1");
+  source = type(source, {"random", "seed"}, "per-session");
+  const auto read = protocol::parse(source, file);
+  const auto& practice = std::get<protocol::Block>(read.plan.at(0));
+  CHECK(practice.levels == std::vector<double>{-3, -4.5, -6});
+  CHECK(practice.trials == 9);
+  REQUIRE(practice.pass.has_value());
+  CHECK(practice.pass->accuracy == 0.8);
+  CHECK(practice.pass->retries == 2);
+  CHECK(read.task.question.at("en") == "Which was \"slicker\"?\nTell us.");
+  CHECK(read.scenes.at("reference").zone->from_mm == 70);
+  CHECK_THROWS_AS(type(source, {"block", "0", "trials"}, "2.5"), core::BadInput);
+  CHECK_THROWS_AS(type(source, {"block", "0", "levels"}, "1, two"), core::BadInput);
+  CHECK_THROWS_AS(type(source, {"scene", "reference", "zone", "from_mm"}, "1\nx = 2"), core::BadInput);
+  // An empty text removes an optional key. A required key stays.
+  CHECK(type(type(source, {"block", "0", "pass", "retries"}, ""), {"block", "0", "pass", "accuracy"}, "")
+            .find("pass.") == std::string::npos);
+  CHECK(type(source, {"task", "kind"}, "") == source);
+}
+
+TEST_CASE("every problem of a check stands at its field", "[form]") {
+  const auto file = root + "/protocols/friction-2ifc.toml";
+  auto source = core::read_file(file);
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    const auto at = source.find(from);
+    REQUIRE(at != std::string::npos);
+    source.replace(at, from.size(), to);
+  };
+  replace("device = \"touch\"", "device = \"tuch\"");
+  replace("de = \"Im ersten\"", "fr = \"Le premier\"");
+  replace("gap_s = 1.0\n", "gap_s = -1.0\n");
+  replace("deadline_s = 3.0\n", "");
+  replace("procedures = [\"threshold\"]", "procedures = [\"treshold\"]");
+  std::vector<core::Problem> problems;
+  try {
+    protocol::parse(source, file);
+  } catch (const core::BadInput& bad) {
+    problems = bad.problems();
+  }
+  REQUIRE(problems.size() >= 5);
+  const auto form = form_of(Document(source, file), schema(), problems);
+  for (const Path& path : {Path{"task", "device"}, Path{"task", "gap_s"}, Path{"timing", "deadline_s"},
+                           Path{"block", "1", "procedures"}}) {
+    INFO(Catch::Detail::stringify(path));
+    const auto* field = find(form, path);
+    REQUIRE(field != nullptr);
+    REQUIRE(field->remarks.size() == 1);
+  }
+  std::set<std::size_t> placed;
+  for (const auto& section : form)
+    for (const auto& group : section.groups) {
+      placed.insert(group.remarks.begin(), group.remarks.end());
+      for (const auto& field : group.fields) placed.insert(field.remarks.begin(), field.remarks.end());
+    }
+  CHECK(placed.size() == problems.size());
+}
+
+TEST_CASE("every goal leads to a shipped protocol, which becomes a study of its own", "[goals]") {
+  std::set<std::string> words;
+  for (const auto& goal : view::goals()) {
+    INFO(goal.word);
+    CHECK(words.insert(goal.word).second);
+    CHECK(view::describe(goal, "de") != view::describe(goal, "en"));
+    const auto source = core::read_file(root + "/protocols/" + goal.file + ".toml");
+    const auto study = protocol::parse(view::study_from(goal, source, "my-study"), "my-study.toml");
+    CHECK(study.id == "my-study");
+    CHECK(study.version == "0.1.0");
+    CHECK(study.title == protocol::parse(source, "").title);
+  }
+  CHECK(view::find_goal("contrast") != nullptr);
+  CHECK(view::find_goal("nothing") == nullptr);
+}

@@ -1,0 +1,89 @@
+// Tests the report of a session on the screen: its tables, its figures, and their language.
+#include "station/report/svg.hpp"
+#include "station/view/live_facts.hpp"
+#include "station/view/report_pages.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/view/demo.hpp"
+
+using namespace turnpoint;
+
+TEST_CASE("the report on the screen has the numbers and figures of the speed-accuracy trade-off",
+          "[operator]") {
+  const TemporaryFolder folder;
+  session::Inputs inputs;
+  const auto summary = session::run(session::prepare(demo_in(folder)), nullptr, inputs);
+  const auto pages = view::report_pages(summary.database, summary.session_id);
+  CHECK(value_of(pages.outcomes, "Presented") == "10");
+  CHECK_FALSE(value_of(pages.speed_accuracy, "proportion right").empty());
+  CHECK(pages.levels);
+  CHECK_FALSE(pages.health.empty());
+}
+
+TEST_CASE("tables and figures of the report on the screen are in the language of the operator",
+          "[operator]") {
+  const TemporaryFolder folder;
+  session::Inputs inputs;
+  const auto summary = session::run(session::prepare(demo_in(folder)), nullptr, inputs);
+  const auto svg_of = [](const view::Drawing& drawing) {
+    report::Svg svg;
+    drawing(svg, 900, 600);
+    return svg.finish();
+  };
+  const auto german = view::report_pages(summary.database, summary.session_id, "de");
+  CHECK(value_of(german.outcomes, "Dargeboten") == "10");
+  CHECK_FALSE(value_of(german.speed_accuracy, "Anteil richtig").empty());
+  CHECK(svg_of(german.levels).find("Durchgang (Nummer in der Sitzung)") != std::string::npos);
+  CHECK(svg_of(german.levels).find("Trial") == std::string::npos);
+  CHECK(svg_of(german.times).find("Reaktionszeit (s)") != std::string::npos);
+  const auto english = view::report_pages(summary.database, summary.session_id);
+  CHECK(svg_of(english.levels).find("Trial (number in the session)") != std::string::npos);
+}
+
+TEST_CASE("remarks and facts about the station in a report are said in the language of the screen",
+          "[operator]") {
+  const TemporaryFolder folder;
+  session::Inputs inputs;
+  const auto summary = session::run(session::prepare(demo_in(folder)), nullptr, inputs);
+  const auto pages = view::report_pages(summary.database, summary.session_id, "de");
+  CHECK_FALSE(pages.statements.empty());
+  for (const auto& statement : pages.statements) {
+    INFO(core::say(statement, "en"));
+    CHECK(core::say(statement, "de") != core::say(statement, "en"));
+  }
+  CHECK(pages.health.size() > 15);
+  for (const auto& [name, text] : pages.health) CHECK(core::say(name, "de") != core::say(name, "en"));
+}
+
+TEST_CASE("the report on the screen has the finger's forces and friction, if force cells recorded",
+          "[operator]") {
+  report::Summary summary;
+  summary.data.design = report::Design::ratings;
+  CHECK(view::report_pages(summary).forces.empty());
+  CHECK_FALSE(view::report_pages(summary).finger);
+  std::vector<analysis::FingerTrial> trials;
+  for (int i = 0; i < 4; ++i) {
+    analysis::FingerTrial trial{i, "speed", true, 0.5, 80.0 + i, 0.3, 0.8, 150.0, 150.5 + 0.1 * i, 0.2};
+    trials.push_back(trial);
+  }
+  summary.finger = analysis::finger(trials, {});
+  const auto pages = view::report_pages(summary);
+  CHECK(value_of(pages.forces, "speed: speed").find("81.5 [") == 0);
+  CHECK(value_of(pages.forces, "speed: felt \u2212 planned boundary").find(" mm") != std::string::npos);
+  CHECK(pages.finger);
+  CHECK(pages.friction);
+}
+
+TEST_CASE("the view of a running session is in the language of the operator", "[operator]") {
+  view::LiveTrial trial;
+  trial.procedure = "levels", trial.level = 2, trial.correct = true, trial.response_time_s = 1.5;
+  const auto facts = view::course_of({trial}, "de");
+  CHECK(value_of(facts, "Richtig") == "1 von 1 (100 %)");
+  CHECK(value_of(facts, "Reaktionszeit") == "Median 1.5 s, letzte 1.5 s");
+  CHECK(value_of(view::limits_used({trial}, std::nullopt, rig::Rig(), "de"), "Die Sitzung").find(" min") !=
+        std::string::npos);
+  const auto levels = view::live_trace({trial}, "offset_mm", "de"), times = view::live_times({trial}, "de");
+  REQUIRE((levels && times));
+  CHECK(levels->charts.front().title == "Stufen (offene Zeichen: nicht richtig)");
+  CHECK(levels->charts.front().x.label == "Durchgang");
+  CHECK(times->charts.front().y.label == "Reaktionszeit (s)");
+}
