@@ -458,7 +458,7 @@ void add_power(CommandLine& app, Context& context) {
           ->add_option(
               "--observer", options->observer,
               "sim[:threshold=...,slope=...,lapse=...,bias=...,criterion=...,bound=...]: the simulated "
-              "observer; protocols/README.md lists all keys")
+              "observer; protocols/check-and-power.md lists all keys")
           ->capture_default_str();
   auto* seed = command->add_option("--seed", options->seed, "Seed of the first session, 0 to 2^53")
                    ->check(range(0, 9007199254740992));

@@ -744,7 +744,7 @@ STUDY = ["power", "boundary-constant", "--observers", "12", "--intervals", "4"]
 
 class LongWork(Folder):
     def example(self, tool):
-        with open(os.path.join(SOURCE, "protocols", "README.md"), encoding="utf-8") as page:
+        with open(os.path.join(SOURCE, "protocols", "check-and-power.md"), encoding="utf-8") as page:
             return next(block for block in re.findall(r"^```sh\n(.*?)^```", page.read(), re.DOTALL | re.MULTILINE)
                         if tool in block)
 
