@@ -97,23 +97,26 @@ std::map<std::string, Known> known_sessions(Connection& server) {
   return known;
 }
 
-/// Throws if two stations have one name: the server has a session of this station from a machine of which this
-/// database holds none, although it holds sessions of the same station from another. (A machine that replaced the
-/// station's earlier one holds what that one had recorded.)
+/// Throws if two stations have one name: the server has a session of this station from a machine of which
+/// this database holds none, although it holds sessions of the same station from another. (A machine that
+/// replaced the station's earlier one holds what that one had recorded.)
 void refuse_two_stations(Database& database, const std::map<std::string, Known>& known) {
   std::map<std::string, std::set<std::string>> machines;
-  Statement rows(database, "SELECT DISTINCT station_id, machine FROM session JOIN segment USING (session_id) WHERE"
-                           " machine <> ''");
+  Statement rows(database,
+                 "SELECT DISTINCT station_id, machine FROM session JOIN segment USING (session_id) WHERE"
+                 " machine <> ''");
   while (rows.step()) machines[rows.text(0)].insert(rows.text(1));
   for (const auto& [id, session] : known) {
     const auto here = machines.find(session.station);
-    if (session.machine.empty() || here == machines.end() || here->second.count(session.machine) != 0) continue;
+    if (session.machine.empty() || here == machines.end() || here->second.count(session.machine) != 0)
+      continue;
     throw ServerError(
-        fmt::format("collector: another machine sends its sessions as station {}, so one code can mean two people; "
-                    "nothing was sent; give one of the two stations another name, on its own machine: turnpoint "
-                    "station-name --db {} NEW-NAME --stored, and then let it join under that name (deploy/collector "
-                    "station)",
-                    session.station, database.path()),
+        fmt::format(
+            "collector: another machine sends its sessions as station {}, so one code can mean two people; "
+            "nothing was sent; give one of the two stations another name, on its own machine: turnpoint "
+            "station-name --db {} NEW-NAME --stored, and then let it join under that name (deploy/collector "
+            "station)",
+            session.station, database.path()),
         "TP005");
   }
 }

@@ -59,7 +59,8 @@ std::optional<EvdevDevice> EvdevDevice::find(const std::string& path_or_name, co
       error = going.code().value();
     }
   }
-  // A touch controller often has another node of the same name, such as that of a mouse that reports positions.
+  // A touch controller often has another node of the same name, such as that of a mouse that reports
+  // positions.
   if (std::any_of(named.begin(), named.end(), [](const auto& one) { return one.second.is_touched(); }))
     std::erase_if(named, [](const auto& one) { return !one.second.is_touched(); });
   if (named.size() > 1) {

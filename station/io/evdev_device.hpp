@@ -20,10 +20,10 @@ struct AxisRange {
 /// at the same time. Use an object from one thread only.
 class EvdevDevice {
  public:
-  /// Opens the device with this path or (without a leading slash) this name in `folder`, for reading only. Empty
-  /// if there is no such device or it cannot be opened; errno says why. Of several devices of this name, takes
-  /// the one that is_touched(). Throws core::UsageError if several are, or if several have the name and none is,
-  /// and std::system_error if the path is not an input device.
+  /// Opens the device with this path or (without a leading slash) this name in `folder`, for reading only.
+  /// Empty if there is no such device or it cannot be opened; errno says why. Of several devices of this
+  /// name, takes the one that is_touched(). Throws core::UsageError if several are, or if several have the
+  /// name and none is, and std::system_error if the path is not an input device.
   static std::optional<EvdevDevice> find(const std::string& path_or_name,
                                          const std::string& folder = "/dev/input");
 

@@ -18,7 +18,8 @@ constexpr std::size_t fewest_strokes = 3, fewest_bins = 6;
 // Even in pure noise, the fit finds some step. Therefore a step counts only if it exceeds the half-width of
 // its 95 % interval by this factor.
 constexpr double certain_rise = 2;
-// A misfit counts only as far as it exceeds its own standard error by this factor, because noise alone makes some.
+// A misfit counts only as far as it exceeds its own standard error by this factor, because noise alone makes
+// some.
 constexpr double certain_misfit = 2;
 // The final fit uses only the bins within `reach_widths` widths of the step, or within `least_reach_mm` if
 // that is farther. Still farther away, friction changes again, because the vibration has nodes.
@@ -134,8 +135,8 @@ std::vector<Bin> near(const Step& step, const std::vector<Bin>& bins) {
 }
 
 /// Returns the position at which friction is `level` times the friction at larger positions, or, without a
-/// level, the position half-way up the step. NaN if friction does not rise through that level. A bin holds the mean
-/// over its length, which widens the step.
+/// level, the position half-way up the step. NaN if friction does not rise through that level. A bin holds
+/// the mean over its length, which widens the step.
 double crossing_mm(const Step& step, std::optional<double> level, double bin_mm) {
   if (!level) return step.place_mm;
   const double share = (*level * (step.below + step.rise) - step.below) / step.rise;
@@ -144,10 +145,11 @@ double crossing_mm(const Step& step, std::optional<double> level, double bin_mm)
   return step.place_mm + width_mm * analysis::normal_quantile(share);
 }
 
-/// Returns how far the boundary by the bins themselves lies before the one by the fit, because their friction does not
-/// have the fit's shape: what the fit misses at its boundary and, according to the boundary's definition, on both
-/// sides of the step, as a distance along the slope.
-double misfit_mm(const Step& step, const std::vector<Bin>& bins, double place_mm, std::optional<double> level) {
+/// Returns how far the boundary by the bins themselves lies before the one by the fit, because their friction
+/// does not have the fit's shape: what the fit misses at its boundary and, according to the boundary's
+/// definition, on both sides of the step, as a distance along the slope.
+double misfit_mm(const Step& step, const std::vector<Bin>& bins, double place_mm,
+                 std::optional<double> level) {
   const auto side = [&](auto holds) {
     double sum = 0, count = 0;
     for (const Bin& bin : bins)

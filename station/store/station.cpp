@@ -56,7 +56,8 @@ void require_possible(const std::string& name) {
   const auto allowed = [&](char c) {
     return plain(c) || std::string_view("._-").find(c) != std::string_view::npos;
   };
-  if (!name.empty() && name.size() <= 41 && plain(name.front()) && std::all_of(name.begin(), name.end(), allowed))
+  if (!name.empty() && name.size() <= 41 && plain(name.front()) &&
+      std::all_of(name.begin(), name.end(), allowed))
     return;
   throw StoreError(
       ErrorKind::refused,

@@ -122,7 +122,8 @@ void create_file(const std::string& path) {
   // An empty log or old shared memory contains no data, so remove them.
   for (const auto* suffix : kLogSuffixes) remove_file(path + suffix);
   publish(path, "", [](const std::string& temporary) {
-    // In rollback mode, all data are in this one file once the transaction has ended; publish() makes it durable.
+    // In rollback mode, all data are in this one file once the transaction has ended; publish() makes it
+    // durable.
     Database database(temporary, Database::Access::read_write);
     database.execute("PRAGMA journal_mode = DELETE; PRAGMA synchronous = OFF");
     create_schema(database);

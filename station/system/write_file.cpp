@@ -69,7 +69,8 @@ void require_replaceable(const std::string& path, Replaces replaces) {
   if (is_database(path)) refuse(path, "is a database");
   // Even if it is empty or damaged, somebody may want to look at it.
   struct stat lock {};
-  if (::stat((path + ".lock").c_str(), &lock) == 0) refuse(path, "is a station's database, as its lock file says");
+  if (::stat((path + ".lock").c_str(), &lock) == 0)
+    refuse(path, "is a station's database, as its lock file says");
   if (replaces == Replaces::output && core::was_read(status))
     refuse(path, "is one of the files that were read");
 }

@@ -134,7 +134,8 @@ TEST_CASE("what is chosen is read from the server, and nothing else", "[collecto
   CHECK_THROWS_AS(collector::ReadableDatabase(postgres.address("reader")), store::StoreError);
 }
 
-TEST_CASE("two stations with one name are told so before anything of the second is sent or withdrawn", "[collector]") {
+TEST_CASE("two stations with one name are told so before anything of the second is sent or withdrawn",
+          "[collector]") {
   const PostgresServer postgres;
   const TemporaryFolder folder;
   const auto a = folder / "a.sqlite", b = folder / "b.sqlite", replaced = folder / "replaced.sqlite";
@@ -152,7 +153,9 @@ TEST_CASE("two stations with one name are told so before anything of the second 
     log.finish(store::SessionStatus::completed, "");
   };
   const auto push = [&](const std::string& path, const std::string& role = "station_a") {
-    now_on(path, store::machine_identity());  // the machine of this test, whose push is not refused for its own sake
+    now_on(
+        path,
+        store::machine_identity());  // the machine of this test, whose push is not refused for its own sake
     return collector::push({path, postgres.as(role), "", "", {}, {}});
   };
   const auto sessions = [&] { return postgres.admin().query("SELECT 1 FROM turnpoint.session").count(); };

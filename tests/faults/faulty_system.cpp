@@ -8,9 +8,10 @@
 //                        ENOSPC: this call and all later ones that need space fail, as on a full disk
 //   FAULT_LOG=FILE       gets a line "N CALL r|w|a PATH" for each call: r reads, w needs space, a changes
 //                        something else
-//   NOT_OFFERED=ERRNO    the folder's file system offers neither chmod nor chown nor fsync of a folder nor flock: such
-//                        calls fail with this number, as on some network and FUSE mounts and on FAT; none counts
-//                        as one of the calls above
+//   NOT_OFFERED=ERRNO    the folder's file system offers neither chmod nor chown nor fsync of a folder nor
+//   flock: such
+//                        calls fail with this number, as on some network and FUSE mounts and on FAT; none
+//                        counts as one of the calls above
 //   CLOCK_OFFSET_S=S     the wall clock is ahead by S seconds (negative: behind)
 //   CLOCK_SET_AFTER=N    this begins after the program has read the wall clock N times, as if it was set then
 #include <dirent.h>

@@ -121,18 +121,23 @@ TEST_CASE("after dropped events, touches belong to the right finger, and no touc
   CHECK(touches[0].y == Approx(432.0 / 479));
 }
 
-TEST_CASE("of several nodes with one name the touched one is read, and two touched ones are refused with their paths",
-          "[touch][evdev]") {
+TEST_CASE(
+    "of several nodes with one name the touched one is read, and two touched ones are refused with their "
+    "paths",
+    "[touch][evdev]") {
   TemporaryFolder folder;
   std::vector<std::unique_ptr<FakeEvdev>> nodes;
-  const auto add = [&](int slots, std::vector<int> keys, const std::string& name = "ACME Touch") -> FakeEvdev& {
+  const auto add = [&](int slots, std::vector<int> keys,
+                       const std::string& name = "ACME Touch") -> FakeEvdev& {
     const auto path = folder / ("event" + std::to_string(nodes.size()));
     nodes.push_back(std::make_unique<FakeEvdev>(slots, path));
     nodes.back()->keys = std::move(keys);
     nodes.back()->name = name;
     return *nodes.back();
   };
-  const auto find = [&](const std::string& name = "ACME Touch") { return EvdevDevice::find(name, folder.path); };
+  const auto find = [&](const std::string& name = "ACME Touch") {
+    return EvdevDevice::find(name, folder.path);
+  };
   std::ofstream(folder / "mouse0") << "not an event node";
   CHECK_FALSE(find());
   SECTION("a mouse that reports positions comes first, as on many touch controllers") {
@@ -156,10 +161,11 @@ TEST_CASE("of several nodes with one name the touched one is read, and two touch
     add(10, {BTN_TOUCH});
     add(0, {BTN_LEFT});
     add(10, {BTN_TOUCH});
-    CHECK_THROWS_WITH(find(), "input device 'ACME Touch': 2 devices have this name: " + (folder / "event0") + ", " +
-                                  (folder / "event2") +
-                                  "; write the path of one of them, best a link below /dev/input/by-path, which "
-                                  "stays the same after a restart");
+    CHECK_THROWS_WITH(find(),
+                      "input device 'ACME Touch': 2 devices have this name: " + (folder / "event0") + ", " +
+                          (folder / "event2") +
+                          "; write the path of one of them, best a link below /dev/input/by-path, which "
+                          "stays the same after a restart");
     // the way out that the message names
     std::filesystem::create_symlink(folder / "event2", folder / "by-path");
     CHECK(EvdevDevice::find(folder / "by-path")->slot_count() == 10);

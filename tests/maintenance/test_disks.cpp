@@ -120,9 +120,10 @@ TEST_CASE("a disk is mounted through udisks, and its folder is the one that the 
   CHECK(machine.asked() == "mount --no-user-interaction --block-device /dev/sda1\n");
   CHECK(maintenance::mount(disk, machine.sources) == "/media/lab/MY STICK");
   CHECK(machine.asked() == "mount --no-user-interaction --block-device /dev/sda1\n");  // and not once more
-  machine.mounts("");  // it was pulled out
+  machine.mounts("");                                                                  // it was pulled out
   machine.udisks("echo 'Error looking up object for device /dev/sda1' >&2; exit 1");
-  CHECK(error_of([&] { maintenance::mount(disk, machine.sources); }).find("Error looking up") != std::string::npos);
+  CHECK(error_of([&] { maintenance::mount(disk, machine.sources); }).find("Error looking up") !=
+        std::string::npos);
 }
 
 TEST_CASE("a disk that cannot be mounted is named with what udisks said", "[disks]") {
@@ -161,8 +162,9 @@ TEST_CASE("all partitions of a disk are unmounted before it is switched off", "[
   CHECK(machine.asked().find("power-off") == std::string::npos);
   machine.udisks("");
   maintenance::eject(disk, machine.sources);
-  CHECK(machine.asked().ends_with("--block-device /dev/sda1\nunmount --no-user-interaction --block-device /dev/sda2\n"
-                                  "power-off --no-user-interaction --block-device /dev/sda1\n"));
+  CHECK(machine.asked().ends_with(
+      "--block-device /dev/sda1\nunmount --no-user-interaction --block-device /dev/sda2\n"
+      "power-off --no-user-interaction --block-device /dev/sda1\n"));
 }
 
 TEST_CASE("without udisks the error names the Debian package", "[disks]") {

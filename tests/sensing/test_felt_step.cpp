@@ -124,8 +124,8 @@ TEST_CASE("a felt step is where friction changes, and its standard error is righ
   REQUIRE(wrong);
   CHECK(std::abs(wrong->boundary_mm - 80) > 1);
 
-  // Without noise of friction all strokes agree, and what is left are the errors of the fit, which the interval must
-  // hold as well.
+  // Without noise of friction all strokes agree, and what is left are the errors of the fit, which the
+  // interval must hold as well.
   for (const double width_mm : {4.0, 10.0, 16.0})
     for (const double normal_noise : {0.0, 0.15}) {
       Finger quiet;
