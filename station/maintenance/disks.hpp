@@ -30,9 +30,9 @@ std::vector<Disk> removable_disks(const DiskSources& sources = {});
 /// std::runtime_error with what udisks said, as for a disk that was pulled out since it was listed.
 std::string mount(const Disk& disk, const DiskSources& sources = {});
 
-/// Writes everything to a disk and unmounts it with all of its partitions, and then switches it off, so that it can
-/// be unplugged. Throws std::runtime_error if one could not be unmounted. A disk that cannot be switched off, such as a memory
-/// card, can be taken out as soon as it is unmounted.
+/// Writes everything to a disk and unmounts it with all of its partitions, and then switches it off, so that
+/// it can be unplugged. Throws std::runtime_error if one could not be unmounted. A disk that cannot be
+/// switched off, such as a memory card, can be taken out as soon as it is unmounted.
 void eject(const Disk& disk, const DiskSources& sources = {});
 
 }  // namespace turnpoint::maintenance
