@@ -186,7 +186,8 @@ void write_file(const std::string& path, std::string_view bytes, mode_t mode, Re
 }
 
 bool not_offered(int error) {
-  return error == EPERM || error == EACCES || error == ENOTSUP || error == ENOSYS || error == EINVAL;
+  return error == EPERM || error == EACCES || error == ENOTSUP || error == ENOSYS || error == EINVAL ||
+         error == ENOTTY;
 }
 
 void sync_folder(const std::string& path) {
