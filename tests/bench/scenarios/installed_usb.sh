@@ -14,7 +14,7 @@ stick=$(device STICK) data=$(device DATA)
 as_kiosk() {
   local line arguments=()
   while read -r line; do arguments+=(-p "$line"); done < <(
-    grep -hE '^(User|Group|SupplementaryGroups|Device|Protect|Private|StateDirectory|UMask|NoNewPrivileges|Capability|Ambient|Restrict|LockPersonality|SystemCall|IPAddress)' \
+    grep -hE '^(User|Group|SupplementaryGroups|Device|Protect|Private|StateDirectory|UMask|NoNewPrivileges|Capability|Ambient|Restrict|LockPersonality|SystemCall|IPAddress|ReadWritePaths)' \
       "$(systemctl show -P FragmentPath turnpoint)")
   systemd-run -q --wait --pipe "${arguments[@]}" "$@"
 }
@@ -31,13 +31,17 @@ has refusal.txt "NotAuthorized" || fail "the stick was not mounted, but for anot
 mv /run/60-turnpoint.rules /usr/share/polkit-1/rules.d/
 systemctl restart polkit
 
-say "with the rule it is mounted, and files are written to FAT"
-folder=$(disks mount "$stick")
+say "with the rule it is mounted by the running station, which can then write to it"
+as_kiosk sh -ec "'$BENCH_DIR/bin/usb_disks' $db mount '$stick'
+  turnpoint export --db $db --out /media/turnpoint/STICK/export" | tee mounted.txt
+folder=$(head -n 1 mounted.txt)
 grep " $folder " /proc/mounts | grep -w vfat || fail "$folder is not the stick"
-as_kiosk turnpoint export --db $db --out "$folder/export"
 [ "$(ls "$folder"/export/demo/*.csv | wc -l)" = 9 ] || fail "the export is not complete: $(ls -R "$folder")"
+
+say "a station that starts later can also write to it"
+[ "$(disks mount "$stick")" = "$folder" ] || fail "a disk that is mounted is mounted again"
 as_kiosk turnpoint backup --db $db --dir "$folder/turnpoint-backups" | tee backup.txt
-has backup.txt "not recorded" && fail "the backup was not recorded"
+! has backup.txt "not recorded" || fail "the backup was not recorded"
 as_kiosk turnpoint backup --db $db --dir "$folder/turnpoint-backups" --drill
 
 say "another user may not, and nobody may unmount the data"
