@@ -14,6 +14,7 @@
 #include <tuple>
 #include <utility>
 
+#include "station/core/letters.hpp"
 #include "station/core/usage_error.hpp"
 #include "station/store/export_files.hpp"
 #include "station/store/export_tables.hpp"
@@ -112,7 +113,8 @@ std::vector<ProtocolSelection> select(Database& database, const std::string& dir
   std::map<std::string, std::string> owners;
   for (auto& [id, selection] : protocols) {
     const auto folder = file_name_of(id);
-    if (const auto [owner, fresh] = owners.emplace(folder, id); !fresh)
+    // some file systems ignore case
+    if (const auto [owner, fresh] = owners.emplace(core::lower(folder), id); !fresh)
       throw StoreError(ErrorKind::conflict,
                        fmt::format("export: the protocols \"{}\" and \"{}\" would share the folder "
                                    "{}; export one at a time with --protocol",

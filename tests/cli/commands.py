@@ -279,9 +279,11 @@ class Outputs(HelpExamples):
     def test_no_output_replaces_a_database_or_an_input(self):
         os.mkdir(os.path.join(self.folder, "folder"))
         os.mkfifo(os.path.join(self.folder, "pipe"))
+        self.write("damaged.sqlite", b"once a database")
+        self.write("damaged.sqlite.lock", b"")
         victims = self.bytes_of("lab.sqlite", "friction.csv")
         for words in self.WRITERS:
-            for target in ("lab.sqlite", "lab.sqlite-wal", "folder", "pipe") + (("friction.csv",) if "friction.csv" in words else ()):
+            for target in ("lab.sqlite", "lab.sqlite-wal", "lab.sqlite.lock", "damaged.sqlite", "folder", "pipe") + (("friction.csv",) if "friction.csv" in words else ()):
                 with self.subTest(words=words, target=target):
                     status, out, err = run([word.replace("@", target) for word in words], self.folder)
                     self.assertIn(status, (1, 2), out + err)

@@ -229,6 +229,13 @@ TEST_CASE("an export can select sessions, participants and protocols, and each p
   const auto [fault, message] = sample::failure([&] { export_data(db, folder / "none", options); });
   CHECK(fault == ErrorKind::missing);
   CHECK_FALSE(std::filesystem::exists(folder / "none"));
+  // a name that differs only in what a folder cannot keep apart; FAT ignores case
+  other.protocol_id = GENERATE("Two-boundaries", "two-BOUNDARIES");
+  sample::session(db, 1, other);
+  const auto [refusal, why] = sample::failure([&] { export_data(db, folder / "shared", {}); });
+  CHECK(refusal == ErrorKind::conflict);
+  CHECK(sample::contains(why, "export one at a time with --protocol"));
+  CHECK_FALSE(std::filesystem::exists(folder / "shared"));
 }
 
 TEST_CASE("separator and decimal mark can be chosen, but must differ", "[store]") {

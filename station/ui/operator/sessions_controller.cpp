@@ -172,11 +172,12 @@ std::string SessionsController::folder_of(int place) const {
   return disks_[static_cast<std::size_t>(place) - 1].folder;
 }
 
-/// Returns the folder of a place. If the place is a disk that is not mounted, mounts it first.
+/// Returns the folder of a place. If the place is a disk, mounts it first unless it still is; the folder of a
+/// disk that was pulled out lies on the system's own disk.
 static std::string mounted(std::string folder, const std::vector<maintenance::Disk>& disks, int place,
                            const maintenance::DiskSources& sources) {
-  return place > 0 && folder.empty() ? maintenance::mount(disks[static_cast<std::size_t>(place) - 1], sources)
-                                     : std::move(folder);
+  return place > 0 ? maintenance::mount(disks[static_cast<std::size_t>(place) - 1], sources)
+                   : std::move(folder);
 }
 
 void SessionsController::exportTo(int place, bool all, const QString& format) {
