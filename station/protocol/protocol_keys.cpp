@@ -454,6 +454,8 @@ const Keys& all() {
                  .without_it("all that apply"),
              word("incomplete_sessions", {"leave_out", "count"}, "whether unfinished sessions count")
                  .without_it("as [sessions] says"),
+             word("holm", {"measure", "all"}, "comparisons that are corrected together for their number")
+                 .without_it("no correction"),
              table("response_time_exclude",
                    {number("below_s", {0, 10, Ends::closed, "s"}, "shorter response times").by_default("0"),
                     number("mad", {0, 100, Ends::open_low, "median absolute deviations"},
