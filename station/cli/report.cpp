@@ -97,8 +97,10 @@ class TrialFile {
   std::optional<system::FileWriter> file_;
 };
 
-std::string interval_in_words(double value, double low, double high) {
-  return fmt::format("{} [{}, {}]", core::number(value, 3), core::number(low, 3), core::number(high, 3));
+template <class Estimate>
+std::string interval_in_words(const Estimate& estimate) {
+  return fmt::format("{} [{}, {}]", core::number(estimate.value, 3), core::number(estimate.interval.low, 3),
+                     core::number(estimate.interval.high, 3));
 }
 
 void print_study(std::ostream& out, const std::string& file, const report::Study& study) {
@@ -108,18 +110,17 @@ void print_study(std::ostream& out, const std::string& file, const report::Study
   for (const auto& group : study.groups) {
     const auto name = group.condition.empty() ? "all trials" : group.condition;
     if (group.result.fit && group.result.fit->threshold) {
-      const auto& [value, interval] = *group.result.fit->threshold;
       fmt::print(out, "  {}: threshold of the group {} {}\n", name,
-                 interval_in_words(value, interval.low, interval.high), study.settings.level_unit);
+                 interval_in_words(*group.result.fit->threshold), study.settings.level_unit);
     }
     for (const auto& statement : group.result.statements)
       fmt::print(out, "  {}: {}\n", name, core::say(statement.text, "en"));
   }
   for (const auto& effect : study.effects) {
     if (!effect.difference) continue;
-    const auto& [value, interval] = *effect.difference;
-    fmt::print(out, "  {}, {} - {}: {}\n", effect.measure, effect.second, effect.first,
-               interval_in_words(value, interval.low, interval.high));
+    fmt::print(out, "  {}, {} - {}: {}{}\n", effect.measure, effect.second, effect.first,
+               interval_in_words(*effect.difference),
+               effect.corrected_p ? ", corrected p " + core::number(*effect.corrected_p, 2) : "");
   }
 }
 

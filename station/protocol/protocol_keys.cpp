@@ -532,6 +532,10 @@ const Keys& all() {
            word("incomplete_sessions", {"leave_out", "count"},
                 "whether a report of a study counts sessions that were not completed")
                .without_it("as [sessions] says"),
+           word("holm", {"measure", "all"},
+                "which differences between conditions have their p values corrected together for their number "
+                "(Holm): those of each measure, or all of a table")
+               .without_it("no correction"),
            table(
                "response_time_exclude",
                {number("below_s", {0, 10, Ends::closed, "s"}, "shorter times").by_default("0"),

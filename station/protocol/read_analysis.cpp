@@ -117,6 +117,8 @@ void read_analysis(TableReader& file, Reading& reading) {
   read_show(reader, reading);
   const auto& sessions = reading.protocol.sessions;
   const auto incomplete = reader.maybe_word("incomplete_sessions");
+  if (const auto holm = reader.maybe_word("holm"))
+    analysis.holm = *holm == "all" ? Holm::all : Holm::measure;
   if (incomplete) analysis.count_incomplete = *incomplete == "count";
   if (incomplete == "leave_out" && sessions && sessions->incomplete == Unfinished::count)
     reader.problem(

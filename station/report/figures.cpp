@@ -523,4 +523,41 @@ std::optional<Figure> trade_figure(const Summary& summary) {
   return figure;
 }
 
+std::optional<Figure> macro_figure(const Summary& summary) {
+  const Words words(summary.data.language);
+  Chart chart{"", {}, {}, {}};
+  std::vector<double> times_s, heights{0};
+  std::vector<std::pair<double, double>> joined;
+  int series = 0;
+  for (const auto& entry : summary.trade.instructions) {
+    const int own = series++;
+    if (!entry.d_prime || !entry.median_s) continue;
+    const auto &time = *entry.median_s, &height = *entry.d_prime;
+    Line across;
+    across.x = {time.interval.low, time.interval.high}, across.y = {height.value, height.value};
+    Points point;
+    point.x = {time.value}, point.y = {height.value};
+    point.low = {height.interval.low}, point.high = {height.interval.high};
+    across.series = point.series = own;
+    point.name = or_default(entry.instruction, words("figure.all_trials"));
+    chart.layers.insert(chart.layers.end(), {across, point});
+    joined.emplace_back(time.value, height.value);
+    times_s.insert(times_s.end(), across.x.begin(), across.x.end());
+    heights.insert(heights.end(), {height.interval.low, height.interval.high});
+  }
+  if (joined.size() < 2) return std::nullopt;
+  std::sort(joined.begin(), joined.end());
+  Line line;
+  line.series = report::kNeutral;
+  for (const auto& [x, y] : joined) line.x.push_back(x), line.y.push_back(y);
+  chart.layers.insert(chart.layers.begin(), line);
+  chart.x = report::fitted(words("figure.median_time"), times_s, 0.12);
+  chart.y = report::fitted(words("figure.sensitivity"), heights, 0.08);
+  Figure figure;
+  figure.title = "Sensitivity against time over the conditions";
+  figure.chart_width_px = 560;
+  figure.charts.push_back(std::move(chart));
+  return figure;
+}
+
 }  // namespace turnpoint::report

@@ -121,7 +121,7 @@ std::optional<Figure> group_trade_figure(const Study& study) {
   std::vector<double> times, accuracies;
   std::vector<std::string> conditions;
   for (const auto& mean : study.means)
-    if (mean.measure == "proportion correct") conditions.push_back(mean.condition);
+    if (mean.measure == kCorrect) conditions.push_back(mean.condition);
   int series = 0;
   for (const auto& condition : conditions) {
     Points points;
@@ -131,8 +131,8 @@ std::optional<Figure> group_trade_figure(const Study& study) {
       std::optional<double> time, accuracy;
       for (const auto& measure : person.measures) {
         if (measure.condition != condition) continue;
-        if (measure.measure == "median response time") time = measure.value;
-        if (measure.measure == "proportion correct") accuracy = measure.value;
+        if (measure.measure == kMedianTime) time = measure.value;
+        if (measure.measure == kCorrect) accuracy = measure.value;
       }
       if (!time || !accuracy || !person.excluded.empty()) continue;
       points.x.push_back(*time), points.y.push_back(*accuracy);
@@ -150,6 +150,84 @@ std::optional<Figure> group_trade_figure(const Study& study) {
   figure.chart_width_px = 620;
   figure.chart_height_px = 330;
   figure.charts.push_back(std::move(chart));
+  return figure;
+}
+
+namespace {
+
+/// A chart of the means of one measure against those of another, by condition. `heights` and `times` are the
+/// names of the measures, or what these begin with.
+std::optional<Chart> course_chart(const Study& study, const std::string& heights, const std::string& times,
+                                  bool joins_conditions) {
+  Chart chart{"", {}, {}, {}};
+  std::vector<double> xs, ys;
+  std::vector<std::string> conditions;
+  std::vector<std::pair<double, double>> across_conditions;
+  for (const auto& mean : study.means)
+    if (mean.measure.starts_with(heights) &&
+        std::find(conditions.begin(), conditions.end(), mean.condition) == conditions.end())
+      conditions.push_back(mean.condition);
+  int series = 0;
+  for (const auto& condition : conditions) {
+    Points points;
+    Line line;
+    points.series = line.series = series++;
+    points.name = condition.empty() ? "all trials" : condition;
+    for (const auto& height : study.means) {
+      if (!height.measure.starts_with(heights) || height.condition != condition || !height.mean) continue;
+      const auto wanted = times + height.measure.substr(heights.size());
+      for (const auto& time : study.means) {
+        if (time.measure != wanted || time.condition != condition || !time.mean) continue;
+        const auto &x = *time.mean, &y = *height.mean;
+        points.x.push_back(x.value), points.y.push_back(y.value);
+        points.low.push_back(y.interval.low), points.high.push_back(y.interval.high);
+        Line reach;
+        reach.series = points.series;
+        reach.x = {x.interval.low, x.interval.high}, reach.y = {y.value, y.value};
+        chart.layers.push_back(reach);
+        xs.insert(xs.end(), reach.x.begin(), reach.x.end());
+        ys.insert(ys.end(), {y.interval.low, y.interval.high});
+      }
+    }
+    if (points.x.empty()) continue;
+    line.x = points.x, line.y = points.y;
+    if (joins_conditions)
+      across_conditions.emplace_back(points.x.front(), points.y.front());
+    else
+      chart.layers.push_back(line);
+    chart.layers.push_back(points);
+  }
+  if (xs.empty() || (joins_conditions && across_conditions.size() < 2)) return std::nullopt;
+  std::sort(across_conditions.begin(), across_conditions.end());
+  Line joined;
+  joined.series = report::kNeutral;
+  for (const auto& [x, y] : across_conditions) joined.x.push_back(x), joined.y.push_back(y);
+  if (joins_conditions) chart.layers.insert(chart.layers.begin(), joined);
+  chart.x = report::fitted("Response time (s)", xs, 0.1);
+  chart.y = report::fitted("", ys, 0.08);
+  return chart;
+}
+
+}  // namespace
+
+std::optional<Figure> group_course_figure(const Study& study) {
+  Figure figure;
+  const auto add = [&](const char* title, const char* y, const std::string& heights, const std::string& times,
+                       bool joins_conditions) {
+    auto chart = course_chart(study, heights, times, joins_conditions);
+    if (!chart) return;
+    chart->title = title, chart->y.label = y;
+    figure.charts.push_back(std::move(*chart));
+  };
+  add("Conditional accuracy", "Proportion correct (0 to 1)", analysis::kBinMeasure, kBinTime, false);
+  add("Sensitivity at the signal", "Sensitivity d\u2032", kLagSensitivity, kLagTime, false);
+  if (!study.settings.signalled)
+    add("Sensitivity over the conditions", "Sensitivity d\u2032", kSensitivity, kMedianTime, true);
+  if (figure.charts.empty()) return std::nullopt;
+  figure.title = "Accuracy over time, means of the participants";
+  figure.columns = figure.charts.size() > 1 ? 2 : 1;
+  figure.chart_width_px = figure.columns > 1 ? 400 : 620;
+  figure.chart_height_px = 330;
   return figure;
 }
 

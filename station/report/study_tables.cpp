@@ -70,6 +70,23 @@ std::string measures_table(const Study& study) {
   return csv;
 }
 
+std::string effects_table(const Study& study) {
+  std::string csv =
+      "measure,unit,first,second,participants,difference,low_95,high_95,standardised,between_groups,p,"
+      "corrected_p\n";
+  for (const auto& effect : study.effects) {
+    const auto& gap = effect.difference;
+    csv += csv_field(effect.measure) + "," + csv_field(effect.unit) + "," + csv_field(effect.first) + "," +
+           csv_field(effect.second) + "," + std::to_string(effect.persons) + "," +
+           (gap ? csv_number(gap->value) + "," + csv_number(gap->interval.low) + "," +
+                      csv_number(gap->interval.high)
+                : ",,") +
+           "," + csv_number(effect.standardised) + "," + yes_or_no(effect.between_groups) + "," +
+           (gap ? csv_number(gap->p) : "") + "," + csv_number(effect.corrected_p) + "\n";
+  }
+  return csv;
+}
+
 std::string estimates_table(const Study& study) {
   std::string csv =
       "participant,excluded,session,procedure,block,parameter,mean,sd,low_95,high_95,unit,basis\n";
@@ -132,6 +149,7 @@ std::string groups_table(const Study& study) {
 std::vector<Table> study_tables(const Study& study) {
   return {{"answers.csv", answers_table(study)},
           {"measures.csv", measures_table(study)},
+          {"effects.csv", effects_table(study)},
           {"estimates.csv", estimates_table(study)},
           {"participants.csv", participants_table(study)},
           {"groups.csv", groups_table(study)}};

@@ -8,7 +8,7 @@ distribution, of its tail, and of the survival; below -1e5 a logarithm is writte
 
 first_passage_table.py varied [SETS [SEED]] prints rows with variability: drift, boundary, start, time, standard deviation of
 the drift, range of the delay, then the same four logarithms. The averages over drifts and delays are taken by quadrature,
-twice with different steps; the test has the first 19 rows.
+twice with different steps; the test has 19 rows, and reads more from the file that TURNPOINT_VARIED_ROWS names.
 """
 import random
 import sys
@@ -142,20 +142,23 @@ def averaged(v, a, w, t, sd, delay, panels):
 
 def varied(sets=60, seed=21):
     draw = random.Random(seed)
-    mp.dps = 40
+    mp.dps = 28
     for i in range(int(sets)):
-        kind = "both" if i % 10 == 9 else "drift" if i % 2 == 0 else "delay"
-        v, a = draw.uniform(-4, 4), 10 ** draw.uniform(-0.3, 0.5)
-        w = draw.choice([0.5, draw.uniform(0.1, 0.9)])
+        kind = "both" if i % 25 == 24 else "drift" if i % 2 == 0 else "delay"
+        wide = i % 4 >= 2
+        v, a = draw.uniform(-10, 10) if wide else draw.uniform(-4, 4), 10 ** draw.uniform(-0.7 if wide else -0.3, 0.9 if wide else 0.5)
+        w = draw.choice([0.5, draw.uniform(0.1, 0.9)] + ([10 ** draw.uniform(-3, -1), 1 - 10 ** draw.uniform(-3, -1)] if wide else []))
         t = a * a * 10 ** draw.uniform(-1.2, 0.7)
-        sd = 0.0 if kind == "delay" else 10 ** draw.uniform(-1.5, 0.1)
+        sd = 0.0 if kind == "delay" else 10 ** draw.uniform(-1.5, 0.3 if wide else 0.1)
         delay = 0.0 if kind == "drift" else t * 10 ** draw.uniform(-1.5, 0.3)
-        panels = {"drift": 24, "delay": 6, "both": 6}[kind]
+        panels = {"drift": 24, "delay": 6, "both": 4}[kind]
         values = [mpf(x) for x in (v, a, w, t, sd, delay)]
         sums = averaged(*values, panels)
-        for one, again in zip(sums, averaged(*values, panels + panels // 2)):
-            assert abs(one / again - 1) < mpf(10) ** -10, (kind, values, one, again)
-        print("    {" + ", ".join([repr(x) for x in (v, a, w, t, sd, delay)] + [written(x) for x in sums]) + "},", flush=True)
+        again = averaged(*values, panels + (panels // 2 if kind != "both" else 1))
+        if any(abs(one / other - 1) > mpf(10) ** -9.5 for one, other in zip(sums, again)):
+            print("quadrature not exact enough:", kind, *(float(x) for x in values), file=sys.stderr, flush=True)
+            continue
+        print("    {" + ", ".join([repr(x) for x in (v, a, w, t, sd, delay)] + [written(x) for x in again]) + "},", flush=True)
 
 
 if __name__ == "__main__":

@@ -783,6 +783,25 @@ class LongWork(Folder):
                 open(os.path.join(self.folder, "two/boundary-constant-power.svg"), "rb") as two:
             self.assertEqual(one.read(), two.read())
 
+    def test_a_divided_study_of_groups_gives_what_one_process_gives(self):
+        words = ["power", "speed-accuracy", "--observers", "6", "--people", "3", "--between", "bound=0.15,residual=0.1"]
+        for number in ("1/2", "2/2"):
+            status, out, err = run([*words, "--part", number], self.folder)
+            self.assertEqual(status, 0, err)
+            self.write(f"group{number[0]}.json", out.encode())
+        joined = run(["power", "--join", "group2.json", "group1.json", "--json"], self.folder)[1]
+        whole = json.loads(joined)
+        self.assertEqual(joined, run([*words, "--json"], self.folder)[1])
+        self.assertEqual(whole["people"], 3)
+        self.assertEqual({one["sessions"] for one in whole["recoveries"]}, {2})
+        drift = next(one for one in whole["recoveries"] if one["parameter"] == "drift" and one["claimed"])
+        self.assertEqual((drift["truth"], drift["claimed"]["of"]), (0, 2))
+        self.assertIn("2 studies of 3 people each", run(words, self.folder)[1])
+        self.refused_in_one_sentence(["power", "speed-accuracy", "--people", "3"], "--people and --between belong together")
+        self.refused_in_one_sentence([*words[:3], "8", *words[4:]], "use 6 or 9")
+        self.refused_in_one_sentence([*words[:7], "threshold=0.1"], "write sim:threshold=")
+        self.refused_in_one_sentence([*words[:7], "bonud=0.1"], "\"bonud=0.1\" is not understood")
+
     def part(self, name, number, *more):
         status, out, err = run([*STUDY, "--part", number, *more], self.folder)
         self.assertEqual(status, 0, err)

@@ -96,7 +96,7 @@ class Study(unittest.TestCase):
             page = file.read()
         for title in ("Participants", "Psychometric function of the group", "Effects"):
             self.assertIn(f"<h2>{title}</h2>", page)
-        self.assertEqual(page.count("<svg"), 3)
+        self.assertEqual(page.count("<svg"), 4)
         for word in ("<script", "http-equiv", "nan", "inf<"):
             self.assertNotIn(word, page.lower().replace("confidence", ""))
 
@@ -132,6 +132,36 @@ class Study(unittest.TestCase):
         said = report.pop("statements")
         self.assertNotIn("BIS", json.dumps(report))
         self.assertIn("so one session has none", " ".join(statement["text"] for statement in said))
+
+    def test_effects_are_in_a_table_with_p_values_and_holms_correction_on_request(self):
+        rows = self.rows("effects.csv")
+        self.assertEqual(len(rows), len(self.study["effects"]))
+        for row, effect in zip(rows, self.study["effects"]):
+            self.assertEqual((row["measure"], row["first"], row["second"]), (effect["measure"], effect["first"], effect["second"]))
+            self.assertEqual(row["corrected_p"], "")
+            if effect["difference"]:
+                self.assertAlmostEqual(float(row["p"]), effect["p"], 9)
+                low, high = (effect["difference"]["interval"][end] for end in ("low", "high"))
+                self.assertEqual(effect["p"] < 0.05, low > 0 or high < 0, effect)
+        # the same sessions of a protocol that asks for the correction
+        with open(os.path.join(SOURCE, "protocols/speed-accuracy.toml"), encoding="utf-8") as file:
+            text = file.read().replace('id = "speed-accuracy"', 'id = "corrected"')
+        with open(os.path.join(self.folder, "corrected.toml"), "w", encoding="utf-8") as file:
+            file.write(text.replace("[analysis]", '[analysis]\nholm = "all"'))
+        for i, (bias, threshold) in enumerate(OBSERVERS[:4]):
+            self.call(["run", "corrected.toml", "--participant", f"P{i + 1:02}", "--db", "corrected.sqlite", "--headless", "--observer",
+                       f"sim:bias={bias},threshold={threshold}", "--seed", str(i + 1)])
+        self.call(["report", "--study", "--db", "corrected.sqlite", "--out", "corrected.html", "--tables", "corrected"])
+        out = subprocess.run(["Rscript", "-e", 'e <- read.csv("corrected/effects.csv"); e <- e[!is.na(e$p), ]; '
+                              'cat(sprintf("%.12g %.12g %.12g\\n", e$p, e$corrected_p, p.adjust(e$p, "holm")), sep = "")'],
+                             cwd=self.folder, capture_output=True, text=True, check=True).stdout
+        compared = [tuple(map(float, line.split())) for line in out.splitlines()]
+        self.assertGreater(len(compared), 8)
+        for _, ours, theirs in compared:
+            self.assertAlmostEqual(ours, theirs, 9)
+        self.assertTrue(any(ours > p for p, ours, _ in compared))
+        with open(os.path.join(self.folder, "corrected.html"), encoding="utf-8") as file:
+            self.assertIn("Holm\u2019s method for the number of all effects", file.read())
 
     def test_lme4_finds_the_same_groups(self):
         out = subprocess.run(["Rscript", os.path.join(SCRIPTS, "study.R"), "tables"], cwd=self.folder, capture_output=True, text=True,

@@ -96,7 +96,7 @@ TEST_CASE("A speed-accuracy session gives fits, the trade with intervals, and al
   REQUIRE(summary.fits.size() == 2);
   CHECK(summary.fits[0].fit.parameters.has_value());
   CHECK(summary.fits[0].positive == "\u201cRougher\u201d");
-  REQUIRE(summary.trade.differences.size() == 7);
+  REQUIRE(summary.trade.differences.size() == 7 + 5 + 1);  // five bins of time, and d'
   CHECK(summary.trade.differences[2].estimate->interval.low > 0);
   keep("psychometric.svg", shown(psychometric_figure(summary)));
   keep("trace.svg", shown(trace_figure(summary)));
@@ -116,6 +116,62 @@ TEST_CASE("A speed-accuracy session gives fits, the trade with intervals, and al
   const auto json = nlohmann::json::parse(to_json(summary));
   CHECK(json["instructions"].size() == 2);
   CHECK(json["differences"][2]["estimate"]["value"].get<double>() > 0.03);
+}
+
+TEST_CASE("The macro trade has d' and time of each condition with their intervals, as figure and in the table",
+          "[report]") {
+  const auto data = speed_accuracy(28);
+  const auto summary = summarise(data);
+  const auto figure = macro_figure(summary);
+  keep("macro.svg", shown(figure));
+  const auto detections =
+      analysis::detect(data.trials, {}, analysis::Detecting::sides, 1);  // an independent way to the counts
+  std::size_t points = 0;
+  for (const auto& layer : figure->charts[0].layers)
+    if (const auto* point = std::get_if<report::Points>(&layer)) {
+      const auto& entry = summary.trade.instructions[points++];
+      CHECK(point->x[0] == entry.median_s->value);
+      const auto found = std::find_if(detections.begin(), detections.end(), [&](const auto& one) {
+        return !one.level && one.condition == entry.instruction;
+      });
+      CHECK(point->y[0] == found->d_prime->value);
+      CHECK(point->low[0] == found->d_prime->interval.low);
+      CHECK(point->high[0] == found->d_prime->interval.high);
+    }
+  CHECK(points == 2);
+  const auto& gap = summary.trade.differences.back();
+  CHECK(gap.measure == "d'");
+  CHECK(gap.estimate->value == Approx(summary.trade.instructions[1].d_prime->value -
+                                      summary.trade.instructions[0].d_prime->value));
+  CHECK((*gap.estimate->p < 0.05) == (gap.estimate->interval.low > 0 || gap.estimate->interval.high < 0));
+  CHECK(to_html(summary).find("Sensitivity d\u2032 over all levels") != std::string::npos);
+  auto signalled = data;
+  signalled.signalled = true;  // the lags are the macro trade then
+  CHECK_FALSE(macro_figure(summarise(signalled)));
+}
+
+TEST_CASE("Comparisons are corrected for their number only if the protocol asks for it", "[report]") {
+  auto data = speed_accuracy(28);
+  const auto plain = summarise(data);
+  for (const auto& one : plain.trade.differences) CHECK_FALSE(one.corrected_p);
+  CHECK(to_html(plain).find("Holm") == std::string::npos);
+  data.holm = protocol::Holm::all;
+  const auto all = summarise(data);
+  double smallest = 1;
+  int compared = 0;
+  for (const auto& one : all.trade.differences)
+    if (one.estimate) smallest = std::min(smallest, *one.estimate->p), ++compared;
+  for (const auto& one : all.trade.differences) {
+    REQUIRE(one.corrected_p.has_value() == one.estimate.has_value());
+    if (!one.estimate) continue;
+    CHECK(*one.corrected_p >= *one.estimate->p);
+    if (*one.estimate->p == smallest) CHECK(*one.corrected_p == Approx(std::min(1.0, compared * smallest)));
+  }
+  CHECK(to_html(all).find("corrected by Holm\u2019s method for the number of all differences") !=
+        std::string::npos);
+  data.holm = protocol::Holm::measure;  // one pair of conditions: nothing to correct within a measure
+  for (const auto& one : summarise(data).trade.differences)
+    if (one.estimate) CHECK(*one.corrected_p == *one.estimate->p);
 }
 
 TEST_CASE("Degenerate sessions give statements instead of numbers", "[report]") {
