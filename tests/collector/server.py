@@ -68,6 +68,7 @@ class KeptServer(Server):
         super().__init__(work, turnpoint, stations, "-c fsync=off -c synchronous_commit=off -c full_page_writes=off")
         self.psql = subprocess.Popen(["psql", "-XqAt", "-v", "ON_ERROR_STOP=1", "-h", self.work, "-U", "postgres", "lab"],
                                      stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.sql("SET client_min_messages = warning")
         self.tables = self.sql("SELECT tablename FROM pg_tables WHERE schemaname = 'turnpoint'").split()
 
     def sql(self, text):
