@@ -132,7 +132,8 @@ Figure for_paper(Figure figure, double width_mm) {
   const double shape = std::clamp(figure.chart_height_px / figure.chart_width_px, 0.35, 1.0);
   figure.columns = columns;
   figure.chart_width_px = chart_px;
-  figure.chart_height_px = std::max(180.0, chart_px * std::max(shape, rows > 2 ? 0.5 : 0.62));
+  // titles, legends and axes take as much height in a narrow chart as in a wide one
+  figure.chart_height_px = chart_px * std::max(shape, rows > 2 ? 0.5 : 0.62) + (chart_px < 400 ? 50 : 0);
   return figure;
 }
 

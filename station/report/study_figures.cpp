@@ -58,7 +58,8 @@ Points answers_of(const Study& study, const GroupFit& group, int series) {
     if (!mean) continue;
     points.x.push_back(at), points.y.push_back(mean->value);
     points.weight.push_back(level.trials);
-    points.low.push_back(mean->interval.low), points.high.push_back(mean->interval.high);
+    points.low.push_back(std::max(0.0, mean->interval.low));
+    points.high.push_back(std::min(1.0, mean->interval.high));
   }
   return points;
 }
