@@ -116,6 +116,12 @@ struct CheckOptions {
   std::function<protocol::Protocol(const std::string& path)> load_protocol = protocol::load;
 };
 
+/// Simulates sessions in which one trial of ten is not answered, and counts those in which runs of trials
+/// were longer than the protocol allows. Trials that come again can make a run longer, so hardly any limit is
+/// certain. Empty if the protocol limits no runs.
+std::vector<CheckedRuns> check_runs(const protocol::Protocol& protocol, int sessions,
+                                    const std::stop_token& stop = {}, const Steps& steps = {});
+
 /// Returns a Check with blocks, trials, duration_s and the numbers of sessions only.
 Check session_lengths(const protocol::Protocol& protocol, std::optional<int> sessions = {});
 

@@ -116,6 +116,10 @@ TEST_CASE("A session of timeouts, or of five trials, gives only statements", "[a
   const auto late = trade(trials, options);
   REQUIRE(late.instructions.size() == 1);
   CHECK(late.instructions[0].timeouts == 5);
+  auto with_void = trials;
+  with_void.resize(7);
+  with_void[5].outcome = Outcome::fault, with_void[6].outcome = Outcome::aborted;
+  CHECK(trade(with_void, options).instructions[0].presented == 5);
   CHECK_FALSE(late.instructions[0].proportion_correct.has_value());
   CHECK_FALSE(late.instructions[0].boundary.has_value());
   CHECK(says(late.instructions[0].statements, "timeouts"));
