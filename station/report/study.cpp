@@ -249,16 +249,14 @@ std::vector<std::string> rules_in_words(const protocol::Exclusion& rules) {
 
 namespace {
 
-/// The words of a condition's name that say to which group of participants it belongs.
-std::vector<std::string> group_of(const std::string& condition, const std::vector<std::string>& groups) {
-  std::vector<std::string> found;
-  std::size_t from = 0;
-  while (from <= condition.size()) {
-    const auto to = std::min(condition.find(", ", from), condition.size());
-    const auto word = condition.substr(from, to - from);
-    if (std::find(groups.begin(), groups.end(), word) != groups.end()) found.push_back(word);
-    from = to + 2;
-  }
+/// The group of participants to which a condition belongs; "" if to all. The name of an analysis or a
+/// procedure may come before that of the condition.
+std::string group_of(const std::string& condition, const std::map<std::string, std::string>& groups) {
+  std::size_t longest = 0;
+  std::string found;
+  for (const auto& [name, group] : groups)
+    if ((condition == name || condition.ends_with(", " + name)) && name.size() > longest)
+      longest = name.size(), found = group;
   return found;
 }
 
@@ -313,7 +311,7 @@ void finish_study(Study& study) {
   std::stable_sort(measures.begin(), measures.end(),
                    [&place](const PersonMeasure& a, const PersonMeasure& b) { return place(a) < place(b); });
   study.means = analysis::group_means(measures);
-  const auto& groups = study.groups_in_words;
+  const auto& groups = study.groups_of_conditions;
   study.effects = analysis::effects(measures, [&groups](const std::string& first, const std::string& second) {
     return group_of(first, groups) != group_of(second, groups);
   });

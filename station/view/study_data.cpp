@@ -240,10 +240,7 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
   study.rules = report::rules_in_words(rules);
   const auto people = by_person(std::move(all));
   int done = 0;
-  for (const auto& factor : protocol.factors)
-    if (factor.draw == protocol::FactorDraw::per_participant)
-      for (const auto& level : factor.levels)
-        study.groups_in_words.push_back(protocol::level_in_words(factor.name, level));
+  study.groups_of_conditions = protocol::groups_of_conditions(protocol);
   study.sessions.incomplete_count = protocol.analysis.count_incomplete;
   for (const auto& [person, sessions] : people) {
     if (!progress(done, static_cast<int>(people.size()))) {
