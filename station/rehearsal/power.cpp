@@ -284,7 +284,7 @@ std::vector<Recovery> recover_studies(const protocol::Protocol& protocol, const 
   for (std::size_t first = 0; first + people <= outcomes.size(); first += people) {
     report::Study study;
     study.settings = outcomes.front().settings;
-    study.groups_in_words = report::groups_in_words(protocol);
+    study.groups_of_conditions = protocol::groups_of_conditions(protocol);
     for (std::size_t i = first; i < first + people; ++i) {
       auto& person = study.persons.emplace_back(*outcomes[i].person);
       person.person = std::to_string(i);

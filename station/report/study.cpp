@@ -260,15 +260,6 @@ std::vector<std::string> rules_in_words(const protocol::Exclusion& rules) {
   return words;
 }
 
-std::vector<std::string> groups_in_words(const protocol::Protocol& protocol) {
-  std::vector<std::string> words;
-  for (const auto& factor : protocol.factors)
-    if (factor.draw == protocol::FactorDraw::per_participant)
-      for (const auto& level : factor.levels)
-        words.push_back(protocol::level_in_words(factor.name, level));
-  return words;
-}
-
 protocol::Protocol by_group(protocol::Protocol protocol) {
   auto& by = protocol.analysis.by;
   std::vector<std::string> groups;
@@ -289,16 +280,14 @@ protocol::Protocol by_group(protocol::Protocol protocol) {
 
 namespace {
 
-/// The words of a condition's name that say to which group of participants it belongs.
-std::vector<std::string> group_of(const std::string& condition, const std::vector<std::string>& groups) {
-  std::vector<std::string> found;
-  std::size_t from = 0;
-  while (from <= condition.size()) {
-    const auto to = std::min(condition.find(", ", from), condition.size());
-    const auto word = condition.substr(from, to - from);
-    if (std::find(groups.begin(), groups.end(), word) != groups.end()) found.push_back(word);
-    from = to + 2;
-  }
+/// The group of participants to which a condition belongs; "" if to all. The name of an analysis or a
+/// procedure may come before that of the condition.
+std::string group_of(const std::string& condition, const std::map<std::string, std::string>& groups) {
+  std::size_t longest = 0;
+  std::string found;
+  for (const auto& [name, group] : groups)
+    if ((condition == name || condition.ends_with(", " + name)) && name.size() > longest)
+      longest = name.size(), found = group;
   return found;
 }
 
@@ -353,7 +342,7 @@ void finish_study(Study& study) {
   std::stable_sort(measures.begin(), measures.end(),
                    [&place](const PersonMeasure& a, const PersonMeasure& b) { return place(a) < place(b); });
   study.means = analysis::group_means(measures);
-  const auto& groups = study.groups_in_words;
+  const auto& groups = study.groups_of_conditions;
   std::erase_if(measures, [](const PersonMeasure& one) {  // where figures put their points; nothing to compare
     return one.measure.starts_with(kBinTime) || one.measure.starts_with(kLagTime);
   });

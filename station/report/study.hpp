@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -63,8 +64,7 @@ struct Study {
   SessionData settings;     ///< how the trials are analysed; its list of trials is empty
   std::vector<Fact> facts;  ///< rows for the head of the report
   SessionCounts sessions;
-  /// for each group of participants, the words that the names of its conditions contain; empty without groups
-  std::vector<std::string> groups_in_words;
+  std::map<std::string, std::string> groups_of_conditions;  ///< as of protocol::groups_of_conditions()
   std::vector<std::string> rules;  ///< the rules of exclusion, as the protocol states them
   std::vector<StudyPerson> persons;
   std::vector<GroupFit> groups;
@@ -90,8 +90,6 @@ inline const LevelAnalysis& analysis_of(const GroupFit& group, const SessionData
 
 /// Returns the protocol, changed so that each group of participants is analysed separately.
 protocol::Protocol by_group(protocol::Protocol protocol);
-/// The words that tell the groups of participants, for Study::groups_in_words.
-std::vector<std::string> groups_in_words(const protocol::Protocol& protocol);
 
 /// Analyses the trials of one participant, from all sessions together, with data.replicates bootstrap
 /// replicates (kStudyReplicates in the report of a study), and applies the rules.

@@ -221,7 +221,7 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
   study.rules = report::rules_in_words(rules);
   const auto people = by_person(std::move(all));
   int done = 0;
-  study.groups_in_words = report::groups_in_words(protocol);
+  study.groups_of_conditions = protocol::groups_of_conditions(protocol);
   study.sessions.incomplete_count = protocol.analysis.count_incomplete;
   for (const auto& [person, sessions] : people) {
     if (!progress(done, static_cast<int>(people.size()))) {
