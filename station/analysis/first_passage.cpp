@@ -252,6 +252,12 @@ double FirstPassageDensity::log_at(double time_s) const {
   const double from_s = time_s - range_s;
   if (variance_ == 0 && range_s * rates_[0] > kShortestRange && from_s * per_boundary2_ > kLongBetween)
     return log_between(from_s, time_s) - std::log(range_s);
+  if (variance_ == 0) {  // the difference of two distributions, where little of it cancels
+    const Seen seen{drift_away_, diffusion_.boundary, distance_, relative_, opposite_};
+    const double by_now = log_distribution_of(seen, time_s);
+    const double before = from_s > 0 ? log_distribution_of(seen, from_s) : kNever;
+    if (before < by_now - 0.1) return log_difference(by_now, before) - std::log(range_s);
+  }
   return log_arrivals(std::max(from_s, 0.0), time_s, [](double) { return 1.0; }) - std::log(range_s);
 }
 

@@ -219,6 +219,27 @@ TEST_CASE("The first-passage functions are never NaN, and agree with each other"
         }
 }
 
+TEST_CASE("With any variability the functions are never NaN, and distribution and tail make the whole",
+          "[analysis][diffusion]") {
+  for (const double drift : {-30.0, 0.0, 5.0})
+    for (const double boundary : {0.05, 1.0, 10.0})
+      for (const double start : {1e-6, 0.5, 1 - 1e-6})
+        for (const double sd : {0.0, 0.3, 20.0})
+          for (const double delay : {0.0, 1e-4, 0.5})
+            for (const double time : {1e-4, 0.3, 100.0}) {
+              if (sd == 0 && delay == 0) continue;
+              INFO("drift " << drift << ", boundary " << boundary << ", start " << start << ", sd " << sd
+                            << ", delay " << delay << ", time " << time);
+              const Diffusion d{drift, boundary, start, sd, delay};
+              const double ever = upper_probability(d);
+              const double below = log_distribution(d, true, time), above = log_tail(d, true, time);
+              CHECK_FALSE(std::isnan(log_density(d, true, time)));
+              CHECK(std::exp(below) + std::exp(above) == Approx(ever).epsilon(1e-8).margin(1e-300));
+              const Diffusion turned{-drift, boundary, 1 - start, sd, delay};
+              CHECK(ever + upper_probability(turned) == Approx(1).epsilon(1e-8));
+            }
+}
+
 TEST_CASE("EZ-diffusion, the start of the fit, reproduces the example of its paper",
           "[analysis][diffusion]") {
   const auto ez = ez_diffusion(0.802, 100, 0.723, 0.112);
