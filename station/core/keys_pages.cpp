@@ -25,6 +25,10 @@ struct Json {
   }
 };
 
+void capitalise(std::string& text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+}
+
 std::string in_quotes(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {
@@ -218,8 +222,7 @@ class SchemaWriter {
     }
     std::string description;
     for (const auto& sentence : sentences) description += (description.empty() ? "" : " / ") + sentence;
-    if (!description.empty() && description[0] >= 'a' && description[0] <= 'z')
-      description[0] = static_cast<char>(description[0] - 'a' + 'A');
+    capitalise(description);
     Json json;
     json.add("description", word(description));
     const auto& fallback = same.front()->fallback;
@@ -409,7 +412,7 @@ std::string reference(const Keys& keys) {
     for (std::size_t i = 1; i < section.titles.size(); ++i)
       also += (i > 1 ? ", " : also.empty() ? "The same in " : "; the same in ") + section.titles[i];
     if (!also.empty()) {
-      also.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(also.front())));
+      capitalise(also);
       page += also + ":\n\n";
     }
     page += section.tables;
