@@ -301,7 +301,7 @@ Summary summarise(const SessionData& data) {
   how.halves = shows(data, "ez");
   summary.trade = analysis::trade(data.trials, how);
   hide(data, summary.trade);
-  if (data.scored && summary.trade.instructions.size() > 1 && shows(data, "bis"))
+  if (data.scored && (data.show || summary.trade.instructions.size() > 1) && shows(data, "bis"))
     summary.trade.statements.push_back({"bis-study", phrase("statement.bis_study")});
   if (shows(data, "psychometric")) summary.fits = fits_of(data);
   return summary;
