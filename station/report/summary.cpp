@@ -368,7 +368,7 @@ Summary summarise(const SessionData& data) {
   summary.trade = trade_of(data, how);
   summary.curves = curves_of(data);
   summary.curve_differences = curve_differences_of(data, summary.curves);
-  if (data.scored && summary.trade.instructions.size() > 1 && shows(data, "bis"))
+  if (data.scored && (data.show || summary.trade.instructions.size() > 1) && shows(data, "bis"))
     summary.trade.statements.push_back({"bis-study", phrase("statement.bis_study")});
   if (shows(data, "psychometric")) summary.fits = fits_of(data);
   return summary;
