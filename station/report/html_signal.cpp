@@ -3,6 +3,7 @@
 #include "station/report/figures.hpp"
 #include "station/report/html_parts.hpp"
 #include "station/report/svg.hpp"
+#include "station/report/words.hpp"
 
 namespace turnpoint::report {
 
@@ -104,6 +105,7 @@ std::optional<Figure> signal_figure(const Summary& summary) {
   Figure figure;
   figure.title = "Sensitivity over time";
   figure.chart_width_px = 560;
+  figure.caption = Words("en").together({"figure.caption_signal"});
   figure.charts.push_back(std::move(chart));
   return figure;
 }

@@ -121,6 +121,10 @@ struct Table {
   std::string name;  ///< name of the CSV file
   std::string csv;
 };
+/// A text, and a number, as a field of a CSV file. A number that is not finite, or does not exist, is an empty field.
+std::string csv_field(const std::string& text);
+std::string csv_number(double value);
+std::string csv_number(const std::optional<double>& value);
 /// Tidy tables for other programs: answers.csv (one row for each participant, condition and level),
 /// measures.csv, effects.csv, estimates.csv (the procedures' own estimates), participants.csv and groups.csv.
 std::vector<Table> study_tables(const Study& study);

@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
+#include "station/analysis/student.hpp"
 #include "station/report/chart.hpp"
 #include "station/report/study.hpp"
+#include "station/report/words.hpp"
 
 namespace turnpoint::report {
 
@@ -28,6 +31,50 @@ analysis::Psychometric group_parameters(const analysis::MixedFit& fit) {
   for (const auto& person : fit.persons)
     guess += person.parameters.guess / static_cast<double>(fit.persons.size());
   return {fit.threshold->value, fit.slope->value, guess, fit.lapse};
+}
+
+/// The mean of the participants' proportions, with its interval, at each level that at least three of them had.
+Points answers_of(const Study& study, const GroupFit& group, int series) {
+  struct Level {
+    int trials = 0;
+    std::vector<double> shares;
+  };
+  std::map<double, Level> levels;
+  for (const auto& person : study.persons)
+    for (const auto& named : person.fits) {
+      if (!person.excluded.empty() || named.part != group.part || named.name != group.condition) continue;
+      for (const auto& point : named.fit.data) {
+        if (point.level == analysis::kNoise || point.trials == 0) continue;
+        auto& level = levels[point.level];
+        level.trials += point.trials;
+        level.shares.push_back(static_cast<double>(point.positive) / point.trials);
+      }
+    }
+  Points points;
+  points.series = series;
+  points.name = "mean of the participants";
+  for (const auto& [at, level] : levels) {
+    const auto mean = level.shares.size() < 3 ? std::nullopt : analysis::student_mean(level.shares);
+    if (!mean) continue;
+    points.x.push_back(at), points.y.push_back(mean->value);
+    points.weight.push_back(level.trials);
+    points.low.push_back(std::max(0.0, mean->interval.low));
+    points.high.push_back(std::min(1.0, mean->interval.high));
+  }
+  return points;
+}
+
+int trials_of(const Study& study) {
+  int trials = 0;
+  for (const auto& group : study.groups)
+    if (group.result.fit)
+      for (const auto& person : group.result.fit->persons) trials += person.trials;
+  return trials;
+}
+
+std::size_t persons_of(const Study& study) {
+  return static_cast<std::size_t>(std::count_if(study.persons.begin(), study.persons.end(),
+                                                [](const auto& person) { return person.excluded.empty(); }));
 }
 
 std::vector<double> levels_of(const Study& study, std::size_t part) {
@@ -61,15 +108,22 @@ std::optional<Figure> group_curve_figure(const Study& study) {
                        fit.options.scale == analysis::Scale::log10 ? AxisScale::log10 : AxisScale::linear);
     chart.y = {"Proportion " + group.positive + " (0 to 1)", -0.03, 1.03};
     if (part.design == Design::forced_choice) chart.y.low = 0.3;
-    for (const auto& person : fit.persons)
-      if (person.threshold)
-        chart.layers.push_back(curve_of(fit.options, person.parameters, chart.x, report::kNeutral));
+    for (const auto& person : fit.persons) {
+      if (!person.threshold) continue;
+      auto alone = curve_of(fit.options, person.parameters, chart.x, report::kNeutral);
+      alone.name = "participants", alone.faint = true;
+      chart.layers.push_back(std::move(alone));
+    }
     auto whole = curve_of(fit.options, group_parameters(fit), chart.x, series);
     whole.name = "group";
     chart.layers.push_back(std::move(whole));
+    if (auto answers = answers_of(study, group, series); !answers.x.empty())
+      chart.layers.push_back(std::move(answers));
     figure.charts.push_back(std::move(chart));
   }
   if (figure.charts.empty()) return std::nullopt;
+  figure.caption = Words("en")("figure.caption_group",
+                               {std::to_string(persons_of(study)), std::to_string(trials_of(study))});
   return figure;
 }
 
@@ -87,8 +141,10 @@ std::optional<Figure> shrinkage_figure(const Study& study) {
     pooled.name = "partial pooling", pooled.series = series;
     std::vector<double> all;
     double number = 0;
+    std::vector<std::string> codes;
     for (const auto& person : group.result.fit->persons) {
       ++number;
+      codes.push_back(person.person);
       if (person.threshold) {
         pooled.x.push_back(number), pooled.y.push_back(person.threshold->value);
         pooled.low.push_back(person.threshold->interval.low);
@@ -105,7 +161,7 @@ std::optional<Figure> shrinkage_figure(const Study& study) {
     if (all.empty()) continue;
     Chart chart;
     chart.title = group.condition.empty() ? "all trials" : group.condition;
-    chart.x = {"Participant (number in the table below)", 0.4, number + 0.6, AxisScale::linear, true};
+    chart.x = {"Participant", 0.4, number + 0.6, AxisScale::linear, true, codes};
     chart.y = report::fitted(analysis_of(group, study.settings).level_label, all, 0.08);
     chart.layers.push_back(Rule{Rule::Direction::horizontal, group.result.fit->threshold->value, "group"});
     chart.layers.push_back(alone);
@@ -113,6 +169,7 @@ std::optional<Figure> shrinkage_figure(const Study& study) {
     figure.charts.push_back(std::move(chart));
   }
   if (figure.charts.empty()) return std::nullopt;
+  figure.caption = Words("en")("figure.caption_shrinkage", std::to_string(persons_of(study)));
   return figure;
 }
 
@@ -147,6 +204,7 @@ std::optional<Figure> group_trade_figure(const Study& study) {
   chart.y = {"Proportion correct (0 to 1)", std::min(0.45, lowest - 0.03), 1.03};
   Figure figure;
   figure.title = "Speed and accuracy of each participant";
+  figure.caption = Words("en")("figure.caption_persons", std::to_string(persons_of(study)));
   figure.chart_width_px = 620;
   figure.chart_height_px = 330;
   figure.charts.push_back(std::move(chart));

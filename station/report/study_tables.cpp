@@ -6,9 +6,7 @@
 
 namespace turnpoint::report {
 
-namespace {
-
-/// A field of a CSV file (RFC 4180).
+/// RFC 4180.
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -17,7 +15,10 @@ std::string csv_field(const std::string& text) {
 }
 
 std::string csv_number(double value) { return std::isfinite(value) ? core::number(value, 12) : ""; }
+
 std::string csv_number(const std::optional<double>& value) { return value ? csv_number(*value) : ""; }
+
+namespace {
 
 const char* yes_or_no(bool value) { return value ? "yes" : "no"; }
 

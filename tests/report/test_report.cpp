@@ -6,7 +6,9 @@
 #include "station/core/number.hpp"
 #include "station/report/chart.hpp"
 #include "station/report/figures.hpp"
+#include "station/report/figure_files.hpp"
 #include "station/report/html.hpp"
+#include "station/report/words.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/diffusion.hpp"
 
@@ -257,15 +259,18 @@ TEST_CASE("If the answers determined the levels, the report states the posterior
   keep("posterior.svg", shown(figure));
   const auto& layers = figure->charts[0].layers;
   const double threshold = summary.fits[0].fit.parameters->threshold;
+  const auto& fitted = summary.fits[0].fit;
+  const auto height = core::number(std::round(
+      100 * analysis::probability(fitted.options.function, fitted.options.scale, *fitted.parameters, threshold)));
   CHECK(std::any_of(layers.begin(), layers.end(), [&](const auto& layer) {
     const auto* rule = std::get_if<report::Rule>(&layer);
     return rule != nullptr && rule->direction == report::Rule::Direction::vertical && rule->at == threshold &&
-           rule->label == "threshold " + core::number(threshold, 3) + " dB";
+           rule->label == "threshold " + in_digits(threshold, &found.threshold->interval) + " dB (" + height + " %)";
   }));
   CHECK(std::any_of(layers.begin(), layers.end(), [&](const auto& layer) {
-    const auto* line = std::get_if<report::Line>(&layer);
-    return line != nullptr && line->x.size() == 2 && line->x[0] == found.threshold->interval.low &&
-           line->x[1] == found.threshold->interval.high && line->y[0] == line->y[1];
+    const auto* span = std::get_if<report::Span>(&layer);
+    return span != nullptr && span->low == found.threshold->interval.low &&
+           span->high == found.threshold->interval.high;
   }));
   data.trials.resize(20);
   const auto cut = summarise(data);
@@ -362,4 +367,45 @@ TEST_CASE("The report has the finger's force, speed and friction only if force c
   const auto unfelt = to_html(summarise(few));
   CHECK(unfelt.find("In no trial did the finger cross a clear step") != std::string::npos);
   CHECK(unfelt.find("Friction along the strip") == std::string::npos);
+}
+
+TEST_CASE("The label of a threshold has the digits of the table and the height of the curve there", "[report]") {
+  const auto summary = summarise(speed_accuracy(28));
+  const auto svg = render(*psychometric_figure(summary));
+  const auto html = to_html(summary);
+  for (const auto& named : summary.fits) {
+    REQUIRE(named.intervals.threshold);
+    const double at = named.fit.parameters->threshold;
+    const auto digits = in_digits(at, &named.intervals.threshold->interval);
+    CHECK(html.find(digits + " <span class=\"soft\">[") != std::string::npos);
+    const auto height = core::number(std::round(100 * analysis::probability(
+                            named.fit.options.function, named.fit.options.scale, *named.fit.parameters, at)));
+    CHECK(svg.find(named.name + " " + digits) != std::string::npos);
+    CHECK(svg.find("(" + height + " %)") != std::string::npos);
+  }
+}
+
+TEST_CASE("Every figure of a report has a caption that says whose trials it shows and how many", "[report]") {
+  const auto summary = summarise(speed_accuracy(28));
+  const auto figures = figures_of(summary);
+  REQUIRE(figures.size() >= 4);
+  for (const auto& [name, figure] : figures) {
+    INFO(name << ": " << figure.caption);
+    CHECK(figure.caption.find("Participant " + summary.data.participant + ", ") == 0);
+    CHECK(figure.caption.find(" trials.") != std::string::npos);
+  }
+  CHECK(psychometric_figure(summary)->caption.find("95 %") != std::string::npos);
+}
+
+TEST_CASE("A curve ends where its band ends", "[report]") {
+  const auto summary = summarise(speed_accuracy(28));
+  const auto figure = *psychometric_figure(summary);
+  for (const auto& chart : figure.charts)
+    for (const auto& layer : chart.layers)
+      if (const auto* line = std::get_if<Line>(&layer))
+        for (const auto& other : chart.layers)
+          if (const auto* band = std::get_if<Band>(&other); band != nullptr && band->series == line->series) {
+            CHECK(line->x.front() == Approx(band->x.front()));
+            CHECK(line->x.back() == Approx(band->x.back()));
+          }
 }
