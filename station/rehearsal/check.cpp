@@ -12,6 +12,7 @@
 #include "station/protocol/answers.hpp"
 #include "station/protocol/design_advice.hpp"
 #include "station/protocol/glyphs.hpp"
+#include "station/protocol/interludes.hpp"
 #include "station/protocol/triggers.hpp"
 #include "station/protocol/visits.hpp"
 #include "station/rehearsal/parallel.hpp"
@@ -76,6 +77,14 @@ double breaks_s(const protocol::Block& block, std::size_t trials) {
   return static_cast<double>((trials - 1) / every) * block.break_after->min_s;
 }
 
+std::vector<CheckedInterlude> interludes(const Protocol& protocol, const std::vector<protocol::Block>& blocks,
+                                         std::size_t next, const protocol::Visit& visit) {
+  std::vector<CheckedInterlude> list;
+  for (const auto* one : protocol::interludes_before(protocol, blocks, next, visit))
+    list.push_back({one->kind, one->name, one->items.size() + one->pages.size()});
+  return list;
+}
+
 Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed) {
   const auto order = protocol::block_order(protocol, visit);
   // Procedures that continue have fewer trials left after earlier sessions.
@@ -99,12 +108,15 @@ Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::u
                                  start.instruction,
                                  start.practice,
                                  {}});
+      estimate.blocks.back().before = interludes(protocol, order, static_cast<std::size_t>(start.block_index), visit);
       estimate.trials.push_back(0);
     }
     estimate.trials.back() += static_cast<double>(trials.size());
     estimate.duration_s +=
         instruction_s + breaks_s(order[static_cast<std::size_t>(start.block_index)], trials.size());
   }
+  if (!estimate.blocks.empty())
+    estimate.blocks.back().after = interludes(protocol, order, order.size(), visit);
   return estimate;
 }
 

@@ -38,6 +38,13 @@ inline constexpr double kLengthPrecision = 0.03;
 inline constexpr int kMostSessions = 1000;
 
 /// A block as a participant will run it.
+/// A part of a session without trials: a questionnaire, a consent, an explanation or a screening.
+struct CheckedInterlude {
+  protocol::InterludeKind kind = protocol::InterludeKind::questionnaire;
+  std::string name;
+  std::size_t pages = 0;  ///< number of questions or pages; 0 for a screening
+};
+
 struct CheckedBlock {
   std::string visit;  ///< such as "session 2, group trained"; "" if there is only one session and no group
   int session = 0;    ///< number of the planned session; 0 if the protocol plans none
@@ -45,6 +52,8 @@ struct CheckedBlock {
   std::string name, instruction;
   bool practice = false;
   Spread trials;
+  /// what comes before the block and, for the last block of a session, after it
+  std::vector<CheckedInterlude> before = {}, after = {};
 };
 
 /// How often a limit of runs could not be kept in simulated sessions in which one trial of ten is not
