@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numbers>
 #include <vector>
@@ -18,9 +17,6 @@ constexpr std::size_t fewest_strokes = 3, fewest_bins = 6;
 // Even in pure noise, the fit finds some step. Therefore a step counts only if it exceeds the half-width of
 // its 95 % interval by this factor.
 constexpr double certain_rise = 2;
-// A misfit counts only as far as it exceeds its own standard error by this factor, because noise alone makes
-// some.
-constexpr double certain_misfit = 2;
 // The final fit uses only the bins within `reach_widths` widths of the step, or within `least_reach_mm` if
 // that is farther. Still farther away, friction changes again, because the vibration has nodes.
 constexpr double least_reach_mm = 20, reach_widths = 2.5;
@@ -38,9 +34,6 @@ struct Step {
 
   double z(double x) const { return (x - place_mm) / width_mm; }
   double share(double x) const { return 0.5 * std::erfc(-z(x) / std::numbers::sqrt2); }
-  double slope(double x) const {
-    return rise * std::exp(-0.5 * z(x) * z(x)) / (width_mm * std::sqrt(2 * std::numbers::pi));
-  }
   double miss(const Bin& bin) const { return bin.friction - below - rise * share(bin.position_mm); }
 };
 
@@ -98,7 +91,9 @@ Step refine(Step step, const std::vector<Bin>& bins, double scale) {
     Eigen::Vector4d right = Eigen::Vector4d::Zero();
     for (const Bin& bin : bins) {
       const double share = step.share(bin.position_mm), miss = step.miss(bin);
-      const double slope = step.slope(bin.position_mm);
+      const double z = step.z(bin.position_mm);
+      const double slope =
+          step.rise * std::exp(-0.5 * z * z) / (step.width_mm * std::sqrt(2 * std::numbers::pi));
       // derivatives with respect to place, logarithm of width, `below` and `rise`
       const Eigen::Vector4d by(-slope, -slope * (bin.position_mm - step.place_mm), 1, share);
       const double weight = 1 / std::sqrt(1 + std::pow(miss / scale, 2));
@@ -135,40 +130,12 @@ std::vector<Bin> near(const Step& step, const std::vector<Bin>& bins) {
 }
 
 /// Returns the position at which friction is `level` times the friction at larger positions, or, without a
-/// level, the position half-way up the step. NaN if friction does not rise through that level. A bin holds
-/// the mean over its length, which widens the step.
-double crossing_mm(const Step& step, std::optional<double> level, double bin_mm) {
+/// level, the position half-way up the step. NaN if friction does not rise through that level.
+double crossing_mm(const Step& step, std::optional<double> level) {
   if (!level) return step.place_mm;
   const double share = (*level * (step.below + step.rise) - step.below) / step.rise;
   if (!(step.rise > 0 && share > 0 && share < 1)) return std::numeric_limits<double>::quiet_NaN();
-  const double width_mm = std::sqrt(std::max(0.0, step.width_mm * step.width_mm - bin_mm * bin_mm / 12));
-  return step.place_mm + width_mm * analysis::normal_quantile(share);
-}
-
-/// Returns how far the boundary by the bins themselves lies before the one by the fit, because their friction
-/// does not have the fit's shape: what the fit misses at its boundary and, according to the boundary's
-/// definition, on both sides of the step, as a distance along the slope.
-double misfit_mm(const Step& step, const std::vector<Bin>& bins, double place_mm,
-                 std::optional<double> level) {
-  const auto side = [&](auto holds) {
-    double sum = 0, count = 0;
-    for (const Bin& bin : bins)
-      if (holds(step.share(bin.position_mm))) sum += step.miss(bin), ++count;
-    return count > 0 ? sum / count : 0;
-  };
-  const double above = side([](double share) { return share > 0.95; });
-  const double below = side([](double share) { return share < 0.05; });
-  const auto after =
-      std::find_if(bins.begin(), bins.end(), [&](const Bin& bin) { return bin.position_mm >= place_mm; });
-  const Bin& right = after == bins.end() ? bins.back() : *after;
-  const Bin& left = after == bins.begin() ? right : *std::prev(after);
-  const double way_mm = right.position_mm - left.position_mm;
-  const double part = way_mm > 0 ? std::clamp((place_mm - left.position_mm) / way_mm, 0.0, 1.0) : 0;
-  const double here = std::lerp(step.miss(left), step.miss(right), part);
-  const double asked = level ? *level * above : (above + below) / 2;
-  const double longest_mm = bins.back().position_mm - bins.front().position_mm;
-  const double found_mm = (here - asked) / step.slope(place_mm);
-  return std::isfinite(found_mm) ? std::clamp(found_mm, -longest_mm, longest_mm) : longest_mm;
+  return step.place_mm + step.width_mm * analysis::normal_quantile(share);
 }
 
 std::vector<Bin> usable(const FrictionProfile& profile, int direction) {
@@ -179,12 +146,12 @@ std::vector<Bin> usable(const FrictionProfile& profile, int direction) {
   return bins;
 }
 
-/// The step fitted to the strokes in one direction, with the sums of squared deviations of its jackknife
+/// The step fitted to the strokes in one direction, with the sum of squared deviations of its jackknife
 /// pseudo-values.
 struct OneWay {
   Step step;
-  double felt_mm = 0, misfit_mm = 0;
-  double place_squares = 0, rise_squares = 0, misfit_squares = 0;
+  double felt_mm = 0;
+  double place_squares = 0, rise_squares = 0;
   int strokes = 0;
 };
 
@@ -197,12 +164,10 @@ std::optional<OneWay> one_way(const FrictionProfile& profile, int direction, std
   const auto close = near(whole, bins);
   if (close.size() < fewest_bins) return std::nullopt;
   OneWay result{refine(whole, close, scale)};
-  const double bin_mm = profile.bins.width_mm;
-  result.felt_mm = crossing_mm(result.step, level, bin_mm);
+  result.felt_mm = crossing_mm(result.step, level);
   if (!(result.felt_mm > close.front().position_mm && result.felt_mm < close.back().position_mm))
     return std::nullopt;
-  result.misfit_mm = misfit_mm(result.step, close, result.felt_mm, level);
-  std::vector<double> places, rises, misfits;
+  std::vector<double> places, rises;
   for (std::size_t i = 0; i < profile.strokes.size(); ++i) {
     if (profile.strokes[i].direction != direction) continue;
     ++result.strokes;
@@ -211,17 +176,15 @@ std::optional<OneWay> one_way(const FrictionProfile& profile, int direction, std
     const auto rest = near(whole, usable(others, direction));
     if (rest.size() < fewest_bins) continue;
     const Step without = refine(result.step, rest, scale);
-    const double place_mm = crossing_mm(without, level, bin_mm);
+    const double place_mm = crossing_mm(without, level);
     if (std::isnan(place_mm)) continue;
     places.push_back(place_mm);
     rises.push_back(without.rise);
-    misfits.push_back(misfit_mm(without, rest, place_mm, level));
   }
   if (places.size() > 1) {
     const double factor = std::pow(static_cast<double>(places.size()) - 1, 3);
     result.place_squares = factor * analysis::variance(places);
     result.rise_squares = factor * analysis::variance(rises);
-    result.misfit_squares = factor * analysis::variance(misfits);
   }
   return result;
 }
@@ -241,10 +204,7 @@ std::optional<FeltStep> felt_step(const FrictionProfile& profile, std::optional<
   FeltStep felt;
   felt.boundary_mm = (up->felt_mm + down->felt_mm) / 2;
   felt.lag_mm = (up->felt_mm - down->felt_mm) / 2;
-  const double misfit = std::abs(up->misfit_mm + down->misfit_mm) / 2;
-  const double by_noise = certain_misfit * se(up->misfit_squares + down->misfit_squares);
-  const double by_shape = misfit > by_noise ? std::sqrt(misfit * misfit - by_noise * by_noise) : 0;
-  felt.se_mm = std::hypot(se(up->place_squares + down->place_squares), by_shape);
+  felt.se_mm = se(up->place_squares + down->place_squares);
   felt.half_interval_mm = t * felt.se_mm;
   felt.friction_below = (up->step.below + down->step.below) / 2;
   felt.friction_above = felt.friction_below + rise;

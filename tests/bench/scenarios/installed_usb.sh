@@ -31,6 +31,10 @@ has refusal.txt "NotAuthorized" || fail "the stick was not mounted, but for anot
 mv /run/60-turnpoint.rules /usr/share/polkit-1/rules.d/
 systemctl restart polkit
 
+say "with the rule another user still may not"
+fails 1 runuser -u nobody -- udisksctl mount --no-user-interaction --block-device "$stick"
+has refusal.txt "NotAuthorized" || fail "another user may not mount, but for another reason"
+
 say "with the rule it is mounted by the running station, which can then write to it"
 as_kiosk sh -ec "'$BENCH_DIR/bin/usb_disks' $db mount '$stick'
   turnpoint export --db $db --out /media/turnpoint/STICK/export" | tee mounted.txt
@@ -44,8 +48,7 @@ as_kiosk turnpoint backup --db $db --dir "$folder/turnpoint-backups" | tee backu
 ! has backup.txt "not recorded" || fail "the backup was not recorded"
 as_kiosk turnpoint backup --db $db --dir "$folder/turnpoint-backups" --drill
 
-say "another user may not, and nobody may unmount the data"
-fails 1 runuser -u nobody -- udisksctl mount --no-user-interaction --block-device "$stick"
+say "nobody may unmount the data"
 fails 1 as_kiosk udisksctl unmount --no-user-interaction --block-device "$data"
 has refusal.txt "NotAuthorized" || fail "the data were not unmounted, but for another reason"
 fails 1 disks eject "$data"
