@@ -4,7 +4,6 @@
 
 #include "physics/centre_line.hpp"
 #include "physics/edge_feature.hpp"
-#include "physics/field.hpp"
 #include "station/core/texts.hpp"
 #include "station/scene/sound.hpp"
 #include "station/scene/under_finger.hpp"
@@ -61,31 +60,6 @@ TEST_CASE("a planned tone has its edge at the scene's boundary, within the state
       CHECK(plan.error_bound_m < 0.01e-3);
     }
   }
-}
-
-TEST_CASE("on the shipped plate, mode is enough for a level within 0.1 dB and an edge within 0.5 mm",
-          "[scene]") {
-  const auto rig = rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml");
-  Planner planner(rig);
-  int by_mode = 0;
-  for (const char* edge : {"p50", "p10", "peak", "friction=0.8"}) {
-    for (const double boundary_m : {0.100, 0.125, 0.150, 0.175, 0.200}) {
-      auto scene = edge_at(boundary_m, edge);
-      scene.tolerance = {0.5e-3, 0.1, {}};
-      const auto plan = planner.plan(scene);
-      const auto& tone = plan.tones.at(0);
-      by_mode += plan.model == physics::Model::mode;
-      const auto field = physics::tone_info(planner.surface(), tone.frequency_Hz, physics::Model::modes);
-      const double at = edge_of_field_m(planner.surface(), options_of(scene, rig), tone.frequency_Hz);
-      const double off_dB = 20 * std::abs(std::log10(tone.gain / field.gain));
-      CAPTURE(edge, boundary_m, 1e3 * (at - boundary_m), 1e3 * plan.error_bound_m, off_dB,
-              plan.level_bound_dB);
-      CHECK(std::abs(at - boundary_m) <= plan.error_bound_m);
-      CHECK(plan.error_bound_m <= 0.5e-3);
-      CHECK(off_dB <= plan.level_bound_dB);
-    }
-  }
-  CHECK(by_mode >= 18);
 }
 
 TEST_CASE("a plan states displacement, friction and boundary under a finger", "[scene]") {
