@@ -83,9 +83,10 @@ Item {
             tryCompare(page, "kind", PageModel.Instructions, 30000)
             proceed()
             for (let trial = 0; trial < 2; ++trial) {
-                answer(1)
-                tryCompare(page, "kind", PageModel.Confidence, 5000)
-                while (page.kind === PageModel.Confidence) {
+                tryCompare(page, "answersOpen", true, 20000)
+                wait(150)
+                // the answers of the second page open as soon as the first is answered
+                while (page.answersOpen) {
                     const touch = touchEvent(stage)
                     touch.press(1, findChild(view, "answer1")).commit()
                     touch.release(1, findChild(view, "answer1")).commit()
