@@ -68,7 +68,7 @@ QStringList ReportModel::picture_names() const {
                                                        {"friction", "live.friction"},
                                                        {"vibration", "report.vibration"}};
   QStringList names;
-  for (const auto& figure : pages_.figures) names += keys.at(figure.name);
+  for (const auto& figure : pages_.figures) names += QString(keys.at(figure.name));
   return names;
 }
 
