@@ -30,7 +30,7 @@ std::string pdf_of(const report::Figure& figure) {
   writer.setPageSize(
       QPageSize(size_px * kFigureInch_mm / kPixelsPerInch, QPageSize::Millimeter, {}, QPageSize::ExactMatch));
   QPainter painter;
-  if (!painter.begin(&writer)) throw std::runtime_error("Qt cannot make a PDF");
+  if (!painter.begin(&writer)) throw std::logic_error("Qt cannot make a PDF");
   {
     PainterCanvas canvas(painter, QRectF(0, 0, writer.width(), writer.height()));
     report::draw(canvas, figure);
