@@ -130,6 +130,23 @@ TEST_CASE("check says in which languages the station's own words are, and refuse
   CHECK(told == 1);
 }
 
+TEST_CASE("check lists what comes before and after the blocks, in the order of the session", "[check]") {
+  const std::string root = TURNPOINT_SOURCE_DIR;
+  const auto check =
+      rehearsal::check(root + "/protocols/boundary-visit.toml", root + "/deploy/rigs/simulated.toml", {1});
+  REQUIRE(check.blocks.size() == 2);
+  using Kind = protocol::InterludeKind;
+  const auto& first = check.blocks.front().before;
+  REQUIRE(first.size() > 1);
+  CHECK(first.back().kind == Kind::explanation);
+  CHECK(first.back().pages == 2);
+  REQUIRE(check.blocks.back().before.size() == 1);
+  CHECK(check.blocks.back().before.front().kind == Kind::screening);
+  REQUIRE(check.blocks.back().after.size() == 1);
+  CHECK(check.blocks.back().after.front().name == "afterwards");
+  CHECK(check.blocks.front().after.empty());
+}
+
 TEST_CASE("the duration estimated by check includes time to set a slider", "[check]") {
   const std::string root = TURNPOINT_SOURCE_DIR;
   const auto path = root + "/protocols/boundary-adjustment.toml";
