@@ -86,7 +86,7 @@ Rectangle {
         anchors { left: parent.left; right: parent.right; bottom: parent.bottom; margins: root.theme.unit }
         active: root.typing
         visible: active
-        height: active ? item.height : 0
+        height: active ? implicitHeight : 0
         sourceComponent: ScreenKeyboard {
             theme: root.theme
             full: true

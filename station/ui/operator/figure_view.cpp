@@ -17,7 +17,7 @@ constexpr double kMargin = 6;
 // text size that figures are laid out for; they are then scaled to the item's text size
 constexpr double kDrawnText_px = 12;
 
-constexpr double kPageInch_mm = 25.4, kPixelsPerInch = 96;
+constexpr double kFigureInch_mm = 25.4, kPixelsPerInch = 96;
 
 std::string pdf_of(const report::Figure& figure) {
   const auto [width_px, height_px] = report::size_px(figure);
@@ -28,7 +28,7 @@ std::string pdf_of(const report::Figure& figure) {
   QPdfWriter writer(&buffer);
   writer.setPageMargins(QMarginsF());
   writer.setPageSize(
-      QPageSize(size_px * kPageInch_mm / kPixelsPerInch, QPageSize::Millimeter, {}, QPageSize::ExactMatch));
+      QPageSize(size_px * kFigureInch_mm / kPixelsPerInch, QPageSize::Millimeter, {}, QPageSize::ExactMatch));
   QPainter painter;
   if (!painter.begin(&writer)) throw std::logic_error("Qt cannot make a PDF");
   {

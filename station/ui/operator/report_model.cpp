@@ -38,7 +38,7 @@ void ReportModel::save(int picture) {
       folder_ + "/" + name.replace(QRegularExpression("[^A-Za-z0-9]+"), "-").toLower().left(80);
   try {
     save_figure(figure, folder);
-    saved_ = core::plain((folder + "/").toStdString() + figure.name + "-1-column.svg, .pdf, ...");
+    saved_ = core::plain((folder + "/").toStdString() + figure.name + "-*");
   } catch (const std::exception& error) {
     saved_ = core::phrase_of(error);
   }
@@ -68,7 +68,7 @@ QStringList ReportModel::picture_names() const {
                                                        {"friction", "live.friction"},
                                                        {"vibration", "report.vibration"}};
   QStringList names;
-  for (const auto& figure : pages_.figures) names += keys.at(figure.name);
+  for (const auto& figure : pages_.figures) names += QString(keys.at(figure.name));
   return names;
 }
 
