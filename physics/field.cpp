@@ -16,7 +16,7 @@ namespace turnpoint::physics {
 namespace {
 
 struct Solved {
-  std::unique_ptr<CentreLine> line;
+  std::shared_ptr<const CentreLine> line;
   ToneInfo info;
   Scaled at_drive;
   Scaled at_peak;  // v at the last maximum, or at the drive edge if there is no maximum
@@ -37,9 +37,10 @@ Statement why_no_peak(const Surface& surface, double frequency_Hz) {
   return make_statement("no-peak", "no last maximum on the surface: it would lie before the drive edge");
 }
 
-Solved solve(const Surface& surface, double frequency_Hz, Model model) {
+Solved solve(const Surface& surface, double frequency_Hz, Model model,
+             std::shared_ptr<const CentreLine> line = nullptr) {
   Solved s;
-  s.line = make_centre_line(surface, frequency_Hz, model);
+  s.line = line ? std::move(line) : make_centre_line(surface, frequency_Hz, model);
   s.info.frequency_Hz = frequency_Hz;
   s.info.turning_point_m = turning_point_m(surface, frequency_Hz);
   s.info.last_peak_m = s.line->last_peak_m();
@@ -151,13 +152,17 @@ Normalise parse_normalise(std::string_view text) {
 }
 
 std::vector<ToneField> evaluate_tones(const Surface& surface, std::span<const Tone> tones,
-                                      std::span<const double> x, Model model, Normalise normalise) {
+                                      std::span<const double> x, Model model, Normalise normalise,
+                                      const SolvedLines& solved) {
   validate(surface, tones);
+  if (!solved.empty() && solved.size() != tones.size())
+    throw std::invalid_argument("a field needs as many solutions as tones, or none");
   for (const double one : x) require_on_surface(surface, "x_m of a point", one);
   const double most = strongest(tones);
   std::vector<ToneField> fields;
-  for (const Tone& tone : tones) {
-    const Solved s = solve(surface, tone.frequency_Hz, model);
+  for (std::size_t i = 0; i < tones.size(); ++i) {
+    const Tone& tone = tones[i];
+    const Solved s = solve(surface, tone.frequency_Hz, model, solved.empty() ? nullptr : solved[i]);
     ToneField& one = fields.emplace_back();
     one.info = s.info;
     if (normalise == Normalise::peak) one.info.conditioning = 1;
@@ -178,11 +183,11 @@ std::vector<double> amplitude_profile(const Surface& surface, std::span<const To
 }
 
 Field evaluate(const Surface& surface, std::span<const Tone> tones, std::span<const double> x, Model model,
-               Normalise normalise) {
+               Normalise normalise, const SolvedLines& solved) {
   Field field;
   field.model = model;
   field.normalise = normalise;
-  field.tones = evaluate_tones(surface, tones, x, model, normalise);
+  field.tones = evaluate_tones(surface, tones, x, model, normalise, solved);
   sum_tones(field, x.size());
   return field;
 }

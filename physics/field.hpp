@@ -2,6 +2,7 @@
 // Centre-line displacement of the surface for a set of tones, by a chosen model.
 #include <complex>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +14,10 @@
 #include "physics/warning.hpp"
 
 namespace turnpoint::physics {
+
+class CentreLine;
+// The solutions of a model, one for each tone (see PlanChoice), or none.
+using SolvedLines = std::vector<std::shared_ptr<const CentreLine>>;
 
 // Which value of |v| is set to one:
 //   drive  v(0) of the strongest tone; weaker tones keep their ratio to the strongest one
@@ -60,9 +65,9 @@ struct Field {
 
 // Evaluates the field at the points `x_m`, in any order. Throws std::invalid_argument if a point is outside
 // [0, length_m], and for Model::edge, which has no profile; std::domain_error if the model does not apply.
-// The cost is one solution per tone.
+// The cost is one solution per tone; none if `solved` contains them.
 Field evaluate(const Surface& surface, std::span<const Tone> tones, std::span<const double> x_m, Model model,
-               Normalise normalise);
+               Normalise normalise, const SolvedLines& solved = {});
 
 // Says how far a field can be trusted. Computing these notes takes several more solutions than the field
 // itself.
@@ -76,7 +81,8 @@ FieldNotes describe(const Surface& surface, std::span<const Tone> tones, const F
 
 // Like evaluate(), but returns only the field of each tone, not their sum.
 std::vector<ToneField> evaluate_tones(const Surface& surface, std::span<const Tone> tones,
-                                      std::span<const double> x_m, Model model, Normalise normalise);
+                                      std::span<const double> x_m, Model model, Normalise normalise,
+                                      const SolvedLines& solved = {});
 
 // Amplitude in m at each point, for the tones' amplitudes at the drive edge: the root of the sum of |v|^2
 // over the tones.

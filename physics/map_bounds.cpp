@@ -44,7 +44,7 @@ MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f
     peak.edge = Edge::peak();
     drawn_peak_m = first_mode_edge(surface, peak, f);
   }
-  const ModeBound mode = mode_bound(surface, f, 1, drawn_peak_m);
+  const ModeBound mode = mode_bound(surface, f, 1, drawn_peak_m, x);
   const bool wedge =
       std::holds_alternative<LinearTaper>(surface.taper) && !Dispersion(surface).clamped_bending();
   if (!wedge) bounds.equation_m += mode.equation_m;

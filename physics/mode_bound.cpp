@@ -14,9 +14,10 @@ namespace {
 
 using std::numbers::pi;
 
-// Margin of what higher_modes() computes to first order in the slope. On random membranes, the bound was at
-// least 2.0 times the true error of |v|, and 1.5 times that of the level (README.md).
-constexpr double first_order_margin = 3;
+// Margins of what higher_modes() computes to first order in the slope: for |v|, for the level, and for edges.
+// With a margin of 3 for all of them, the bounds were at least 2.0 and 1.5 times the true errors of |v| and
+// of the level on 8242 random membranes (README.md).
+constexpr double shape_margin = 1.8, gain_margin = 2.3, near_margin = 3;
 // Relative error of what higher_modes() computes on small slopes: it sees the phases of the standing waves
 // only to first order. The square of the slope is added.
 constexpr double first_order_error = 0.1;
@@ -25,14 +26,25 @@ constexpr double first_order_error = 0.1;
 // amplitude of higher modes of a clamped plate, divided by |W'| W(0) / (cut-off half-width)
 constexpr double coupling = 0.15;
 constexpr double curvature_shift = 0.2;  // shift of an edge, divided by |W''| W
-constexpr double slope_shift = 0.1;      // shift of an edge, divided by |W'|^3
+constexpr double slope_shift = 0.1;  // shift of an edge, divided by |W'|^3; twice this for the last maximum
 // On a clamped plate, the transverse shape of `mode` is exact only at the cut-off, so its phase drifts
 // between the drive edge and the cut-off.
 constexpr double plate_drift = 1.5e-3;  // phase error in radians, divided by k times the turning point's x
-constexpr double plate_piston = 0.9;    // amplitude of higher modes for a piston drive, at any slope
+// Of a thick plate with straight sides, `mode` has the shapes at the drive edge and at the turning point.
+// With the widening of the strip between these two (the ratio of its half-widths minus 1), the phase error of
+// its wave at the drive edge is at most 2.4 times
+//   thick_least + widening (thick_widening + thick_slope |W'|) + thick_drift k x0 widening^3 (0.2 cut / h)^3
+// on 255 random plates of the kind that straight_thick_plate() describes. The error of the level is 1.4 times
+// this times the conditioning, and the error of |v| 2.5 times this.
+constexpr double thick_least = 2e-4, thick_widening = 2e-3, thick_slope = 5e-3, thick_drift = 2e-4;
+constexpr double thick_phase = 2.5, thick_shape = 4;
+constexpr double plate_piston = 0.9;  // amplitude of higher modes for a piston drive, at any slope
 // cut-off half-width of the second symmetric mode divided by that of the first
 constexpr double plate_second_mode = 2.3246;
-constexpr double plate_shift = 1.2e-3;  // shift of an edge, which occurs on every taper
+// Shift of an edge at the turning point, which occurs on every taper. The shape of `mode` is exact to first
+// order in the distance a from there, so that the shift of other edges is larger, by 1 + a^2 + a^4/2 with a
+// in Airy lengths. The bound is at least twice the shift of edges between the last maximum and 1 % of it.
+constexpr double plate_shift = 1.2e-3;
 // Tension makes a boundary layer along clamped sides, whose width does not follow W. The shape that `mode`
 // uses, however, has at every W the layer that belongs to the cut-off half-width. This value is added to
 // plate_shift if the layer is a third of the half-width or thinner.
@@ -42,8 +54,9 @@ constexpr double layer_shift = 4.8e-3;
 constexpr double thick_shift = 2.5e-3, elastic_shift = 5e-3;
 constexpr double plate_slope_shift = 0.15;  // shift of an edge divided by W'^2
 // shift of an edge caused by a clamped end: just beyond the turning point, divided by W'^2; farther away,
-// divided by W'^2 and by the wave's decay on its way to the end and back; at the turning point, divided by W'
-constexpr double end_shift = 0.15, far_end_shift = 7, close_end_shift = 0.09;
+// divided by W'^2 and by the wave's decay on its way to the end and back; at the turning point, divided by
+// W'. Of an edge that lies beyond the turning point, close to the end, divided by W'^2.
+constexpr double end_shift = 0.15, far_end_shift = 7, close_end_shift = 0.09, edge_end_shift = 0.4;
 // shift of an edge, divided by the amplitude of higher modes near this edge: on a clamped plate; on a
 // membrane, in Airy lengths (|v| falls by a factor of e^0.9 in an Airy length at half of the last maximum,
 // and both the edge and the maximum may change by that amplitude)
@@ -64,9 +77,9 @@ double plate_amplification(const Surface& surface, const Taper& taper, double f)
   return 1 / std::max(std::tanh(0.5 * phase / dispersion.wave_quality(f, surface.quality_factor)), 0.01);
 }
 
-// The factor by which the first mode decays on the way from the turning point to the clamped end and back.
-double round_trip_decay(const Surface& surface, double f, double turning_point_m) {
-  return std::exp(-2 * ln_decay(surface, f, 1, turning_point_m, surface.length_m));
+// The factor by which the first mode decays on the way from here to the clamped end and back.
+double round_trip_decay(const Surface& surface, double f, double from_m) {
+  return std::exp(-2 * ln_decay(surface, f, 1, from_m, surface.length_m));
 }
 
 double curvature_times_width(const Taper& taper, double x) {
@@ -91,7 +104,7 @@ struct Steepness {
   double reach_m = 0;
 };
 
-Steepness steepness(const Taper& taper, double cut, double x0, double last_peak) {
+Steepness steepness(const Taper& taper, double cut, double x0, double last_peak, double edge) {
   Steepness s;
   s.at_turning = std::max(std::abs(taper.slope(x0)), std::abs(taper.slope(std::max(0.0, x0 - 2 * cut))));
   for (int i = 0; i <= 48; ++i) {
@@ -106,7 +119,7 @@ Steepness steepness(const Taper& taper, double cut, double x0, double last_peak)
   // farther left acts on them only through higher modes, which decay within half of a cut-off half-width.
   const double left = std::min(last_peak, x0 - std::min(s.reach_m, 1.1 * airy_m + 0.5 * cut));
   const double low = std::clamp(left, 0.0, taper.length_m());
-  const double high = std::clamp(x0 + 0.5 * s.reach_m, 0.0, taper.length_m());
+  const double high = std::clamp(std::max(x0 + 0.5 * s.reach_m, edge), 0.0, taper.length_m());
   constexpr int points = 24;
   for (int i = 0; i <= points; ++i)
     s.bend = std::max(s.bend, curvature_times_width(taper, low + (high - low) * i / points));
@@ -128,17 +141,26 @@ double plate_shift_of(const Surface& surface, const Dispersion& dispersion, doub
 double bound_membrane(ModeBound& bound, const Surface& surface, double f, double near,
                       const Steepness& taper_is, double equation, double conditioning) {
   const HigherModes higher = higher_modes(surface, f, near);
-  const double square = taper_is.steepest * taper_is.steepest, margin = first_order_margin * (1 + square);
-  const double gain = first_order_margin * (higher.gain + (first_order_error + square) * higher.change) +
-                      equation * conditioning;
+  const double square = taper_is.steepest * taper_is.steepest, margin = 1 + square;
+  const double gain =
+      gain_margin * (higher.gain + (first_order_error + square) * higher.change) + equation * conditioning;
   bound.resonance = higher.resonance;
-  bound.shape = std::min(largest, margin * (higher.field + higher.phase) + equation);
+  bound.shape = std::min(largest, shape_margin * margin * (higher.field + higher.phase) + equation);
   bound.drive = bound.shape + std::min(1e6, std::expm1(std::min(gain, 20.0)));
   bound.level_dB = std::min(largest_dB, 20 / std::numbers::ln10 * gain);
   // On sides with a slope above 1, an expansion in the slope says little: higher modes of any size may start
   // from the drive edge.
   const double unknown = std::max(0.0, square - 1) * std::exp(-ln_decay(surface, f, 2, 0, near));
-  return margin * higher.near + unknown;
+  return near_margin * margin * higher.near + unknown;
+}
+
+// True for a plate for which the formula of thick_least holds: no second mode propagates, and none is trapped
+// near the drive edge, where the strip is `ratio` times as wide as at the turning point.
+bool straight_thick_plate(const Surface& surface, double cut, double ratio, const Steepness& taper_is) {
+  const double thickness = surface.thickness_m / cut;
+  return surface.theory == PlateTheory::mindlin && surface.drive == DriveShape::cosine &&
+         std::holds_alternative<LinearTaper>(surface.taper) && ratio < 2.1 && taper_is.steepest <= 0.3 &&
+         thickness >= 0.18 && thickness <= 0.55 && half_width_m(surface, surface.length_m) <= 0.9 * cut;
 }
 
 double bound_plate(ModeBound& bound, const Surface& surface, double f, double near, const Steepness& taper_is,
@@ -159,6 +181,14 @@ double bound_plate(ModeBound& bound, const Surface& surface, double f, double ne
   // The phase error and the higher modes may raise or lower the wave at the drive edge. Assume that they
   // lower it.
   bound.level_dB = -20 * std::log10(std::max(1e-6, 1 - (phase + modes) * conditioning));
+  if (straight_thick_plate(surface, cut, ratio, taper_is)) {
+    const double widening = ratio - 1, radians = dispersion.wavenumber_per_m(f) * x0;
+    const double found = thick_least + widening * (thick_widening + thick_slope * taper_is.steepest) +
+                         thick_drift * radians * std::pow(widening * 0.2 * cut / surface.thickness_m, 3);
+    bound.shape = thick_shape * found;
+    bound.drive = std::min(1e6, bound.shape * conditioning);
+    bound.level_dB = -20 * std::log10(std::max(1e-6, 1 - thick_phase * found * conditioning));
+  }
   return modes * std::exp(-ln_decay(surface, f, 2, 0, near));
 }
 
@@ -196,14 +226,15 @@ SideError side_error(const Surface& surface, double f) {
   return error;
 }
 
-ModeBound mode_bound(const Surface& surface, double f, double conditioning,
-                     std::optional<double> last_peak_m) {
+ModeBound mode_bound(const Surface& surface, double f, double conditioning, std::optional<double> last_peak_m,
+                     std::optional<double> edge_m) {
   ModeBound bound;
   const Dispersion dispersion(surface);
   const Taper taper(surface);
   const double cut = dispersion.cut_off_half_width_m(f);
   const double x0 = taper.position_m(cut).value_or(taper.length_m());
-  const Steepness taper_is = steepness(taper, cut, x0, last_peak_m.value_or(x0));
+  const double edge = std::max(x0, edge_m.value_or(x0));
+  const Steepness taper_is = steepness(taper, cut, x0, last_peak_m.value_or(x0), edge);
   const double steepest = taper_is.at_turning, bend = taper_is.bend;
   const bool membrane = !dispersion.clamped_bending();
   // The outermost maximum is about one Airy length before the turning point. If the turning point is close to
@@ -218,6 +249,9 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning,
   // The curved wave fronts do not meet the straight clamped end evenly, which shifts the edge.
   const double end_width = taper.half_width_m(taper.length_m()) / cut;
   double end = std::min(end_shift, far_end_shift * round_trip_decay(surface, f, x0)) * steepest * steepest;
+  if (edge > x0)
+    end = std::max(end, std::min(edge_end_shift, far_end_shift * round_trip_decay(surface, f, edge)) *
+                            steepest * steepest);
   end = std::max(end, close_end_shift * steepest * std::clamp((end_width - 0.75) / 0.1, 0.0, 1.0));
   // Strong higher modes near the last maximum may make another maximum the last one.
   const bool same_peak = polluted < other_peak;
@@ -226,11 +260,15 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning,
     bound.shape = bound.drive = std::max(largest, bound.drive);
     bound.level_dB = largest_dB;
   }
-  const double even = taper_is.reach_m / (2 * cut);
-  bound.equation_m = cut * (curvature_shift * bend * even * even + slope_shift * std::pow(steepest, 3));
-  if (!membrane)
+  const double even = std::max(taper_is.reach_m, edge - x0) / (2 * cut);
+  bound.equation_m = cut * (curvature_shift * bend * even * even +
+                            slope_shift * (edge_m.value_or(x0) < x0 ? 2 : 1) * std::pow(steepest, 3));
+  if (!membrane) {
+    const double away = (edge_m.value_or(x0) - x0) / airy_length;
     bound.equation_m +=
-        cut * (plate_shift_of(surface, dispersion, cut) + plate_slope_shift * steepest * steepest);
+        cut * (plate_shift_of(surface, dispersion, cut) * (1 + away * away + 0.5 * std::pow(away, 4)) +
+               plate_slope_shift * steepest * steepest);
+  }
   // Strong loss moves the last maximum towards the drive edge. The edges beyond it are then less steep, and
   // the same error of the field moves them farther.
   const double stretched = (x0 - last_peak_m.value_or(x0)) / (1.5 * airy_length);

@@ -41,8 +41,10 @@ struct ModeBound {
 
 // Computes the bounds. `conditioning` is CentreLine::drive_conditioning of the first mode. `last_peak_m` is
 // the last maximum of the first mode, if known. It matters because loss moves it towards the drive edge,
-// where higher modes are stronger.
+// where higher modes are stronger. `edge_m` is the edge whose position is bounded: the farther a clamped
+// plate's edge is from the turning point, the less is known of it. If empty, an edge at half of the last
+// maximum is meant.
 ModeBound mode_bound(const Surface& surface, double frequency_Hz, double conditioning,
-                     std::optional<double> last_peak_m);
+                     std::optional<double> last_peak_m, std::optional<double> edge_m = {});
 
 }  // namespace turnpoint::physics

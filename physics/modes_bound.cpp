@@ -26,11 +26,11 @@ constexpr double points_per_radian = 3;
 
 // A solution of `modes`, scaled to a drive edge whose centre moves by exactly 1.
 struct Line {
-  std::unique_ptr<CentreLine> line;
+  const CentreLine* line;
   std::optional<double> peak_m;
   double ln_peak = 0;
 
-  explicit Line(std::unique_ptr<CentreLine> solved) : line(std::move(solved)), peak_m(line->last_peak_m()) {
+  explicit Line(const CentreLine& solved) : line(&solved), peak_m(line->last_peak_m()) {
     if (peak_m) ln_peak = line->value(*peak_m).ln_magnitude();
   }
 };
@@ -57,15 +57,16 @@ bool modes_bound_applies(const Surface& surface) {
 }
 
 std::optional<ModesBound> modes_bound(const Surface& surface, double f, const Edge& edge,
-                                      Comparison comparison) {
+                                      Comparison comparison, const CentreLine* modes) {
   ModalResolution other;
   const bool finer = comparison == Comparison::finer;
   // For comparison: the polynomials of `modes` itself have degree 7, or 5 for a thick plate.
   other.degree = finer ? 8 : surface.theory == PlateTheory::mindlin ? 4 : 6;
   other.radians = finer ? 2.2 : 2.5;
   other.spare_functions = finer ? 5 : 2;
-  const Line a(make_modal_line(surface, f, Losses::kept, {}));
-  const Line b(make_modal_line(surface, f, Losses::kept, other));
+  const auto usual = modes ? nullptr : make_modal_line(surface, f, Losses::kept, {});
+  const auto compared = make_modal_line(surface, f, Losses::kept, other);
+  const Line a(modes ? *modes : *usual), b(*compared);
   if (a.peak_m.has_value() != b.peak_m.has_value()) return std::nullopt;
   const double phase = wavenumber_per_m(surface, f) * surface.length_m;
   const int points = 200 + static_cast<int>(std::min(1e5, points_per_radian * phase));

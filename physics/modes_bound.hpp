@@ -2,6 +2,7 @@
 // Bounds the error of `modes` by solving a second time, at another resolution.
 #include <optional>
 
+#include "physics/centre_line.hpp"
 #include "physics/edge.hpp"
 #include "physics/surface.hpp"
 
@@ -20,14 +21,16 @@ bool modes_bound_applies(const Surface& surface);
 
 // Which solution `modes` is compared with.
 enum class Comparison {
-  finer,   // takes five times as long as `modes`
-  coarser  // takes one and a half times as long as `modes`; its bound is larger
+  finer,   // takes four times as long as `modes`
+  coarser  // takes half as long as `modes`; its bound is larger
 };
 
 // Returns several times the difference between `modes` and another solution. On random surfaces, the true
 // error of |v| was at most 3.1 times the difference from a finer solution
-// (tests/physics/modes_bound_test.cpp). Empty if only one of the two fields has a last maximum.
+// (tests/physics/modes_bound_test.cpp). Empty if only one of the two fields has a last maximum. `modes` is
+// the solution at the default resolution, if it is known already.
 std::optional<ModesBound> modes_bound(const Surface& surface, double frequency_Hz, const Edge& edge,
-                                      Comparison comparison = Comparison::finer);
+                                      Comparison comparison = Comparison::finer,
+                                      const CentreLine* modes = nullptr);
 
 }  // namespace turnpoint::physics

@@ -22,6 +22,8 @@ namespace {
 constexpr double probe_margin = 1.9;
 constexpr int probes = 160;
 constexpr double unknown = 2, unknown_dB = 120;
+// An edge that friction defines lies between the last maximum and this fraction of it.
+constexpr double faint = 0.02;
 // Error of `modes` that is assumed before it is solved, if no higher mode resonates. The values are above the
 // largest errors found on random surfaces. Plates under tension have thin boundary layers along their clamped
 // sides. The field of a clamped plate's piston jumps at the corners of the drive edge.
@@ -35,7 +37,7 @@ constexpr double edge_share = 0.8, lossy_edge_share = 1.2, lossy_below = 30;
 
 // The profile of one model: logarithms of |v| at the probe points, and the positions of its maximum and edge.
 struct Probe {
-  std::unique_ptr<CentreLine> line;
+  std::shared_ptr<const CentreLine> line;
   std::vector<double> ln;
   std::optional<double> peak, edge;
   double ln_peak = 0, ln_drive = 0;
@@ -142,7 +144,9 @@ struct Reference {
 Reference reference(const Surface& surface, const Edge& edge, double f) {
   Probe mode = probe(surface, edge, f, Model::mode);
   const double conditioning = mode.line->drive_conditioning(wavenumber_per_m(surface, f));
-  const auto bound = mode_bound(surface, f, conditioning, mode.peak);
+  const auto farthest =
+      edge.kind == Edge::Kind::friction ? mode.line->level_m(faint).value_or(surface.length_m) : mode.edge;
+  const auto bound = mode_bound(surface, f, conditioning, mode.peak, farthest);
   const bool uncertain_peak = mode.peak && peak_is_shallow(surface, f, *mode.peak);
   return {f, edge, std::move(mode), conditioning, bound, side_error(surface, f), uncertain_peak};
 }
@@ -211,9 +215,10 @@ RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, 
 
 // Computes the error bounds of the model `modes` by solving a second time.
 RungEstimate compared_modes_estimate(const Surface& surface, const PlanRequest& request,
-                                     const Reference& reference, Comparison comparison) {
+                                     const Reference& reference, Comparison comparison,
+                                     const CentreLine& modes) {
   RungEstimate e = modes_estimate(surface, request, reference);
-  const auto bound = modes_bound(surface, reference.f, reference.edge, comparison);
+  const auto bound = modes_bound(surface, reference.f, reference.edge, comparison, &modes);
   e.reason = std::string("two-dimensional field, compared with a ") +
              (comparison == Comparison::finer ? "finer" : "coarser") + " solution";
   e.amplitude_bound = !bound ? unknown : request.normalise == Normalise::peak ? bound->shape : bound->drive;
@@ -280,12 +285,16 @@ RungEstimate estimate_with(const Surface& surface, const PlanRequest& request,
   return all;
 }
 
+// `solved` holds the solutions of `modes`, or nothing at first.
 RungEstimate compared_modes(const Surface& surface, const PlanRequest& request,
-                            const std::vector<Reference>& references, Comparison comparison) {
+                            const std::vector<Reference>& references, Comparison comparison,
+                            SolvedLines& solved) {
   RungEstimate all;
   all.model = Model::modes;
-  for (const Reference& one : references)
-    merge(all, compared_modes_estimate(surface, request, one, comparison));
+  for (std::size_t i = solved.size(); i < references.size(); ++i)
+    solved.push_back(make_centre_line(surface, references[i].f, Model::modes));
+  for (std::size_t i = 0; i < references.size(); ++i)
+    merge(all, compared_modes_estimate(surface, request, references[i], comparison, *solved[i]));
   return all;
 }
 
@@ -337,8 +346,10 @@ std::string numbers(const RungEstimate& e, const Tolerance& tolerance) {
 RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model model) {
   check(surface, request);
   const auto references = references_for(surface, request);
-  if (model == Model::modes && modes_bound_applies(surface))
-    return compared_modes(surface, request, references, Comparison::finer);
+  if (model == Model::modes && modes_bound_applies(surface)) {
+    SolvedLines solved;
+    return compared_modes(surface, request, references, Comparison::finer, solved);
+  }
   if (model != Model::mode || !modes_bound_applies(surface) || !Dispersion(surface).clamped_bending())
     return estimate_with(surface, request, references, model);
   RungEstimate all;
@@ -356,12 +367,13 @@ PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {
   std::stable_sort(choice.considered.begin(), choice.considered.end(),
                    [](const RungEstimate& a, const RungEstimate& b) { return a.cost_s < b.cost_s; });
   auto& rungs = choice.considered;
+  SolvedLines by_modes;
   auto chosen = std::find_if(rungs.begin(), rungs.end(),
                              [&](const RungEstimate& e) { return inside(e, request.tolerance); });
   if (chosen == rungs.end() && modes_bound_applies(surface)) {
     chosen = std::find_if(rungs.begin(), rungs.end(), [](const auto& e) { return e.model == Model::modes; });
     for (const auto comparison : {Comparison::coarser, Comparison::finer}) {
-      *chosen = compared_modes(surface, request, references, comparison);
+      *chosen = compared_modes(surface, request, references, comparison, by_modes);
       if (inside(*chosen, request.tolerance)) break;
     }
     if (!inside(*chosen, request.tolerance)) chosen = rungs.end();
@@ -373,6 +385,10 @@ PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {
     });
   }
   choice.model = chosen->model;
+  if (choice.model == Model::modes)
+    choice.solved = std::move(by_modes);
+  else
+    for (const Reference& one : references) choice.solved.push_back(one.mode.line);
   choice.bound = *chosen;
   std::ostringstream text;
   const auto bounds = numbers(*chosen, request.tolerance);

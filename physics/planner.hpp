@@ -57,6 +57,9 @@ struct PlanChoice {
   std::string reason;                   // why this model was chosen: one sentence with numbers
   std::optional<RungEstimate> cheaper;  // the most exact one of the cheaper models
   std::vector<RungEstimate> considered;
+  // The solutions of the model (of `mode`, if the model is `edge`), if the choice has needed them. evaluate()
+  // takes them, so that nothing is solved twice.
+  SolvedLines solved;
 };
 
 PlanChoice choose_model(const Surface& surface, const PlanRequest& request);

@@ -161,9 +161,12 @@ class Posterior {
     const auto at = shared(theta);
     const Diffusion d = at.diffusion(theta[first_drift_ + static_cast<Eigen::Index>(difficulty)]);
     double sum = 0;
+    const FirstPassageDensity wrong(d, false), right(d, true);
+    const auto log_density = [&](const Answer& answer) {
+      return (answer.correct ? right : wrong).log_at(answer.time_s - at.nondecision_s);
+    };
     if (!contaminants_) {
-      for (const auto& answer : answers_[difficulty])
-        sum += log_density(d, answer.correct, answer.time_s - at.nondecision_s);
+      for (const auto& answer : answers_[difficulty]) sum += log_density(answer);
       for (const auto& trial : censored_[difficulty]) sum += trial.count * undecided(d, trial, at);
       return sum;
     }
@@ -171,7 +174,7 @@ class Posterior {
     const double p = upper_probability(d);
     for (const auto& answer : answers_[difficulty])
       sum += log_add(
-          log_rest + log_density(d, answer.correct, answer.time_s - at.nondecision_s),
+          log_rest + log_density(answer),
           log_share + answer.log_contaminant + std::log(contaminant_share(answer.correct ? p : 1 - p)));
     for (const auto& trial : censored_[difficulty])
       sum += trial.count *

@@ -1,5 +1,6 @@
 #pragma once
 #include <cmath>
+#include <optional>
 
 #include "station/analysis/trial_record.hpp"
 
@@ -12,6 +13,8 @@ inline constexpr double kZ95 = 1.959963984540054;
 struct Estimate {
   double value = 0;
   Interval interval;
+  /// two-sided p value of the hypothesis that the true value is 0; empty where nothing can be compared with 0
+  std::optional<double> p = {};
 };
 
 /// The interval of `b - a` from the intervals of two independent estimates (MOVER; Donner & Zou 2002).

@@ -56,48 +56,10 @@ struct SignedSum {
   double log_value() const { return log_difference(positive, negative); }
 };
 
-/// Logarithm of the density of the first passage through 0 of a driftless diffusion from `relative` between 0
-/// and 1, at the time u; of the two series the one that needs fewer terms.
-double log_driftless(double relative, double opposite, double u) {
-  if (u < kShortDensity) {
-    // sum of (w + 2k) exp(-(w + 2k)^2 / 2u), relative to the term with k = 0; the terms of k and -k are
-    // paired, so that a start close to the other boundary (w near 1) loses no digits: w - 2 = -(w + 2
-    // opposite) etc.
-    const double w = relative;
-    double sum = w;
-    for (int k = 1; k < 40; ++k) {
-      const double up = w + 2 * k, down = 2 * k - w;  // |w - 2k|
-      const double nearer = (down * down - w * w) / (2 * u);
-      if (nearer > kNegligible) break;
-      sum += up * std::exp(-(up * up - w * w) / (2 * u)) - down * std::exp(-nearer);
-    }
-    if (w > 0.5 && opposite < 1e-3) {
-      // w (k = 0) and the term -(w - 2) of k = -1 almost cancel; write both around 1
-      const double e = opposite, q = std::exp(-2 * e / u);  // exp(-((1+e)^2 - (1-e)^2)/2u)
-      sum = (1 - e) * -std::expm1(-2 * e / u) - 2 * e * q;
-      for (int k = 1; k < 40; ++k) {
-        const double base = 2 * k + 1;
-        const double near = base - e;
-        const double decay = std::exp(-(near * near - (1 - e) * (1 - e)) / (2 * u));
-        sum += decay * (near * -std::expm1(-2 * base * e / u) - 2 * e * std::exp(-2 * base * e / u));
-        if ((near * near - 1) / (2 * u) > kNegligible + 10) break;
-      }
-    }
-    if (!(sum > 0)) return kNever;
-    return std::log(sum) - w * w / (2 * u) - 0.5 * std::log(2 * kPi * u * u * u);
-  }
-  double sum = 0;
-  const double step = kPi * kPi * u / 2;
-  for (int k = 1; k < 40; ++k) {
-    const double fall = step * (k * k - 1);
-    if (fall > kNegligible) break;
-    // sin(k pi w) from the nearer boundary
-    const double angle =
-        relative <= 0.5 ? std::sin(k * kPi * relative) : (k % 2 == 0 ? -1 : 1) * std::sin(k * kPi * opposite);
-    sum += k * angle * std::exp(-fall);
-  }
-  if (!(sum > 0)) return kNever;
-  return std::log(sum) - step + std::log(kPi);
+/// k sin(k pi w), from the nearer boundary, so that it is exact beside both.
+double weighted_sine(int k, double relative, double opposite) {
+  return k * (relative <= 0.5 ? std::sin(k * kPi * relative)
+                              : (k % 2 == 0 ? -1 : 1) * std::sin(k * kPi * opposite));
 }
 
 /// Logarithm of the probability of ever being absorbed, without the factor exp(-drift_away distance).
@@ -138,9 +100,7 @@ double log_long_tail(const Seen& d, double t) {
   for (int k = 1; k < 400; ++k) {
     const double rate = half_v2 + unit * unit * k * k / 2, fall = (rate - first) * t;
     if (fall > kNegligible) break;
-    const double angle = d.relative <= 0.5 ? std::sin(k * kPi * d.relative)
-                                           : (k % 2 == 0 ? -1 : 1) * std::sin(k * kPi * d.opposite);
-    sum += k * angle / rate * std::exp(-fall);
+    sum += weighted_sine(k, d.relative, d.opposite) / rate * std::exp(-fall);
   }
   if (!(sum > 0)) return kNever;
   return std::log(sum) - first * t + std::log(kPi) - 2 * std::log(d.separation);
@@ -168,13 +128,6 @@ double log_tail_without_factor(const Seen& d, double t) {
 }
 
 /// The same functions for one drift and no delay.
-double log_density_of(const Seen& d, double drift_sd, double t) {
-  const double a2 = d.separation * d.separation;
-  const double v = d.drift_away, z = d.distance, variance = drift_sd * drift_sd, spread = 1 + variance * t;
-  return (variance * z * z - 2 * v * z - v * v * t) / (2 * spread) - 0.5 * std::log(spread) +
-         log_driftless(d.relative, d.opposite, t / a2) - std::log(a2);
-}
-
 double log_distribution_of(const Seen& d, double t) {
   const double factor = -d.drift_away * d.distance;
   if (t < kShortDistribution * d.separation * d.separation) return factor + log_short_distribution(d, t);
@@ -185,44 +138,6 @@ double log_tail_of(const Seen& d, double t) {
   return -d.drift_away * d.distance + (t > 0 ? log_tail_without_factor(d, t) : log_ever(d));
 }
 
-/// Logarithm of the mean of exp(g(drift)) over the drifts of a diffusion; g belongs to a probability that
-/// concerns the time t. The trapezoidal rule converges exponentially: its step follows from where the
-/// integrand, continued into the complex plane, grows (like that of a normal distribution with the variance 1
-/// / (t + 1 / drift_sd^2)) or has its poles (at i pi / boundary).
-template <class G>
-double over_drifts(const Diffusion& d, double t, const G& g) {
-  if (d.drift_sd == 0) return g(d.drift);
-  const double precision = 1 / (d.drift_sd * d.drift_sd), root = std::sqrt(std::max(t, 0.0) + precision);
-  const double scaled = root / d.boundary;
-  double step = 0.7 / root;
-  if (scaled < 2.9)
-    step = std::min(step, 2 * kPi * kPi / (d.boundary * (36 + kPi * kPi / 2 * scaled * scaled)));
-  const auto term = [&](double i) {
-    const double v = d.drift + i * step;
-    return g(v) - 0.5 * (i * step) * (i * step) * precision;
-  };
-  // the integrand has one peak; climb to it with steps that double, then halve
-  double peak = 0, top = term(0);
-  for (double stride = 1; stride >= 1;) {
-    const double up = term(peak + stride), down = term(peak - stride);
-    if (up > top)
-      peak += stride, top = up, stride *= 2;
-    else if (down > top)
-      peak -= stride, top = down, stride *= 2;
-    else
-      stride = stride > 1 ? std::floor(stride / 2) : 0;
-  }
-  if (top == kNever) return kNever;
-  double sum = 1;
-  for (const double direction : {1.0, -1.0})
-    for (int i = 1; i < 100000; ++i) {
-      const double below = term(peak + direction * i) - top;
-      sum += std::exp(below);
-      if (below < -kNegligible) break;
-    }
-  return top + std::log(sum * step / (d.drift_sd * std::sqrt(2 * kPi)));
-}
-
 /// Half of the places and weights of Gauss-Legendre's rules with 6 and with 12 nodes.
 constexpr double kFewNodes[] = {0.2386191860831969, 0.6612093864662645, 0.9324695142031521};
 constexpr double kFewWeights[] = {0.4679139345726910, 0.3607615730481386, 0.1713244923791704};
@@ -231,78 +146,187 @@ constexpr double kNodes[] = {0.1252334085114689, 0.3678314989981802, 0.587317954
 constexpr double kWeights[] = {0.2491470458134028, 0.2334925365383548, 0.2031674267230659,
                                0.1600783285433462, 0.1069393259953184, 0.0471753363865118};
 
-/// Logarithm of the mean of exp(g(s)) over the start's delays, for the time t: s runs from t - delay_range_s to
-/// t. Before the process starts, g is `before`. Gauss-Legendre in panels in which the integrand changes by a
-/// factor of about e^5 at most, with fewer nodes where it changes little; `distance` is that from the start to
-/// the boundary.
+/// Adds the logarithm of the integral of exp(g) from `from` to `to` to `total`, by Gauss-Legendre's rule.
 template <class G>
-double over_delays(const Diffusion& d, double t, double distance, double before, const G& g) {
-  if (d.delay_range_s == 0) return t > 0 ? g(t) : before;
-  const double low = t - d.delay_range_s, end = std::max(low, 0.0), z2 = distance * distance;
-  double total = low < 0 ? before + std::log(std::min(-low, d.delay_range_s)) : kNever;
-  const double v = std::fabs(d.drift), variance = d.drift_sd * d.drift_sd;
-  // the fastest fall of the integrand at long times, and when nothing can have arrived
-  const double fall = 0.5 * (v * v + kPi * kPi / (d.boundary * d.boundary) +
-                             variance * (1 + variance * z2 + 2 * v * distance));
-  const double nothing = kNegligible + 10 + v * distance + variance * z2 / 2;
-  for (double high = t; high > end;) {
-    if (z2 / (2 * high) > nothing) {
-      if (before > kNever)
-        return log_sum(total, before + std::log(high - end)) - std::log(d.delay_range_s);
-      if (z2 / (2 * high) > 700 + nothing || g(high) + std::log(high) < total - kNegligible) break;
-    }
-    const double from = std::max({end, high / 2, 1 / (1 / high + 10 / z2), high - 5 / fall});
-    const double half = 0.5 * (high - from), middle = 0.5 * (high + from);
-    const bool flat = z2 / 2 * (1 / from - 1 / high) + fall * (high - from) < 1.5 && high < 1.5 * from;
-    const auto* nodes = flat ? kFewNodes : kNodes;
-    const auto* weights = flat ? kFewWeights : kWeights;
-    const int pairs = flat ? 3 : 6;
-    double values[12], top = kNever;
-    for (int i = 0; i < pairs; ++i) {
-      values[2 * i] = g(middle + half * nodes[i]);
-      values[2 * i + 1] = g(middle - half * nodes[i]);
-      top = std::max({top, values[2 * i], values[2 * i + 1]});
-    }
-    if (top > kNever) {
-      double sum = 0;
-      for (int i = 0; i < 2 * pairs; ++i) sum += weights[i / 2] * std::exp(values[i] - top);
-      total = log_sum(total, top + std::log(half * sum));
-    }
-    if (!(from < high)) break;
-    high = from;
+double with_panel(double total, double from, double to, bool flat, const G& g) {
+  const double half = 0.5 * (to - from), middle = 0.5 * (to + from);
+  const auto* nodes = flat ? kFewNodes : kNodes;
+  const auto* weights = flat ? kFewWeights : kWeights;
+  const int pairs = flat ? 3 : 6;
+  double values[12], top = kNever;
+  for (int i = 0; i < pairs; ++i) {
+    values[2 * i] = g(middle + half * nodes[i]);
+    values[2 * i + 1] = g(middle - half * nodes[i]);
+    top = std::max({top, values[2 * i], values[2 * i + 1]});
   }
-  return total - std::log(d.delay_range_s);
+  if (top == kNever) return total;
+  double sum = 0;
+  for (int i = 0; i < 2 * pairs; ++i) sum += weights[i / 2] * std::exp(values[i] - top);
+  return log_sum(total, top + std::log(half * sum));
 }
 
 }  // namespace
 
-double log_density(const Diffusion& diffusion, bool upper, double time_s) {
+FirstPassageDensity::FirstPassageDensity(const Diffusion& diffusion, bool upper) : diffusion_(diffusion) {
+  const auto seen = seen_from(diffusion, upper);
+  relative_ = seen.relative, opposite_ = seen.opposite, distance_ = seen.distance;
+  drift_away_ = seen.drift_away;
+  variance_ = diffusion.drift_sd * diffusion.drift_sd;
+  per_boundary2_ = 1 / (seen.separation * seen.separation);
+  constant_ = std::log(per_boundary2_);
+  for (int k = 1; k <= kSines; ++k) {
+    const auto i = static_cast<std::size_t>(k - 1);
+    sines_[i] = weighted_sine(k, relative_, opposite_);
+    rates_[i] = 0.5 * (drift_away_ * drift_away_ + kPi * kPi * k * k * per_boundary2_);
+  }
+}
+
+/// The density of the passage through 0 of a driftless diffusion between 0 and 1, at the time u. The terms are
+/// powers of two exponentials.
+double FirstPassageDensity::log_driftless(double u) const {
+  if (!(u > 1e-290)) return kNever;
+  const double w = relative_;
+  if (u >= kShortDensity) {
+    const double q = std::exp(-kPi * kPi / 2 * u), q3 = q * q * q, q8 = q3 * q3 * q * q, q15 = q8 * q3 * q3 * q;
+    const double sum =
+        sines_[0] + q3 * sines_[1] + q8 * sines_[2] + q15 * sines_[3] + q8 * q8 * q8 * sines_[4];
+    if (!(sum > 0)) return kNever;
+    return std::log(kPi * sum) - kPi * kPi / 2 * u;
+  }
+  // (w + 2k) exp(-((w + 2k)^2 - w^2) / 2u), in pairs of k and -k, so that a start close to the other boundary
+  // loses no digits
+  double sum = w;
+  if (w > 0.5 && opposite_ < 1e-3) {
+    // w (k = 0) and the term -(w - 2) of k = -1 almost cancel; write both around 1
+    const double e = opposite_;
+    sum = (1 - e) * -std::expm1(-2 * e / u) - 2 * e * std::exp(-2 * e / u);
+    for (int k = 1; k < 40; ++k) {
+      const double base = 2 * k + 1, near = base - e;
+      const double decay = std::exp(-(near * near - (1 - e) * (1 - e)) / (2 * u));
+      sum += decay * (near * -std::expm1(-2 * base * e / u) - 2 * e * std::exp(-2 * base * e / u));
+      if ((near * near - 1) / (2 * u) > kNegligible + 10) break;
+    }
+  } else if (const double fall = 2 * (1 - w) / u; fall < kNegligible) {
+    const double down = std::exp(-fall), up = std::exp(-2 * (1 + w) / u), both = down * up;
+    const double both3 = both * both * both;
+    sum += (2 + w) * up - (2 - w) * down + both * ((4 + w) * up * up - (4 - w) * down * down) +
+           both3 * ((6 + w) * up * up * up - (6 - w) * down * down * down);
+  }
+  if (!(sum > 0)) return kNever;
+  if (u < 1e-60) return std::log(sum) - w * w / (2 * u) - 1.5 * std::log(u) - 0.5 * std::log(2 * kPi);
+  return std::log(sum / (std::sqrt(2 * kPi * u) * u)) - w * w / (2 * u);
+}
+
+double FirstPassageDensity::log_without_delay(double t) const {
+  const double v = drift_away_, z = distance_;
+  if (variance_ == 0) return -v * z - 0.5 * v * v * t + log_driftless(t * per_boundary2_) + constant_;
+  const double spread = 1 + variance_ * t;
+  return (variance_ * z * z - 2 * v * z - v * v * t) / (2 * spread) - 0.5 * std::log(spread) +
+         log_driftless(t * per_boundary2_) + constant_;
+}
+
+/// Logarithm of the probability of arriving between two times, from the sum of sines; for a fixed drift, and
+/// for times whose sum has no more than kSines terms.
+double FirstPassageDensity::log_between(double from_s, double to_s) const {
+  const double length_s = to_s - from_s, unit = 0.5 * kPi * kPi * per_boundary2_;
+  const double y = std::exp(-unit * from_s), z = std::exp(-unit * length_s);
+  // exp(-(k^2 - 1) unit from) and exp(-rate length) of term k, by their ratios to the term before
+  double left = 1, left_ratio = y * y * y;
+  double gone = std::exp(-rates_[0] * length_s), gone_ratio = z * z * z;
+  double sum = sines_[0] / rates_[0] * -std::expm1(-rates_[0] * length_s);
+  for (std::size_t k = 1; k < sines_.size(); ++k) {
+    left *= left_ratio, left_ratio *= y * y;
+    gone *= gone_ratio, gone_ratio *= z * z;
+    if (left < 1e-19) break;
+    sum += sines_[k] / rates_[k] * left * (1 - gone);
+  }
+  if (!(sum > 0)) return kNever;
+  return std::log(kPi * sum) - rates_[0] * from_s - drift_away_ * distance_ + constant_;
+}
+
+double FirstPassageDensity::log_at(double time_s) const {
   if (!(time_s > 0)) return kNever;
-  const auto d = seen_from(diffusion, upper);
-  return over_delays(diffusion, time_s, d.distance, kNever,
-                     [&](double t) { return log_density_of(d, diffusion.drift_sd, t); });
+  const double range_s = diffusion_.delay_range_s;
+  if (range_s == 0) return log_without_delay(time_s);
+  constexpr double kLongBetween = 0.06, kShortestRange = 1e-6;
+  const double from_s = time_s - range_s;
+  if (variance_ == 0 && range_s * rates_[0] > kShortestRange && from_s * per_boundary2_ > kLongBetween)
+    return log_between(from_s, time_s) - std::log(range_s);
+  if (variance_ == 0) {  // the difference of two distributions, where little of it cancels
+    const Seen seen{drift_away_, diffusion_.boundary, distance_, relative_, opposite_};
+    const double by_now = log_distribution_of(seen, time_s);
+    const double before = from_s > 0 ? log_distribution_of(seen, from_s) : kNever;
+    if (before < by_now - 0.1) return log_difference(by_now, before) - std::log(range_s);
+  }
+  return log_arrivals(std::max(from_s, 0.0), time_s, [](double) { return 1.0; }) - std::log(range_s);
+}
+
+/// Logarithm of the integral of weight(t) times the density without delay, from one time to another, which may
+/// be infinite. All that is summed is positive, so nothing cancels. Panels go from `to_s` (or from where the
+/// density is large) to shorter times, and then to longer ones. In a panel the density changes by a factor of
+/// about e^5 at most for each of the three reasons that it has: the way to the boundary (z^2 / 2t), the way
+/// between the boundaries (pi^2 t / 2 a^2), and the drift's exponent, whose slope is -d^2 / 2 (1 + sd^2 t)^2.
+template <class Weight>
+double FirstPassageDensity::log_arrivals(double from_s, double to_s, const Weight& weight) const {
+  const double z2 = distance_ * distance_, fall = 0.5 * kPi * kPi * per_boundary2_;
+  const double d = drift_away_ - variance_ * distance_;
+  const auto slope = [&](double t) {  // the largest from there on
+    const double spread = 1 + variance_ * t;
+    return 0.5 * d * d / (spread * spread);
+  };
+  const auto g = [&](double t) {
+    const double w = weight(t);
+    return w > 0 ? log_without_delay(t) + std::log(w) : kNever;
+  };
+  const auto flat = [&](double low, double high) {
+    return high < 1.5 * low && z2 / 2 * (1 / low - 1 / high) + (fall + slope(low)) * (high - low) < 1.5;
+  };
+  constexpr double kChange = 5;
+  double total = kNever;
+  const double middle = std::isinf(to_s) ? std::max(from_s, z2) : to_s;
+  // the density is at most that of a passage through one boundary, and the drift's exponent that at time 0
+  const double highest = 0.5 * variance_ * z2 - drift_away_ * distance_ + std::log(distance_);
+  for (double high = middle; high > from_s;) {
+    if (3 * high < z2 && highest - z2 / (2 * high) - 0.5 * std::log(high) < total - kNegligible) break;
+    double low = std::max({from_s, high / 2, 1 / (1 / high + 2 * kChange / z2)});
+    low = std::max(low, high - kChange / (fall + slope(low)));
+    if (!(low < high)) break;
+    total = with_panel(total, low, high, flat(low, high), g);
+    high = low;
+  }
+  for (double low = middle; low < to_s;) {
+    const double rise = 1 / low - 2 * kChange / z2;
+    double high = std::min({to_s, 2 * low, low + kChange / (fall + slope(low))});
+    if (rise > 0) high = std::min(high, 1 / rise);
+    if (!(high > low)) break;
+    total = with_panel(total, low, high, flat(low, high), g);
+    low = high;
+    if (low > z2 && g(low) + std::log(10 / fall) < std::max(total, -1e9) - kNegligible) break;
+  }
+  return total;
 }
 
 double log_distribution(const Diffusion& diffusion, bool upper, double time_s) {
   if (!(time_s > 0)) return kNever;
-  auto d = seen_from(diffusion, upper);
-  return over_delays(diffusion, time_s, d.distance, kNever, [&](double t) {
-    return over_drifts(diffusion, t, [&](double drift) {
-      d.drift_away = upper ? -drift : drift;
-      return log_distribution_of(d, t);
-    });
-  });
+  const double range_s = diffusion.delay_range_s;
+  if (diffusion.drift_sd == 0 && range_s == 0) return log_distribution_of(seen_from(diffusion, upper), time_s);
+  const FirstPassageDensity density(diffusion, upper);
+  const double from_s = std::max(time_s - range_s, 0.0);
+  const double whole = density.log_arrivals(0, from_s, [](double) { return 1.0; });
+  if (range_s == 0) return whole;
+  return log_sum(whole, density.log_arrivals(from_s, time_s, [&](double t) { return (time_s - t) / range_s; }));
 }
 
 double log_tail(const Diffusion& diffusion, bool upper, double time_s) {
-  auto d = seen_from(diffusion, upper);
-  const auto of = [&](double t) {
-    return over_drifts(diffusion, t, [&](double drift) {
-      d.drift_away = upper ? -drift : drift;
-      return log_tail_of(d, t);
-    });
+  const double range_s = diffusion.delay_range_s;
+  if (diffusion.drift_sd == 0 && range_s == 0) return log_tail_of(seen_from(diffusion, upper), time_s);
+  const FirstPassageDensity density(diffusion, upper);
+  const auto above = [&](double from_s) {
+    return density.log_arrivals(std::max(from_s, 0.0), std::numeric_limits<double>::infinity(), [](double) { return 1.0; });
   };
-  return over_delays(diffusion, time_s, d.distance, time_s <= 0 || time_s < diffusion.delay_range_s ? of(0) : kNever, of);
+  if (range_s == 0 || time_s <= 0) return above(time_s);
+  const auto late = [&](double t) { return (t - time_s + range_s) / range_s; };
+  return log_sum(above(time_s), density.log_arrivals(std::max(time_s - range_s, 0.0), time_s, late));
 }
 
 double log_survival(const Diffusion& diffusion, double time_s) {
@@ -312,11 +336,9 @@ double log_survival(const Diffusion& diffusion, double time_s) {
 }
 
 double upper_probability(const Diffusion& diffusion) {
-  auto d = seen_from(diffusion, true);
-  return std::exp(over_drifts(diffusion, 0, [&](double drift) {
-    d.drift_away = -drift;
-    return -d.drift_away * d.distance + log_ever(d);
-  }));
+  const auto seen = seen_from(diffusion, true);
+  if (diffusion.drift_sd == 0) return std::exp(-seen.drift_away * seen.distance + log_ever(seen));
+  return std::exp(std::min(0.0, log_tail(diffusion, true, 0)));
 }
 
 }  // namespace turnpoint::analysis

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 
 namespace turnpoint::analysis {
 
@@ -14,18 +15,39 @@ struct Diffusion {
   double delay_range_s = 0; ///< the start is delayed by a time between 0 and this, 0 or more
 };
 
-/// Logarithm of the density (1/s) of being absorbed at the upper or lower boundary at `time_s`; -infinity for
-/// times of 0 or less. Uses the series for short or for long times, whichever needs fewer terms (Navarro &
-/// Fuss 2009). The drift's variability is in closed form (Tuerlinckx 2004, Behav. Res. Methods 36:702-716),
-/// that of the delay by Gauss-Legendre quadrature. The relative error of the density is below 1e-8 where it
-/// exceeds 1e-30, that of its logarithm below 1e-6 elsewhere.
-double log_density(const Diffusion& diffusion, bool upper, double time_s);
+/// The density of being absorbed at the upper or lower boundary, for many times: what does not depend on the
+/// time is computed once. Uses the series for short or for long times, whichever needs fewer terms (Navarro &
+/// Fuss 2009). The drift's variability is in closed form (Tuerlinckx 2004, Behav. Res. Methods 36:702-716). The
+/// mean over the delays is the probability of arriving between two times, divided by their distance: for a
+/// fixed drift, the difference of two sums of sines, term by term; otherwise by Gauss-Legendre quadrature. The
+/// relative error of the density is below 1e-8 where it exceeds 1e-30, that of its logarithm below 1e-6
+/// elsewhere.
+class FirstPassageDensity {
+ public:
+  FirstPassageDensity(const Diffusion& diffusion, bool upper);
+  /// Logarithm of the density (1/s) at `time_s`; -infinity for times of 0 or less.
+  double log_at(double time_s) const;
+
+ private:
+  static constexpr int kSines = 14;
+  double log_without_delay(double time_s) const;
+  double log_driftless(double u) const;
+  double log_between(double from_s, double to_s) const;
+  template <class Weight>
+  double log_arrivals(double from_s, double to_s, const Weight& weight) const;
+  friend double log_distribution(const Diffusion& diffusion, bool upper, double time_s);
+  friend double log_tail(const Diffusion& diffusion, bool upper, double time_s);
+
+  Diffusion diffusion_;
+  double relative_, opposite_, distance_, drift_away_;  // seen from the boundary
+  double variance_, per_boundary2_, constant_;
+  std::array<double, kSines> sines_{};  // k sin(k pi relative), k = 1, 2, ...
+  std::array<double, kSines> rates_{};  // at which the terms of the sum of sines fall, per s
+};
 
 /// Logarithm of the probability of having been absorbed at this boundary by `time_s` (Blurton, Kesselmeier &
-/// Gondan 2012 for short times, the series of sines for long ones; the drift's variability by the trapezoidal
-/// rule, that of the delay as above). The same accuracy for a standard deviation of the drift up to 2 per s and
-/// drifts up to 10 per s (tests/python compares random sets with averages by numpy); it was not shown for
-/// larger ones.
+/// Gondan 2012 for short times, the series of sines for long ones; with variability the integral of the
+/// density). The same accuracy, for any variability.
 double log_distribution(const Diffusion& diffusion, bool upper, double time_s);
 
 /// Logarithm of the probability of being absorbed at this boundary after `time_s`. The same accuracy.

@@ -87,6 +87,23 @@ std::vector<GroupMean> group_means(const std::vector<PersonMeasure>& measures) {
   return means;
 }
 
+std::vector<std::optional<double>> holm(const std::vector<Tested>& tests) {
+  std::map<std::string, std::vector<std::size_t>> families;
+  for (std::size_t i = 0; i < tests.size(); ++i)
+    if (tests[i].p) families[tests[i].family].push_back(i);
+  std::vector<std::optional<double>> corrected(tests.size());
+  for (auto& [name, members] : families) {
+    std::stable_sort(members.begin(), members.end(),
+                     [&tests](std::size_t a, std::size_t b) { return *tests[a].p < *tests[b].p; });
+    double reached = 0;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      reached = std::max(reached, static_cast<double>(members.size() - i) * *tests[members[i]].p);
+      corrected[members[i]] = std::min(reached, 1.0);
+    }
+  }
+  return corrected;
+}
+
 std::vector<Effect> effects(const std::vector<PersonMeasure>& measures, const Between& between) {
   std::vector<Effect> all;
   const auto samples = samples_of(measures);

@@ -36,7 +36,21 @@ struct Effect {
   /// groups by the pooled standard deviation in the groups (Cohen's d_s); empty if that is 0
   std::optional<double> standardised;
   bool between_groups = false;
+  /// p value of `difference` after Holm's correction; empty if no correction was asked for
+  std::optional<double> corrected_p = {};
 };
+
+/// A p value and the name of its family: the tests that are corrected together.
+struct Tested {
+  std::string family;
+  std::optional<double> p;
+};
+
+/// Corrects p values for the number of tests in their family (Holm 1979, Scand. J. Stat. 6:65-70): if all
+/// hypotheses with a corrected value below 0.05 are rejected, a true one is among them in at most 5 % of the
+/// families. The same numbers as R's p.adjust(p, "holm"). In the order of `tests`; tests without a p value do
+/// not count.
+std::vector<std::optional<double>> holm(const std::vector<Tested>& tests);
 
 /// True if two conditions are those of different groups of participants.
 using Between = std::function<bool(const std::string& first, const std::string& second)>;

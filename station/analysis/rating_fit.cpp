@@ -179,7 +179,8 @@ std::optional<RatingFit> fit_ratings(const std::vector<int>& noise, const std::v
     fit.sd = {1 / b, {1 / (b * wide), wide / b, 0.95}};
   }
   const auto area = [](double d) { return normal_cdf(d / std::sqrt(2.0)); };
-  const auto& [value, range] = fit.sensitivity;
+  const double value = fit.sensitivity.value;
+  const auto range = fit.sensitivity.interval;
   fit.area = {area(value), {area(range.low), area(range.high), 0.95}};
   fit.criteria.assign(at->data() + 2, at->data() + at->size());
   fit.log_likelihood = slope.log_likelihood;

@@ -25,7 +25,8 @@ double log_cdf(double z) { return std::log(std::max(normal_cdf(z), 1e-300)); }
 
 /// Returns the log likelihood of the answers at one lag if the two stimuli are `distance` apart. The
 /// criterion takes the value at which the likelihood is highest.
-double log_likelihood(const YesNoCounts& n, double distance) {
+template <class Counts>
+double log_likelihood(const Counts& n, double distance) {
   const auto at = [&](double c) {
     return n.hits * log_cdf(distance / 2 - c) + n.misses * log_cdf(c - distance / 2) +
            n.false_alarms * log_cdf(-distance / 2 - c) + n.correct_rejections * log_cdf(distance / 2 + c);
@@ -42,7 +43,8 @@ double log_likelihood(const YesNoCounts& n, double distance) {
 /// A table of the log likelihood of the answers at one lag, over the sensitivity d'.
 class LagLikelihood {
  public:
-  LagLikelihood(const YesNoCounts& counts, double scale) {
+  template <class Counts>
+  LagLikelihood(const Counts& counts, double scale) {
     for (int i = 0; i <= kSteps; ++i) values_.push_back(log_likelihood(counts, scale * i * kStep));
   }
   double at(double d_prime) const {
@@ -50,6 +52,14 @@ class LagLikelihood {
     const auto i = static_cast<std::size_t>(x);
     const double part = x - static_cast<double>(i);
     return (1 - part) * values_[i] + part * values_[i + 1];
+  }
+  /// The same by a parabola through the three nearest entries.
+  double smooth_at(double d_prime) const {
+    const double x = std::clamp(d_prime / kStep, 0.0, static_cast<double>(kSteps));
+    const auto i = static_cast<std::size_t>(std::clamp(std::round(x), 1.0, kSteps - 1.0));
+    const double part = x - static_cast<double>(i);
+    return values_[i] + 0.5 * part * (values_[i + 1] - values_[i - 1]) +
+           0.5 * part * part * (values_[i + 1] - 2 * values_[i] + values_[i - 1]);
   }
 
  private:
@@ -227,6 +237,57 @@ std::vector<SpeedAccuracyCurve> response_signal(const std::vector<TrialRecord>& 
   return curves;
 }
 
+std::optional<std::array<double, 3>> limiting_curve(const std::vector<ExpectedLag>& lags,
+                                                    Detecting detecting) {
+  if (lags.size() < kFewestLags) return std::nullopt;
+  struct Counts {
+    double hits, misses, false_alarms, correct_rejections;
+  };
+  std::vector<LagLikelihood> likelihoods;
+  double longest_s = 0;
+  for (const auto& lag : lags) {
+    likelihoods.emplace_back(Counts{lag.signals * lag.yes_with, lag.signals * (1 - lag.yes_with),
+                                    lag.noises * lag.yes_without, lag.noises * (1 - lag.yes_without)},
+                             detecting == Detecting::forced_choice ? std::numbers::sqrt2 : 1);
+    longest_s = std::max(longest_s, lag.time_s);
+  }
+  // asymptote, logarithm of the rate, intercept
+  const auto height = [&](const std::array<double, 3>& at) -> double {
+    if (at[0] < 0 || at[0] > kHighestAsymptote || at[1] < std::log(kLowestRate) ||
+        at[1] > std::log(kHighestRate) || at[2] < 0 || at[2] > longest_s)
+      return -INFINITY;
+    double sum = 0;
+    for (std::size_t k = 0; k < lags.size(); ++k)
+      sum += likelihoods[k].smooth_at(d_prime_at(at[0], std::exp(at[1]), at[2], lags[k].time_s));
+    return sum;
+  };
+  std::array<double, 3> at{2, std::log(kRateMiddle), 0.5 * lags.front().time_s}, step{0.5, 0.5, 0.1};
+  double top = height(at);
+  for (int round = 0; round < 200000 && step[0] > 1e-6; ++round) {
+    bool better = false;
+    std::array<double, 3> next = at;
+    for (std::size_t k = 0; k < 3; ++k)
+      for (const double side : {step[k], -step[k]}) {
+        next[k] += side;
+        if (const double there = height(next); there > top) {
+          top = there, better = true;
+          break;
+        }
+        next[k] -= side;
+      }
+    if (!better) {
+      for (auto& one : step) one /= 2;
+      continue;
+    }
+    // go on in the direction in which all three moved (Hooke & Jeeves 1961)
+    std::array<double, 3> further{};
+    for (std::size_t k = 0; k < 3; ++k) further[k] = 2 * next[k] - at[k];
+    at = next;
+    if (const double there = height(further); there > top) top = there, at = further;
+  }
+  return std::array{at[0], std::exp(at[1]), at[2]};
+}
+
 std::vector<CurveDifference> curve_differences(const std::vector<SpeedAccuracyCurve>& curves) {
   const auto of = [](const std::optional<Estimate>& a, const std::optional<Estimate>& b) {
     return a && b ? std::optional(difference_of(*a, *b)) : std::nullopt;
@@ -243,8 +304,8 @@ std::vector<CurveDifference> curve_differences(const std::vector<SpeedAccuracyCu
     for (std::size_t j = i + 1; j < curves.size(); ++j) {
       const auto &a = curves[i], &b = curves[j];
       all.push_back({a.condition, b.condition, of(a.asymptote, b.asymptote), of(a.intercept_s, b.intercept_s),
-                     exponential(of(logarithm(a.rate_per_s), logarithm(b.rate_per_s))), p_of_shared(a, b, 0),
-                     p_of_shared(a, b, 1), p_of_shared(a, b, 2)});
+                     exponential(of(logarithm(a.rate_per_s), logarithm(b.rate_per_s))),
+                     {p_of_shared(a, b, 0), p_of_shared(a, b, 1), p_of_shared(a, b, 2)}});
     }
   return all;
 }

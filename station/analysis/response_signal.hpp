@@ -46,7 +46,7 @@ struct CurveDifference {
   std::string first, second;
   std::optional<Estimate> asymptote, intercept_s;  ///< second minus first
   std::optional<Estimate> rate_ratio;              ///< second divided by first
-  std::optional<double> asymptote_p, rate_p, intercept_p;
+  std::array<std::optional<double>, 3> p, corrected_p = {};  ///< asymptote, rate, intercept; by holm()
 };
 
 /// Returns the sensitivity d'(t) at a time on the curve with these three parameters.
@@ -58,6 +58,17 @@ double d_prime_at(double asymptote, double rate_per_s, double intercept_s, doubl
 std::vector<SpeedAccuracyCurve> response_signal(const std::vector<TrialRecord>& trials,
                                                 const std::vector<std::string>& order, Detecting detecting,
                                                 int positive);
+
+/// The answers at one lag that unlimited trials would give: the mean time of the answers, the numbers of
+/// trials with and without a signal (or any numbers in their ratio), and the probability of "yes" in them.
+struct ExpectedLag {
+  double time_s = 0, signals = 0, yes_with = 0, noises = 0, yes_without = 0;
+};
+/// Asymptote, rate per s and intercept in s of the most likely curve through such answers: what
+/// response_signal() comes to with ever more trials, when its priors no longer matter. Empty with fewer than 3
+/// lags.
+std::optional<std::array<double, 3>> limiting_curve(const std::vector<ExpectedLag>& lags,
+                                                    Detecting detecting);
 
 /// One entry for each pair of curves; the earlier one is `first`.
 std::vector<CurveDifference> curve_differences(const std::vector<SpeedAccuracyCurve>& curves);

@@ -14,8 +14,11 @@ double average(const std::vector<double>& values) {
 }
 
 Estimate student(double value, double error, double degrees) {
-  const double half = boost::math::quantile(boost::math::students_t(degrees), 0.975) * error;
-  return {value, {value - half, value + half, 0.95}};
+  const boost::math::students_t student(degrees);
+  const double half = boost::math::quantile(student, 0.975) * error;
+  const double p = error > 0 ? 2 * boost::math::cdf(boost::math::complement(student, std::fabs(value) / error))
+                             : (value == 0 ? 1 : 0);
+  return {value, {value - half, value + half, 0.95}, p};
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 namespace turnpoint::analysis {
 
-/// Estimates with 95 % intervals by Student's t. Empty with fewer than 3 values.
+/// Estimates with 95 % intervals and p values by Student's t. Empty with fewer than 3 values.
 std::optional<Estimate> student_mean(const std::vector<double>& values);
 /// The difference of the means, a - b, of two samples that may differ in variance (Welch 1947). Empty if one
 /// of the samples has fewer than 3 values, or if all values of both are equal.

@@ -111,6 +111,36 @@ std::optional<Estimate> estimate(const std::optional<double>& value, std::vector
   return Estimate{*value, percentile_interval(std::move(replicates), options.confidence)};
 }
 
+/// The p value of a difference whose draws these are.
+double p_of_draws(const std::vector<double>& gaps) {
+  const auto low = std::count_if(gaps.begin(), gaps.end(), [](double gap) { return gap <= 0; }),
+             high = std::count_if(gaps.begin(), gaps.end(), [](double gap) { return gap >= 0; });
+  const auto fewer = static_cast<double>(std::min(low, high));
+  const double counted = std::min(1.0, 2 * (fewer + 1) / (static_cast<double>(gaps.size()) + 1));
+  constexpr double kFewestDraws = 10;
+  const double sd = std::sqrt(variance(gaps));
+  if (fewer >= kFewestDraws || !(sd > 0)) return counted;
+  return std::min(counted, 2 * normal_cdf(-std::fabs(mean(gaps)) / sd));
+}
+
+/// The difference of two proportions, second minus first, with Newcombe's hybrid interval (1998) and the p
+/// value of the interval that ends at 0.
+Estimate proportion_difference(const Proportion& first, const Proportion& second, double confidence) {
+  const auto at = [&](double share) {
+    return difference_of({first.value, wilson(first.right, first.trials, share)},
+                         {second.value, wilson(second.right, second.trials, share)});
+  };
+  auto found = at(confidence);
+  double low = 0, high = 1 - 1e-12;  // the confidence at which an end of the interval is 0
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (low + high);
+    const auto interval = at(middle).interval;
+    (interval.low > 0 || interval.high < 0 ? low : high) = middle;
+  }
+  found.p = found.value == 0 ? 1 : 1 - high;
+  return found;
+}
+
 /// Computes the results of one condition that need no bootstrap. Returns the condition's trials, grouped by
 /// difficulty.
 Group collect(const std::vector<TrialRecord>& trials, const TradeOptions& options,
@@ -134,6 +164,8 @@ Group collect(const std::vector<TrialRecord>& trials, const TradeOptions& option
   for (const auto& trial : trials) {
     if (trial.type != TrialType::experimental || trial.instruction != result.instruction) continue;
     if (trial.outcome == Outcome::fault || trial.outcome == Outcome::aborted) continue;  // void
+    result.deadline_s = result.presented == 0 || result.deadline_s == trial.deadline_s ? trial.deadline_s
+                                                                                       : std::nullopt;
     ++result.presented;
     result.timeouts += trial.outcome == Outcome::timeout;
     result.anticipations += trial.outcome == Outcome::anticipation;
@@ -282,8 +314,8 @@ std::optional<Estimate> diffusion_difference(const Group& first, const Group& se
   const auto &a = first.diffusion->draws, &b = second.diffusion->draws;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
     gaps.push_back(of(second, b[i]) - of(first, a[i]));
-  const double middle = quantile(gaps, 0.5);
-  return Estimate{middle, percentile_interval(std::move(gaps), confidence)};
+  const double middle = quantile(gaps, 0.5), p = p_of_draws(gaps);
+  return Estimate{middle, percentile_interval(std::move(gaps), confidence), p};
 }
 
 void add_diffusion_differences(const Group& first, const Group& second, const TradeOptions& options,
@@ -331,7 +363,11 @@ struct Sessions {
       if (again[a][which] && again[b][which]) gaps.push_back(*again[b][which] - *again[a][which]);
     std::optional<double> gap;
     if (values[a][which] && values[b][which]) gap = *values[b][which] - *values[a][which];
-    return estimate(gap, std::move(gaps), options);
+    if (gaps.empty()) return std::nullopt;
+    const double p = p_of_draws(gaps);
+    auto found = estimate(gap, std::move(gaps), options);
+    if (found) found->p = p;
+    return found;
   }
 };
 
@@ -342,13 +378,22 @@ void add_differences(const Sessions& sessions, const std::vector<Group>& groups,
       const auto &first = trade.instructions[a], &second = trade.instructions[b];
       for (int which = 0; which < measures; ++which) {
         auto difference = sessions.difference(a, b, which, options);
-        if (which == accuracy && difference && first.proportion_correct && second.proportion_correct)
-          difference = difference_of(*first.proportion_correct, *second.proportion_correct);
+        if (which == accuracy && difference && !first.times_s.empty() && !second.times_s.empty())
+          difference = proportion_difference(proportion(first.correct, static_cast<int>(first.times_s.size())),
+                                             proportion(second.correct, static_cast<int>(second.times_s.size())),
+                                             options.confidence);
         trade.differences.push_back(
             {first.instruction, second.instruction, kNames[which].name, kNames[which].unit, difference});
         if (which == median)
           add_diffusion_differences(groups[a], groups[b], options, first, second, trade.differences);
       }
+      for (std::size_t i = 0; i < std::min(first.caf.size(), second.caf.size()); ++i)
+        trade.differences.push_back(
+            {first.instruction, second.instruction,
+             kBinMeasure + std::to_string(i + 1) + " of " + std::to_string(first.caf.size()), "proportion",
+             proportion_difference(proportion(first.caf[i].correct, first.caf[i].trials),
+                                   proportion(second.caf[i].correct, second.caf[i].trials),
+                                   options.confidence)});
     }
 }
 

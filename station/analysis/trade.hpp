@@ -26,7 +26,10 @@ struct DifficultyCell {
 struct InstructionResult {
   std::string instruction;
   int presented = 0, answered = 0, timeouts = 0, anticipations = 0, excluded = 0, correct = 0;
+  std::optional<double> deadline_s;            ///< of the trials, if all have the same
   std::optional<Estimate> proportion_correct;  ///< with its Wilson interval
+  /// sensitivity over all levels; trade() leaves it empty, because it depends on the task (detect())
+  std::optional<Estimate> d_prime;
   std::optional<ResponseTimes> times, correct_times;
   std::vector<double> times_s;  ///< times of the included trials, in order of presentation
   std::vector<CafBin> caf;
@@ -53,8 +56,14 @@ struct Difference {
   /// the unit of the measure: "s", "proportion", or "s = 0.1" for the diffusion's boundary and drift (its
   /// scaling parameter)
   std::string unit;
+  /// with a p value. Of a bootstrap or a posterior it is twice the smaller share of draws on one side of 0;
+  /// with fewer than ten draws there, by the normal distribution
   std::optional<Estimate> estimate;
+  std::optional<double> corrected_p = {};  ///< after Holm's correction (holm()); empty if it was not asked for
 };
+
+/// The names of differences of the conditional accuracy in a bin of time begin with this.
+inline constexpr const char* kBinMeasure = "proportion correct in time bin ";
 
 struct Trade {
   /// one for each condition, in the order of TradeOptions::order
@@ -81,7 +90,8 @@ struct TradeOptions {
 /// Analyses speed and accuracy by condition. The diffusion model is fitted to all difficulties of a condition
 /// together, with one boundary and one Ter (diffusion.hpp); intervals of its parameters and of their
 /// differences come from its posterior distribution. The difference of drifts is the mean over the
-/// difficulties that both conditions have. Differences of proportions have Newcombe's hybrid interval (1998).
+/// difficulties that both conditions have. Differences of proportions have Newcombe's hybrid interval (1998), those in bins of time as well: they
+/// compare the first, second, ... fifth of the answers of two conditions.
 /// Other intervals are percentiles of a bootstrap that resamples answers within condition and difficulty, and
 /// excludes times from each replicate as from the session. If more than 5 % of the replicates have no number,
 /// both the number and its interval are empty. LISAS uses the standard deviations over all trials of the

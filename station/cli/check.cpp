@@ -12,6 +12,7 @@
 #include "station/cli/sound.hpp"
 #include "station/core/number.hpp"
 #include "station/protocol/combinations.hpp"
+#include "station/protocol/interludes.hpp"
 #include "station/protocol/triggers.hpp"
 #include "station/rehearsal/check.hpp"
 #include "station/session/places.hpp"
@@ -200,14 +201,29 @@ void print_cues(std::ostream& out, const rehearsal::CueGuard& cues) {
              between(least, most), cues.reports.size());
 }
 
+/// The parts of a session without trials, in the order in which they come.
+void print(std::ostream& out, const std::vector<rehearsal::CheckedInterlude>& parts, const std::string& visit) {
+  for (const auto& part : parts) {
+    using Kind = protocol::InterludeKind;
+    const auto count = [&](const char* one) { return fmt::format(": {} {}{}", part.pages, one, part.pages == 1 ? "" : "s"); };
+    fmt::print(out, "  {}{} {}{}\n", visit, protocol::name(part.kind), part.name,
+               part.kind == Kind::questionnaire ? count("question")
+               : part.kind == Kind::explanation ? count("page")
+                                                : "");
+  }
+}
+
 void print(std::ostream& out, const rehearsal::Check& check, const std::string& path) {
   const bool known = check.cues.not_compared.empty() && !check.cues.stopped;
   fmt::print(out, "{} {} on \"{}\": {}\n", path, known ? "is good" : "can run", check.rig_name, check.title);
   for (const auto& line : check.measures) fmt::print(out, "Measures in {}\n", line);
-  for (const auto& block : check.blocks)
-    fmt::print(out, "  {}{}{}{}: {} trials\n", block.visit.empty() ? "" : block.visit + ": ",
-               block.practice ? "practice block " : "block ", block.name,
+  for (const auto& block : check.blocks) {
+    const auto visit = block.visit.empty() ? "" : block.visit + ": ";
+    print(out, block.before, visit);
+    fmt::print(out, "  {}{}{}{}: {} trials\n", visit, block.practice ? "practice block " : "block ", block.name,
                block.instruction.empty() ? "" : " (" + block.instruction + ")", range(block.trials, 1));
+    print(out, block.after, visit);
+  }
   if (check.simulated_sessions > 0)
     fmt::print(
         out,

@@ -90,6 +90,9 @@ void add_export(CommandLine& app, Context& context) {
   command->add_option("--separator", options->separator, "Column separator: , ; | or tab")
       ->capture_default_str();
   command->add_option("--decimal", options->decimal, "Decimal mark: . or ,")->capture_default_str();
+  command->add_flag(
+      "--byte-order-mark", options->selection.byte_order_mark,
+      "Begin each CSV table with the UTF-8 byte order mark; without it, Excel shows umlauts wrongly");
   command
       ->add_option("--sign", options->sign,
                    "SSH key file with which to sign the checksums of all exported files (writes "

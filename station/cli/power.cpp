@@ -79,8 +79,31 @@ Json study_of(const PowerPart& part) {
           {"observers", part.options.observers},
           {"intervals", part.options.interval_sessions},
           {"replicates", part.options.replicates},
+          {"people", part.options.people},
+          {"between", part.options.between},
           {"seed", part.options.seed},
           {"parts", part.options.part.of}};
+}
+
+Json drifts_json(const std::map<double, double>& drifts) {
+  Json json = Json::array();
+  for (const auto& [difficulty, drift] : drifts) json.push_back({exact(difficulty), exact(drift)});
+  return json;
+}
+
+Json lags_json(const std::map<double, rehearsal::GeneratingValues::Lag>& lags) {
+  Json json = Json::array();
+  for (const auto& [lag_s, lag] : lags)
+    json.push_back({exact(lag_s), exact(lag.time_s), exact(lag.trials[0]), exact(lag.yes[0]),
+                    exact(lag.trials[1]), exact(lag.yes[1])});
+  return json;
+}
+
+Json measures_json(const rehearsal::Measures& measures) {
+  Json json = Json::array();
+  for (const auto& one : measures)
+    json.push_back({one.condition, one.measure, one.unit, exact(one.value)});
+  return json;
 }
 
 Json to_json(const SessionOutcome& session) {
@@ -91,15 +114,33 @@ Json to_json(const SessionOutcome& session) {
                         {"parameter", f.parameter},
                         {"unit", f.unit},
                         {"value", exact(f.value)},
-                        {"interval", interval}});
+                        {"interval", interval},
+                        {"claimed", f.claimed ? Json(*f.claimed) : Json(nullptr)}});
   }
   for (const auto& [name, sum] : session.generating.sums())
     conditions[name] = {{"deadline_s", exact(sum.deadline_s)},
                         {"one_deadline", sum.one_deadline},
                         {"trials", sum.trials},
-                        {"correct", exact(sum.correct)}};
-  return {{"trials", session.presented},      {"scored", session.scored}, {"right", session.right},
-          {"duration_s", session.duration_s}, {"findings", findings},     {"conditions", conditions}};
+                        {"correct", exact(sum.correct)},
+                        {"drifts", drifts_json(sum.drifts)},
+                        {"lags", lags_json(sum.lags)}};
+  return {{"trials", session.presented},
+          {"scored", session.scored},
+          {"right", session.right},
+          {"duration_s", session.duration_s},
+          {"findings", findings},
+          {"conditions", conditions},
+          {"model_p", session.model_p ? exact(*session.model_p) : Json(nullptr)},
+          {"excluded", session.person ? Json(session.person->excluded) : Json(nullptr)},
+          {"measures", session.person ? measures_json(session.person->measures) : Json(nullptr)},
+          {"truths", measures_json(session.truths)}};
+}
+
+rehearsal::Measures measures_of(const Json& json) {
+  rehearsal::Measures measures;
+  for (const auto& one : json)
+    measures.push_back({"", one.at(0), one.at(1), one.at(2), number(one.at(3))});
+  return measures;
 }
 
 SessionOutcome session_of(const Json& json) {
@@ -108,7 +149,9 @@ SessionOutcome session_of(const Json& json) {
   session.duration_s = json.at("duration_s");
   for (const auto& f : json.at("findings")) {
     session.findings.push_back(
-        {f.at("source"), f.at("parameter"), f.at("unit"), number(f.at("value")), std::nullopt});
+        {f.at("source"), f.at("parameter"), f.at("unit"), number(f.at("value"))});
+    if (const auto& claimed = f.at("claimed"); !claimed.is_null())
+      session.findings.back().claimed = claimed.get<bool>();
     const auto& ends = f.at("interval");
     if (ends.is_null()) continue;
     auto& interval = session.findings.back().interval.emplace();
@@ -116,8 +159,23 @@ SessionOutcome session_of(const Json& json) {
   }
   std::map<std::string, rehearsal::GeneratingValues::Sum> sums;
   for (const auto& [name, sum] : json.at("conditions").items())
-    sums[name] = {number(sum.at("deadline_s")), sum.at("one_deadline"), sum.at("trials"),
-                  number(sum.at("correct"))};
+  {
+    auto& read = sums[name];
+    read.deadline_s = number(sum.at("deadline_s")), read.one_deadline = sum.at("one_deadline");
+    read.trials = sum.at("trials"), read.correct = number(sum.at("correct"));
+    for (const auto& one : sum.at("drifts")) read.drifts[number(one.at(0))] = number(one.at(1));
+    for (const auto& one : sum.at("lags"))
+      read.lags[number(one.at(0))] = {number(one.at(1)),
+                                      {number(one.at(2)), number(one.at(4))},
+                                      {number(one.at(3)), number(one.at(5))}};
+  }
+  if (const auto& p = json.at("model_p"); !p.is_null()) session.model_p = number(p);
+  if (const auto& excluded = json.at("excluded"); !excluded.is_null()) {
+    auto& person = session.person.emplace();
+    person.excluded = excluded;
+    person.measures = measures_of(json.at("measures"));
+  }
+  session.truths = measures_of(json.at("truths"));
   session.generating = rehearsal::GeneratingValues::of_sums(sums);
   return session;
 }
@@ -136,6 +194,7 @@ PowerPart part_of(const Json& json) {
   part.protocol = study.at("protocol"), part.observer = study.at("observer");
   part.options.observers = study.at("observers"), part.options.interval_sessions = study.at("intervals");
   part.options.replicates = study.at("replicates"), part.options.seed = study.at("seed");
+  part.options.people = study.at("people"), part.options.between = study.at("between").get<simulation::Spread>();
   part.options.part = {json.at("part"), study.at("parts")};
   for (const auto& session : json.at("sessions")) part.sessions.push_back(session_of(session));
   for (const auto& cue : json.at("cues")) {
@@ -236,18 +295,23 @@ using core::number;
 struct Options {
   std::string protocol, rig, calibration, observer = "sim", out, part;
   std::vector<std::string> join;
-  int observers = 1000, intervals = 200;
+  int observers = 1000, intervals = 200, people = 0;
+  std::string between;
   std::uint64_t seed = 1;
   bool progress = false;
 };
 
+/// `of`: the name of the number of which this is a share.
+template <class Proportion>
+Json share_json(const std::optional<Proportion>& share, const char* of) {
+  if (!share) return nullptr;
+  return {{"value", share->value},
+          {of, share->trials},
+          {"low", share->interval.low},
+          {"high", share->interval.high}};
+}
+
 Json to_json(const rehearsal::Recovery& recovery) {
-  Json coverage = nullptr;
-  if (recovery.coverage)
-    coverage = {{"value", recovery.coverage->value},
-                {"intervals", recovery.coverage->trials},
-                {"low", recovery.coverage->interval.low},
-                {"high", recovery.coverage->interval.high}};
   return {{"source", recovery.source},
           {"parameter", recovery.parameter},
           {"unit", recovery.unit},
@@ -261,8 +325,9 @@ Json to_json(const rehearsal::Recovery& recovery) {
           {"lower_quartile", json_number(recovery.lower_quartile)},
           {"upper_quartile", json_number(recovery.upper_quartile)},
           {"bias", json_number(recovery.bias)},
-          {"coverage", coverage},
-          {"interval_width", json_number(recovery.interval_width)}};
+          {"coverage", share_json(recovery.coverage, "intervals")},
+          {"interval_width", json_number(recovery.interval_width)},
+          {"claimed", share_json(recovery.claimed, "of")}};
 }
 
 Json to_json(const std::vector<rehearsal::CueReport>& cues) {
@@ -297,6 +362,8 @@ Json to_json(const Found& found, const std::vector<std::string>& files) {
           {"trials", json_number(power.trials)},
           {"minutes", json_number(power.minutes)},
           {"accuracy", json_number(power.accuracy)},
+          {"misfits", share_json(power.misfits, "of")},
+          {"people", power.people},
           {"recoveries", recoveries},
           {"cues", to_json(found.cues)},
           {"files", files}};
@@ -307,14 +374,20 @@ void print(std::ostream& out, const rehearsal::Power& power) {
              power.observers < power.asked ? fmt::format(" of {}", power.asked) : "", number(power.trials, 4),
              number(power.minutes, 3),
              power.accuracy ? fmt::format(", {} % right", number(100 * *power.accuracy, 3)) : "");
+  if (power.people > 0)
+    fmt::print(out, "{} studies of {} people each, analysed as turnpoint report --study does\n",
+               power.observers / power.people, power.people);
+  if (power.misfits)
+    fmt::print(out, "The check of the diffusion model finds a misfit in {} % of {} sessions\n",
+               number(100 * power.misfits->value, 3), power.misfits->trials);
   const auto named = [](const rehearsal::Recovery& r) {
     return fmt::format("{} ({})", r.parameter, r.unit.empty() ? "no unit" : r.unit);
   };
   std::size_t widest = 34;
   for (const auto& r : power.recoveries) widest = std::max(widest, named(r).size());
-  constexpr auto line = "{:<22} {:<{}} {:>9} {:>9} {:>9} {:>9} {:>9} {:>20} {:>9} {:>9}  {}\n";
+  constexpr auto line = "{:<22} {:<{}} {:>9} {:>9} {:>9} {:>9} {:>9} {:>20} {:>9} {:>9} {:>9}  {}\n";
   fmt::print(out, line, "source", "number", widest, "truth", "mean", "bias", "SD", "median", "quartiles",
-             "width", "coverage", "sessions");
+             "width", "coverage", "claimed", power.people > 0 ? "studies" : "sessions");
   for (const auto& r : power.recoveries) {
     // Print no more digits than the spread between the simulated sessions justifies.
     const double spread = r.upper_quartile - r.lower_quartile;
@@ -326,15 +399,22 @@ void print(std::ostream& out, const rehearsal::Power& power) {
     fmt::print(out, line, r.source, named(r), widest, shown(r.truth), moment(r.mean), shown(r.bias),
                moment(r.sd), shown(r.median), quartiles, shown(r.interval_width),
                r.coverage ? fmt::format("{:.3f}", r.coverage->value) : "n/a",
+               r.claimed ? fmt::format("{:.3f}", r.claimed->value) : "n/a",
                fmt::format("{} of {}", r.estimates.size(), r.sessions));
   }
   fmt::print(out,
              "Truth: the parameters of the simulated observer. Bias: mean - truth (for slopes and spreads, "
              "whose distribution has a long tail: median - truth)\n");
-  fmt::print(out,
-             "Median width and coverage are those of the 95 % intervals of the first {} sessions, or of all "
-             "sessions if the intervals come from a posterior\n",
-             power.interval_sessions);
+  fmt::print(out, "Claimed: how often a difference is found, because its interval excludes 0 (of a ratio: because the model "
+                  "with one rate is rejected), or by its corrected p value if the protocol asks for that. If the truth "
+                  "is 0, these are false alarms\n");
+  if (power.people == 0)
+    fmt::print(out,
+               "Median width and coverage are those of the 95 % intervals of the first {} sessions, or of all "
+               "sessions if the intervals come from a posterior\n",
+               power.interval_sessions);
+  else
+    fmt::print(out, "Truth is the mean over all simulated people\n");
 }
 
 void print(std::ostream& out, const std::vector<rehearsal::CueReport>& cues) {
@@ -403,6 +483,22 @@ void power(const Options& options, Context& context) {
         ": a power study does not run separate programs; use sim:..., or simulate sessions one by one "
         "with `turnpoint run --observer program:...`");
   wanted.observer = simulation::parse(part.observer = options.observer);
+  wanted.people = options.people;
+  if ((options.people > 0) == options.between.empty())
+    throw UsageError(
+        "--people and --between belong together: how much people differ decides how many a study needs; write "
+        "for example --people 8 --between bound=0.15,residual=0.1");
+  if (options.people > 0) {
+    wanted.between = simulation::parse_spread(options.between);
+    wanted.replicates = 40;  // a study takes no intervals from single people
+    if (options.observers % options.people != 0)
+      throw UsageError(fmt::format("--people {}: {} observers do not make whole studies; use {} or {}",
+                                   options.people, options.observers,
+                                   options.observers / options.people * options.people,
+                                   (options.observers / options.people + 1) * options.people));
+    core::Draws draws({});
+    simulation::draw_person(wanted.observer, wanted.between, draws);  // refuses what nobody can differ in
+  }
   wanted.seed = options.seed;
   wanted.threads = rehearsal::processors();
   if (!options.part.empty()) wanted.part = part_of(options.part, options.observers);
@@ -453,12 +549,22 @@ void add_power(CommandLine& app, Context& context) {
                                      "Number of sessions for which 95 % intervals are computed as well")
                         ->capture_default_str()
                         ->check(range(0, 1'000'000));
+  auto* people = command
+                     ->add_option("--people", options->people,
+                                  "Simulate studies with this number of people, and report what each study finds")
+                     ->check(range(3, 1000));
+  auto* between = command
+                      ->add_option("--between", options->between,
+                                   "How much people differ: standard deviations of the observer's parameters, "
+                                   "such as bound=0.15,residual=0.1 (of the logarithm; of threshold, bias and "
+                                   "criterion in their own unit)")
+                      ->value("KEY=SD,...");
   auto* observer =
       command
           ->add_option(
               "--observer", options->observer,
               "sim[:threshold=...,slope=...,lapse=...,bias=...,criterion=...,bound=...]: the simulated "
-              "observer; protocols/README.md lists all keys")
+              "observer; protocols/check-and-power.md lists all keys")
           ->capture_default_str();
   auto* seed = command->add_option("--seed", options->seed, "Seed of the first session, 0 to 2^53")
                    ->check(range(0, 9007199254740992));
@@ -474,8 +580,9 @@ void add_power(CommandLine& app, Context& context) {
               "--join", options->join,
               "Files of all parts, in any order: print what one machine would have found in all sessions")
           ->value("FILE");
-  for (const auto* other : {protocol, rig, calibration, observers, intervals, observer, seed, part})
+  for (const auto* other : {protocol, rig, calibration, observers, intervals, people, between, observer, seed, part})
     join->excludes(other);
+  people->excludes(intervals);
   add_progress(*command, options->progress);
   add_json(*command, context);
   command->footer(

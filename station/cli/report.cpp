@@ -15,10 +15,13 @@
 #include "station/core/number.hpp"
 #include "station/core/usage_error.hpp"
 #include "station/protocol/protocol.hpp"
+#include "station/report/figure_files.hpp"
 #include "station/report/html.hpp"
+#include "station/report/pdf.hpp"
 #include "station/report/stored_estimates.hpp"
 #include "station/session/program_estimator.hpp"
 #include "station/store/read.hpp"
+#include "station/system/fonts.hpp"
 #include "station/system/write_file.hpp"
 #include "station/view/study_data.hpp"
 
@@ -28,7 +31,7 @@ namespace report_command {
 
 struct Options {
   std::vector<std::string> databases, names;
-  std::string out, tables, estimator;
+  std::string out, tables, figures, estimator;
   store::SessionFilter filter;
   bool study = false, progress = false;
   std::string protocol_version, mode;
@@ -46,6 +49,29 @@ void add_estimates(const std::string& estimator, const std::string& database, co
                                                    found.program.version, found.program.sha256));
 }
 
+/// Writes the files of the figures that --figures asks for.
+void write_figures(const std::string& folder, const std::vector<report::NamedFigure>& figures) {
+  if (folder.empty()) return;
+  system::make_folder(folder);
+  std::string without_pdf;
+  for (const auto& figure : figures) {
+    const auto pdf_of = [&](const report::Figure& drawn) -> std::string {
+      report::Pdf pdf(system::outline);
+      try {
+        draw(pdf, drawn);
+        return pdf.finish();
+      } catch (const report::JoinedLetters& letters) {
+        without_pdf = figure.name + ".pdf: not written, because " + letters.what() +
+                      "; the SVG has them, and the page of the report on the screen saves a PDF";
+        return "";
+      }
+    };
+    for (const auto& file : report::figure_files(figure, pdf_of))
+      system::write_file(folder + "/" + file.name, file.bytes);
+  }
+  if (!without_pdf.empty()) throw std::runtime_error(without_pdf);
+}
+
 void report_session(Options options, Context& context) {
   if (options.databases.size() > 1)
     throw core::UsageError("--db names " + std::to_string(options.databases.size()) +
@@ -59,6 +85,7 @@ void report_session(Options options, Context& context) {
   if (!options.estimator.empty()) add_estimates(options.estimator, database, id, collected);
   const auto summary = report::summarise(collected);
   if (context.json) context.out << report::to_json(summary) << "\n";
+  write_figures(options.figures, report::figures_of(summary));
   if (options.out.empty() && !context.json) options.out = "report-" + id + ".html";
   if (options.out.empty()) return;
   system::write_file(options.out, report::to_html(summary));
@@ -97,8 +124,10 @@ class TrialFile {
   std::optional<system::FileWriter> file_;
 };
 
-std::string interval_in_words(double value, double low, double high) {
-  return fmt::format("{} [{}, {}]", core::number(value, 3), core::number(low, 3), core::number(high, 3));
+template <class Estimate>
+std::string interval_in_words(const Estimate& estimate) {
+  return fmt::format("{} [{}, {}]", core::number(estimate.value, 3), core::number(estimate.interval.low, 3),
+                     core::number(estimate.interval.high, 3));
 }
 
 void print_study(std::ostream& out, const std::string& file, const report::Study& study) {
@@ -108,18 +137,17 @@ void print_study(std::ostream& out, const std::string& file, const report::Study
   for (const auto& group : study.groups) {
     const auto name = group.condition.empty() ? "all trials" : group.condition;
     if (group.result.fit && group.result.fit->threshold) {
-      const auto& [value, interval] = *group.result.fit->threshold;
       fmt::print(out, "  {}: threshold of the group {} {}\n", name,
-                 interval_in_words(value, interval.low, interval.high), study.settings.level_unit);
+                 interval_in_words(*group.result.fit->threshold), study.settings.level_unit);
     }
     for (const auto& statement : group.result.statements)
       fmt::print(out, "  {}: {}\n", name, core::say(statement.text, "en"));
   }
   for (const auto& effect : study.effects) {
     if (!effect.difference) continue;
-    const auto& [value, interval] = *effect.difference;
-    fmt::print(out, "  {}, {} - {}: {}\n", effect.measure, effect.second, effect.first,
-               interval_in_words(value, interval.low, interval.high));
+    fmt::print(out, "  {}, {} - {}: {}{}\n", effect.measure, effect.second, effect.first,
+               interval_in_words(*effect.difference),
+               effect.corrected_p ? ", corrected p " + core::number(*effect.corrected_p, 2) : "");
   }
 }
 
@@ -144,6 +172,7 @@ void report_study(Options options, Context& context) {
       system::write_file(options.tables + "/" + table.name, table.csv);
   }
   if (context.json) context.out << report::to_json(study) << "\n";
+  write_figures(options.figures, report::figures_of(study));
   if (options.out.empty() && !context.json) options.out = "study.html";
   if (options.out.empty()) return;
   system::write_file(options.out, report::to_html(study));
@@ -189,6 +218,11 @@ void add_report(CommandLine& app, Context& context) {
   command
       ->add_option("--tables", options->tables,
                    "With --study: write tidy CSV tables for R and Python to this folder")
+      ->value("FOLDER");
+  command
+      ->add_option("--figures", options->figures,
+                   "Also write each figure to this folder, for a paper: SVG and PDF, 85 and 180 mm wide, its data "
+                   "as CSV and its caption")
       ->value("FOLDER");
   command
       ->add_option("--estimator", options->estimator,

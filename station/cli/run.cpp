@@ -152,7 +152,7 @@ std::shared_ptr<session::RunRequest> add_run_options(Command& command) {
   command.add_option(
       "--observer", request->observer,
       "sim[:threshold=...,slope=...,lapse=...,bias=...,criterion=...,bound=...]: a simulated observer "
-      "answers; protocols/README.md lists all keys; or program:FILE[,KEY=VALUE]...: a separate program "
+      "answers; protocols/check-and-power.md lists all keys; or program:FILE[,KEY=VALUE]...: a separate program "
       "answers; protocols/programs.md");
   command.add_option("--seed", request->seed, "Seed for all random numbers, 0 to 2^53")
       ->check(range(0, 9007199254740992));

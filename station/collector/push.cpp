@@ -31,6 +31,7 @@ using What = PushedSession::What;
 struct Known {
   store::Link last;
   std::int64_t annotations = 0;
+  std::string station, machine;
 };
 
 /// Checks the version of the server. Returns the stations whose sessions this connection may send.
@@ -80,7 +81,7 @@ std::vector<store::Tombstone> exchange_tombstones(Connection& server,
 std::map<std::string, Known> known_sessions(Connection& server) {
   const auto rows = server.query(
       "SELECT session_id, link_index, sha256, last_segment, last_block, last_trial, last_event, status,"
-      " status_reason, annotations FROM turnpoint.chains()");
+      " status_reason, annotations, station_id, machine FROM turnpoint.chains()");
   std::map<std::string, Known> known;
   for (int i = 0; i < rows.count(); ++i) {
     auto& it = known[rows.text(i, 0)];
@@ -90,8 +91,34 @@ std::map<std::string, Known> known_sessions(Connection& server) {
     it.last.status = rows.text(i, 7);
     it.last.status_reason = rows.text(i, 8);
     it.annotations = rows.integer(i, 9);
+    it.station = rows.text(i, 10);
+    it.machine = rows.text(i, 11);
   }
   return known;
+}
+
+/// Throws if two stations have one name: the server has a session of this station from a machine of which
+/// this database holds none, although it holds sessions of the same station from another. (A machine that
+/// replaced the station's earlier one holds what that one had recorded.)
+void refuse_two_stations(Database& database, const std::map<std::string, Known>& known) {
+  std::map<std::string, std::set<std::string>> machines;
+  Statement rows(database,
+                 "SELECT DISTINCT station_id, machine FROM session JOIN segment USING (session_id) WHERE"
+                 " machine <> ''");
+  while (rows.step()) machines[rows.text(0)].insert(rows.text(1));
+  for (const auto& [id, session] : known) {
+    const auto here = machines.find(session.station);
+    if (session.machine.empty() || here == machines.end() || here->second.count(session.machine) != 0)
+      continue;
+    throw ServerError(
+        fmt::format(
+            "collector: another machine sends its sessions as station {}, so one code can mean two people; "
+            "nothing was sent; give one of the two stations another name, on its own machine: turnpoint "
+            "station-name --db {} NEW-NAME --stored, and then let it join under that name (deploy/collector "
+            "station)",
+            session.station, database.path()),
+        "TP005");
+  }
 }
 
 std::int64_t value_of(const store::Link& link, const std::string& column) {
@@ -320,6 +347,10 @@ PushReport push(const PushOptions& options) {
   }
   Connection server(options.to);
   const auto stations = greet(server);
+  {
+    auto reader = store::open_reader(options.database);
+    refuse_two_stations(reader, known_sessions(server));
+  }
   Received received;
   received.tombstones = exchange_tombstones(options, stations, server, report);
   use(received, options, report);

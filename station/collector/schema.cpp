@@ -463,13 +463,16 @@ LANGUAGE sql STABLE SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS
   $$ SELECT v.schema, s.station_id FROM turnpoint.version v
      LEFT JOIN turnpoint.station s ON s.role = session_user ORDER BY s.station_id COLLATE "C" $$;
 
--- The last link of each of the caller's sessions.
+-- The last link of each of the caller's sessions, its station and the machine that recorded it last.
 CREATE OR REPLACE FUNCTION turnpoint.chains()
 RETURNS TABLE (session_id text, link_index bigint, sha256 text, last_segment bigint, last_block bigint,
-  last_trial bigint, last_event bigint, status text, status_reason text, annotations bigint)
+  last_trial bigint, last_event bigint, status text, status_reason text, annotations bigint, station_id text,
+  machine text)
 LANGUAGE sql STABLE SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS
   $$ SELECT s.session_id, l.link_index, l.sha256, l.last_segment, l.last_block, l.last_trial, l.last_event,
-       s.status, s.status_reason, (SELECT count(*) FROM turnpoint.annotation a WHERE a.session_id = s.session_id)
+       s.status, s.status_reason, (SELECT count(*) FROM turnpoint.annotation a WHERE a.session_id = s.session_id),
+       s.station_id, (SELECT g.machine FROM turnpoint.segment g WHERE g.session_id = s.session_id
+         ORDER BY g.segment_index DESC LIMIT 1)
      FROM turnpoint.session s CROSS JOIN LATERAL (SELECT * FROM turnpoint.link k
        WHERE k.session_id = s.session_id ORDER BY k.link_index DESC LIMIT 1) l
      WHERE turnpoint.is_own(s.station_id) $$;

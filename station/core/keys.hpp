@@ -145,7 +145,8 @@ std::string values_of(const Key& key);
 /// The JSON schema of a format, for editors.
 std::string json_schema(const Keys& keys, const std::string& title);
 
-/// The reference tables of a format in Markdown, one for each table of a file.
+/// The reference tables of a format in Markdown, under a heading for each table of a file. Tables with the
+/// same keys share one.
 std::string reference(const Keys& keys);
 
 }  // namespace turnpoint::core

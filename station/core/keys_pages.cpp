@@ -15,7 +15,7 @@ using Kind = Key::Kind;
 struct Json {
   std::string scalar;  ///< as it is written; "" for an object or a list
   bool is_list = false;
-  std::string name = {};            ///< of a member of an object
+  std::string name = {};  ///< of a member of an object
   std::vector<Json> members = {};
 
   Json& add(const std::string& key, Json value) {
@@ -24,6 +24,10 @@ struct Json {
     return *this;
   }
 };
+
+void capitalise(std::string& text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+}
 
 std::string in_quotes(const std::string& text) {
   std::string quoted = "\"";
@@ -57,7 +61,8 @@ std::string on_one_line(const Json& json) {
   if (!json.scalar.empty()) return json.scalar;
   std::string line;
   for (const auto& member : json.members)
-    line += (line.empty() ? "" : ", ") + (json.is_list ? "" : in_quotes(member.name) + ": ") + on_one_line(member);
+    line += (line.empty() ? "" : ", ") + (json.is_list ? "" : in_quotes(member.name) + ": ") +
+            on_one_line(member);
   return json.is_list ? "[" + line + "]" : "{" + line + "}";
 }
 
@@ -217,8 +222,7 @@ class SchemaWriter {
     }
     std::string description;
     for (const auto& sentence : sentences) description += (description.empty() ? "" : " / ") + sentence;
-    if (!description.empty() && description[0] >= 'a' && description[0] <= 'z')
-      description[0] = static_cast<char>(description[0] - 'a' + 'A');
+    capitalise(description);
     Json json;
     json.add("description", word(description));
     const auto& fallback = same.front()->fallback;
@@ -331,33 +335,59 @@ std::string default_of(const Key& key) {
   return key.needed ? "**required**" : key.otherwise;
 }
 
-/// Adds the table of these keys, then those of the tables below it.
-void add_tables(const Keys& keys, const std::string& path, bool of_list, std::string& page) {
+/// Tables of a file that have the same keys, and what the reference says about them.
+struct Section {
+  std::vector<std::string> titles;
+  std::string condition, tables;
+};
+
+/// The table of the keys that stand directly in a table of a file; "" if it has none of its own.
+std::string rows_of(const Keys& keys) {
   std::string rows;
-  const auto row = [&](const Key& key, const std::string& name) {
+  const auto row = [&](const Key& key) {
     const auto condition = condition_of(key);
-    rows += "| `" + name + "` | " + type_of(key) + " | " + default_of(key) + " | " + key.help +
+    rows += "| `" + key.name + "` | " + type_of(key) + " | " + default_of(key) + " | " + key.help +
             (condition.empty() ? "" : "; " + condition) + " |\n";
   };
-  for (const auto& key : keys.list) row(key, key.name);
-  if (keys.named && !keys.named->keys) row(*keys.named, keys.named->name);
-  if (!rows.empty()) {
-    const auto title = path.empty() ? "The file" : of_list ? "`[[" + path + "]]`" : "`[" + path + "]`";
-    page += "**" + title + "**\n\n| key | value | default | meaning |\n|---|---|---|---|\n" + rows;
-    for (const auto& names : keys.exactly_one)
-      page += "\nExactly one of " + words_in_code(names) + " is needed.\n";
-    for (const auto& names : keys.at_least_one)
-      page += "\nAt least one of " + words_in_code(names) + " is needed.\n";
-    page += "\n";
-  }
-  const auto add_below = [&](const Key& key) {
+  for (const auto& key : keys.list) row(key);
+  if (keys.named && !keys.named->keys) row(*keys.named);
+  if (rows.empty()) return "";
+  rows = "| key | value | default | meaning |\n|---|---|---|---|\n" + rows;
+  for (const auto& names : keys.exactly_one)
+    rows += "\nExactly one of " + words_in_code(names) + " is needed.\n";
+  for (const auto& names : keys.at_least_one)
+    rows += "\nAt least one of " + words_in_code(names) + " is needed.\n";
+  return rows;
+}
+
+/// Adds a section, or its title to the section that says the same.
+void add(Section section, std::vector<Section>& sections) {
+  if (section.tables.empty()) return;
+  const auto same = std::ranges::find_if(sections, [&](const Section& one) {
+    return one.tables == section.tables && one.condition == section.condition;
+  });
+  if (same == sections.end()) return sections.push_back(std::move(section));
+  same->titles.push_back(section.titles.front());
+}
+
+/// Adds the sections of the tables below these keys.
+void add_below(const Keys& keys, const std::string& path, std::vector<Section>& sections) {
+  const auto of_key = [&](const Key& key) {
     const auto full = path.empty() ? key.name : path + "." + key.name;
-    if (key.keys) add_tables(*key.keys, full, key.kind == Kind::tables, page);
+    const auto title = key.kind == Kind::tables ? "`[[" + full + "]]`" : "`[" + full + "]`";
+    const bool several = std::ranges::count(keys.list, key.name, &Key::name) > 1;
+    Section section{{title}, several ? condition_of(key) : "", ""};
+    if (key.keys) section.tables = rows_of(*key.keys);
     for (const auto& form : key.forms)
-      if (form.keys && !form.keys->list.empty()) add_tables(*form.keys, full, false, page);
+      if (form.keys && !form.keys->list.empty())
+        section.tables += (section.tables.empty() ? "" : "\nor\n\n") + rows_of(*form.keys);
+    add(std::move(section), sections);
+    if (key.keys) add_below(*key.keys, full, sections);
+    for (const auto& form : key.forms)
+      if (form.keys && !form.keys->list.empty()) add_below(*form.keys, full, sections);
   };
-  for (const auto& key : keys.list) add_below(key);
-  if (keys.named) add_below(*keys.named);
+  for (const auto& key : keys.list) of_key(key);
+  if (keys.named) of_key(*keys.named);
 }
 
 }  // namespace
@@ -373,8 +403,20 @@ std::string json_schema(const Keys& keys, const std::string& title) {
 }
 
 std::string reference(const Keys& keys) {
+  std::vector<Section> sections{{{"The file"}, "", rows_of(keys)}};
+  add_below(keys, "", sections);
   std::string page;
-  add_tables(keys, "", false, page);
+  for (const auto& section : sections) {
+    page += "\n## " + section.titles.front() + "\n\n";
+    std::string also = section.condition;
+    for (std::size_t i = 1; i < section.titles.size(); ++i)
+      also += (i > 1 ? ", " : also.empty() ? "The same in " : "; the same in ") + section.titles[i];
+    if (!also.empty()) {
+      capitalise(also);
+      page += also + ":\n\n";
+    }
+    page += section.tables;
+  }
   return page;
 }
 

@@ -12,12 +12,11 @@
 
 namespace turnpoint::core {
 
-
 namespace {
 
 constexpr std::size_t most_items = 10'000;  // of a list, and keys of a table
-constexpr std::size_t most_parts = 16;  // of a key
-constexpr int most_levels = 100;        // of lists and inline tables inside each other
+constexpr std::size_t most_parts = 16;      // of a key
+constexpr int most_levels = 100;            // of lists and inline tables inside each other
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_hex(char c) { return is_digit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); }
@@ -498,12 +497,14 @@ class Reader {
         phrase("every key and every table once"));
   }
 
-  /// Adds a part to a list or a table. Keys are searched for one after the other, so a table is no longer than
-  /// a list may be.
+  /// Adds a part to a list or a table. Keys are searched for one after the other, so a table is no longer
+  /// than a list may be.
   Part& added(Part& parent) {
     if (parent.parts.size() >= most_items) {
       const bool list = parent.kind == Part::Kind::array || parent.kind == Part::Kind::table_array;
-      throw BadInput({{place(), phrase(list ? "a list of more than %1 items" : "a table of more than %1 keys", {plain(most_items)}),
+      throw BadInput({{place(),
+                       phrase(list ? "a list of more than %1 items" : "a table of more than %1 keys",
+                              {plain(most_items)}),
                        phrase("at most %1", {plain(most_items)})}});
     }
     return parent.parts.emplace_back();
@@ -649,8 +650,7 @@ std::string read_text_file(const std::string& path) try {
 }
 
 std::string_view without_byte_order_mark(std::string_view text) {
-  const std::string_view mark = "\xEF\xBB\xBF";
-  return text.starts_with(mark) ? text.substr(mark.size()) : text;
+  return text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text;
 }
 
 }  // namespace turnpoint::core

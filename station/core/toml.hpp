@@ -98,7 +98,9 @@ constexpr std::size_t most_text_bytes = 4 << 20;
 /// `most_text_bytes`; other errors are those of core::read_file.
 std::string read_text_file(const std::string& path);
 
-/// Returns the text without the UTF-8 byte order mark that some programs put before it.
+/// The UTF-8 byte order mark, which some programs put before a text and by which spreadsheets know UTF-8.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+/// Returns the text without this mark.
 std::string_view without_byte_order_mark(std::string_view text);
 
 }  // namespace turnpoint::core

@@ -34,7 +34,7 @@ std::int64_t time_of(const input_event& event) {
 
 void EvdevDevice::Free::operator()(libevdev* device) const noexcept { libevdev_free(device); }
 
-std::optional<EvdevDevice> EvdevDevice::find(const std::string& path_or_name) {
+std::optional<EvdevDevice> EvdevDevice::find(const std::string& path_or_name, const std::string& folder) {
   if (path_or_name.starts_with('/')) {
     const int descriptor = open_for_reading(path_or_name);
     if (descriptor < 0) return std::nullopt;
@@ -43,7 +43,7 @@ std::optional<EvdevDevice> EvdevDevice::find(const std::string& path_or_name) {
   int error = ENOENT;
   std::error_code none;
   std::vector<std::pair<std::string, EvdevDevice>> named;
-  for (const auto& entry : std::filesystem::directory_iterator("/dev/input", none)) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
     if (!entry.path().filename().string().starts_with("event")) continue;
     const int descriptor = open_for_reading(entry.path());
     if (descriptor < 0) {
@@ -59,10 +59,12 @@ std::optional<EvdevDevice> EvdevDevice::find(const std::string& path_or_name) {
       error = going.code().value();
     }
   }
-  // A touch controller often has another node of the same name, such as that of a mouse.
+  // A touch controller often has another node of the same name, such as that of a mouse that reports
+  // positions.
   if (std::any_of(named.begin(), named.end(), [](const auto& one) { return one.second.is_touched(); }))
     std::erase_if(named, [](const auto& one) { return !one.second.is_touched(); });
   if (named.size() > 1) {
+    std::sort(named.begin(), named.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::string paths;
     for (const auto& one : named) paths += (paths.empty() ? "" : ", ") + one.first;
     throw core::UsageError("input device '" + path_or_name + "': " + std::to_string(named.size()) +
@@ -89,8 +91,7 @@ bool EvdevDevice::has_axis(int axis) const noexcept {
 }
 
 bool EvdevDevice::is_touched() const noexcept {
-  return has_axis(ABS_X) || has_axis(ABS_Y) || has_axis(ABS_MT_POSITION_X) || has_axis(ABS_MT_POSITION_Y) ||
-         libevdev_has_event_code(device_.get(), EV_KEY, BTN_TOUCH) != 0;
+  return has_axis(ABS_MT_POSITION_X) || libevdev_has_event_code(device_.get(), EV_KEY, BTN_TOUCH) != 0;
 }
 
 AxisRange EvdevDevice::range(int axis) const {

@@ -20,11 +20,12 @@ struct AxisRange {
 /// at the same time. Use an object from one thread only.
 class EvdevDevice {
  public:
-  /// Opens the device with this path or (without a leading slash) this name, for reading only. Empty if there
-  /// is no such device or it cannot be opened; errno says why. Of several devices of this name, takes the one
-  /// that is_touched(). Throws core::UsageError if several are, and std::system_error if the path is not an
-  /// input device.
-  static std::optional<EvdevDevice> find(const std::string& path_or_name);
+  /// Opens the device with this path or (without a leading slash) this name in `folder`, for reading only.
+  /// Empty if there is no such device or it cannot be opened; errno says why. Of several devices of this
+  /// name, takes the one that is_touched(). Throws core::UsageError if several are, or if several have the
+  /// name and none is, and std::system_error if the path is not an input device.
+  static std::optional<EvdevDevice> find(const std::string& path_or_name,
+                                         const std::string& folder = "/dev/input");
 
   /// Takes ownership of an open, non-blocking descriptor. Throws std::system_error.
   EvdevDevice(int descriptor, std::string name);
@@ -32,7 +33,8 @@ class EvdevDevice {
   const std::string& name() const noexcept { return name_; }
   int descriptor() const noexcept { return file_.get(); }
   bool has_axis(int axis) const noexcept;
-  /// True for a panel or a sensor that a finger or a pen touches; false for a mouse or a keyboard.
+  /// True for a panel or a sensor that a finger or a pen touches, which reports the touch itself; false for a
+  /// keyboard and for a mouse, also one that reports positions (a touch controller often has such a node).
   bool is_touched() const noexcept;
   /// Throws std::system_error with ENOTSUP if the device has no such axis, or if its range is empty.
   AxisRange range(int axis) const;

@@ -146,6 +146,9 @@ std::vector<Disk> removable_disks(const DiskSources& sources) {
   std::vector<Disk> disks;
   if (!fs::is_directory(sources.blocks)) return disks;
   const auto points = mount_points(sources.mounts);
+  std::error_code unresolved;  // the data's folder may be a link to the disk that holds them
+  const auto resolved = fs::weakly_canonical(sources.data, unresolved).string();
+  const auto data = unresolved ? sources.data : resolved;
   for (const auto& entry : fs::directory_iterator(sources.blocks)) {
     const auto& block = entry.path();
     const double gigabytes = size_GB(block);
@@ -165,8 +168,9 @@ std::vector<Disk> removable_disks(const DiskSources& sources) {
       const auto folders = folders_of(part, points);
       of_the_system = of_the_system || has_holders(part) ||
                       std::any_of(folders.begin(), folders.end(),
-                                  [&](const auto& folder) { return is_of_the_system(folder, sources.data); });
-      found.push_back({"/dev/" + part.filename().string(), name, folders.empty() ? "" : folders.front()});
+                                  [&](const auto& folder) { return is_of_the_system(folder, data); });
+      found.push_back({"/dev/" + part.filename().string(), name, folders.empty() ? "" : folders.front(),
+                       "/dev/" + block.filename().string()});
     }
     if (!of_the_system) disks.insert(disks.end(), found.begin(), found.end());
   }
@@ -175,9 +179,14 @@ std::vector<Disk> removable_disks(const DiskSources& sources) {
 }
 
 std::string mount(const Disk& disk, const DiskSources& sources) {
+  const auto folder = [&]() -> std::string {
+    for (const auto& now : removable_disks(sources))
+      if (now.device == disk.device) return now.folder;
+    return "";
+  };
+  if (const auto mounted = folder(); !mounted.empty()) return mounted;
   const auto ended = ask_udisks(sources, "mount", disk.device);
-  for (const auto& now : removable_disks(sources))
-    if (now.device == disk.device && !now.folder.empty()) return now.folder;
+  if (const auto mounted = folder(); !mounted.empty()) return mounted;
   throw core::Failure(
       core::phrase("operator.cannot_mount",
                    {core::plain(disk.name), core::plain(disk.device),
@@ -186,10 +195,13 @@ std::string mount(const Disk& disk, const DiskSources& sources) {
 
 void eject(const Disk& disk, const DiskSources& sources) {
   ::sync();
-  if (const auto ended = ask_udisks(sources, "unmount", disk.device); ended.status != 0)
-    throw core::Failure(
-        core::phrase("operator.still_in_use",
-                     {core::plain(disk.name), core::plain(disk.device), core::plain(ended.said)}));
+  for (const auto& now : removable_disks(sources)) {
+    if (now.whole != disk.whole || now.folder.empty()) continue;
+    if (const auto ended = ask_udisks(sources, "unmount", now.device); ended.status != 0)
+      throw core::Failure(
+          core::phrase("operator.still_in_use",
+                       {core::plain(now.name), core::plain(now.device), core::plain(ended.said)}));
+  }
   ask_udisks(sources, "power-off", disk.device);
 }
 

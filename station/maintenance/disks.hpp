@@ -9,6 +9,7 @@ struct Disk {
   std::string device;  ///< such as "/dev/sda1"
   std::string name;    ///< its model and size, such as "Ultra Fit, 31 GB"
   std::string folder;  ///< folder at which it is mounted; "" if it is not mounted
+  std::string whole;   ///< device of the whole disk, such as "/dev/sda"
   bool operator==(const Disk&) const = default;
 };
 
@@ -25,12 +26,13 @@ struct DiskSources {
 /// station's data, with all of their partitions, because ejecting one switches off the whole disk.
 std::vector<Disk> removable_disks(const DiskSources& sources = {});
 
-/// Mounts a disk through udisks and returns its folder. Throws std::runtime_error with what udisks said.
+/// Returns the folder at which a disk is mounted now; mounts it through udisks if it is not. Throws
+/// std::runtime_error with what udisks said, as for a disk that was pulled out since it was listed.
 std::string mount(const Disk& disk, const DiskSources& sources = {});
 
-/// Writes everything to a disk and unmounts it, and then switches it off, so that it can be unplugged. Throws
-/// std::runtime_error if it could not be unmounted. A disk that cannot be switched off, such as a memory
-/// card, can be taken out as soon as it is unmounted.
+/// Writes everything to a disk and unmounts it with all of its partitions, and then switches it off, so that
+/// it can be unplugged. Throws std::runtime_error if one could not be unmounted. A disk that cannot be
+/// switched off, such as a memory card, can be taken out as soon as it is unmounted.
 void eject(const Disk& disk, const DiskSources& sources = {});
 
 }  // namespace turnpoint::maintenance

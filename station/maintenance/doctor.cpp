@@ -265,7 +265,9 @@ io::Finding check_file_system(const std::string& file_system) {
   };
   const auto name = phrase("doctor.file_system"), what = plain(file_system);
   if (is({"tmpfs", "ramfs", "overlay"})) return {name, Status::failed, what, phrase("doctor.volatile_mend")};
-  if (is({"nfs", "cifs", "fuse", "9p"})) return {name, Status::warning, what, phrase("doctor.network_mend")};
+  if (is({"nfs", "cifs", "fuse", "9p", "ceph", "afs", "vboxsf"}))
+    return {name, Status::warning, what, phrase("doctor.network_mend")};
+  if (is({"vfat", "exfat", "ntfs"})) return {name, Status::warning, what, phrase("doctor.fat_mend")};
   return {name, Status::ok, what, {}};
 }
 

@@ -58,8 +58,8 @@ Key grid(const char* name, const char* help) { return several(name, grid_forms()
 
 Key parameter_grid(const char* name, const char* help) {
   auto forms = grid_forms();
-  forms.push_back(table(
-      "", {word("tied", {"lapse"}, "the guess rate is the lapse rate in each combination").required()}, ""));
+  forms.push_back(
+      table("", {word("tied", {"lapse"}, "the same value as the lapse rate: for guess").required()}, ""));
   return several(name, std::move(forms), help);
 }
 
@@ -69,7 +69,8 @@ Key prior(const char* name) {
                    number("sd", positive_step, "standard deviation").required()},
                   "a normal distribution"),
             numbers("weights", {0, 1e12}, "one weight for each value of the grid")};
-  return table(name, keys.one_of({"normal", "weights"}), "what is believed before the first trial");
+  return table(name, keys.one_of({"normal", "weights"}), "how plausible each value is beforehand")
+      .without_it("all alike");
 }
 
 Key order(bool listed_levels) {
@@ -84,13 +85,15 @@ Key order(bool listed_levels) {
        table("",
              Keys{}.with_free_names(integer("FACTOR", 1, 1000, "longest run of one value of this factor")),
              "")},
-      "longest run of trials with the same right answer; or with the same value of each named factor"));
+      "most trials in a row with the same right answer; or with the same value of each named factor"));
   return table("order", keys, "the order of the trials");
 }
 
 Keys right_of_last() {
-  return {integer("right", 1, 1000, "ends after so many right answers ...").only_with("of_last"),
-          integer("of_last", 1, 1000, "... among so many last ones").only_with("right")};
+  return {
+      integer("right", 1, 1000, "ends as soon as so many answers were right (or those that it tracks) ...")
+          .only_with("of_last"),
+      integer("of_last", 1, 1000, "... of so many last ones; suits training").only_with("right")};
 }
 
 Keys rules(bool steps) {
@@ -98,12 +101,17 @@ Keys rules(bool steps) {
       integer("trials", 1, 100000, "ends after so many trials"),
       integer("reversals", 1, 10000, "ends after so many reversals"),
       integer("min_trials", 1, 100000, "but not before so many trials"),
-      integer("max_trials", 1, 100000, "but in any case after so many trials"),
-      number("threshold_sd", positive_step, "ends when the threshold's standard deviation is at most this"),
-      number("entropy_nats", {-100, 100}, "ends when the entropy of the posterior is at most this")};
+      integer("max_trials", 1, 100000, "but in any case after so many trials")
+          .without_it(
+              "400, or four times what the rules ask for if that is more (10 trials for each reversal)"),
+      number("threshold_sd", positive_step,
+             "QUEST+, psi and others with a posterior: ends when the threshold's standard deviation is at "
+             "most this"),
+      number("entropy_nats", {-100, 100}, "the same for the entropy of the posterior")};
   if (steps)
     keys.list.push_back(
-        integer("limit_steps", 1, 1000, "ends after so many steps in a row that a limit refuses"));
+        integer("limit_steps", 1, 1000, "ends after so many steps in a row that min or max refuses")
+            .by_default("10"));
   keys.and_also(right_of_last());
   keys.list.push_back(word("rule", {"or", "and"}, "whether one of several rules is enough")
                           .without_it("needed with several rules"));
@@ -124,13 +132,18 @@ Key starts(const char* name, const char* help) {
 Keys all() {
   Words parameters;
   for (const auto& parameter : kParameters) parameters.emplace_back(parameter.name);
-  Keys grids{parameter_grid("threshold", "threshold"),
-             parameter_grid("gradient", "change of the threshold per unit of the second dimension"),
-             parameter_grid("floor", "lowest threshold, with a second dimension"),
-             parameter_grid("slope", "slope"),
-             parameter_grid("criterion", "criterion of signal detection"),
-             parameter_grid("guess", "guess rate"),
-             parameter_grid("lapse", "lapse rate")};
+  Keys grids{
+      parameter_grid("threshold", "threshold"),
+      parameter_grid(
+          "gradient",
+          "change of the threshold per unit of the second factor; with a scale of ratios in decades or dB"),
+      parameter_grid("floor", "lowest threshold, with a second factor"),
+      parameter_grid("slope", "slope; let the values begin at 0.5"),
+      parameter_grid("criterion",
+                     "with function = \"signal-detection\", instead of guess: the criterion in standard "
+                     "deviations of the noise"),
+      parameter_grid("guess", "guess rate: 0.5 for two answers, 0.333 for three"),
+      parameter_grid("lapse", "lapse rate")};
   Keys priors;
   for (const auto& name : parameters) priors.list.push_back(prior(name.c_str()));
   const auto spanned = joined(tracks, {"limits", "program"});
@@ -143,12 +156,14 @@ Keys all() {
           .only_with("kind", answering),
       numbers("values", any_level, "the levels").required().only_with("kind", {"constant-stimuli"}),
       integer("repeats", 1, 10000, "how often each level is presented").required().only_with("kind", listed),
-      strings("balance", "factors whose levels are presented equally often")
+      strings("balance",
+              "factors whose levels are combined equally often with each level (and with each other)")
           .holding(0)
           .only_with("kind", listed),
       order(true).only_with("kind", listed),
       order(false).only_with("kind", joined(answering, {"limits"})),
-      numbers("start", any_level, "where the slider starts: levels from below and from above")
+      numbers("start", any_level,
+              "where the slider starts: below or above, as seen from the middle of the list")
           .only_with("kind", {"adjustment"}),
       numbers("start_below", any_level, "where the slider starts below").only_with("kind", {"adjustment"}),
       numbers("start_above", any_level, "where the slider starts above; as many as below")
@@ -156,13 +171,16 @@ Keys all() {
       number("start", any_level, "the first level").required().only_with("kind", tracks),
       number("min", any_level, "lowest level").required().only_with("kind", spanned),
       number("max", any_level, "highest level").required().only_with("kind", spanned),
-      numbers("step", positive_step, "steps in both directions: the last is repeated")
+      numbers("step", positive_step,
+              "step sizes in both directions: each reversal moves on to the next, and the last stays")
           .only_with("kind", staircases),
       number("step", positive_step, "the step")
           .required()
           .only_with("kind", {"accelerated-stochastic-approximation", "limits"}),
-      numbers("step_down", positive_step, "steps down").only_with("kind", staircases),
-      numbers("step_up", positive_step, "steps up, if they differ").only_with("kind", {"up-down"}),
+      numbers("step_down", positive_step,
+              "step sizes down, if those up differ; weighted-up-down needs these only")
+          .only_with("kind", staircases),
+      numbers("step_up", positive_step, "step sizes up").only_with("kind", {"up-down"}),
       integer("n_down", 1, 20, "right answers in a row that lower the level")
           .required()
           .only_with("kind", {"up-down"}),
@@ -172,25 +190,30 @@ Keys all() {
       integer("initial_down", 1, 20, "`n_down` before the first reversal")
           .without_it("`n_down`")
           .only_with("kind", {"up-down"}),
-      integer("discard_reversals", 0, 1000, "first reversals that the estimate leaves out")
+      integer("discard_reversals", 0, 1000,
+              "first reversals that the estimate leaves out; 4 if the start is far from the threshold")
           .by_default("0")
           .only_with("kind", staircases),
       starts("start_ascending",
              "levels at which ascending series start: each is used equally often, or each series draws one"),
       starts("start_descending", "levels at which descending series start, in the same forms"),
-      integer("series", 1, 1000, "number of series, of both directions together")
+      integer("series", 1, 1000, "number of series; with both directions, half of them each")
           .required()
           .only_with("kind", {"limits"}),
-      integer("n_change", 1, 20, "new answers in a row that end a series")
+      integer("n_change", 1, 20, "new answers in a row that end a series; with 2, a slip does not")
           .by_default("1")
           .only_with("kind", {"limits"}),
-      word("directions", {"alternate", "random"}, "the order of the directions")
+      word("directions", {"alternate", "random"},
+           "the directions take turns (the first is drawn), or are shuffled, each equally often")
           .by_default("\"alternate\"")
           .only_with("kind", {"limits"}),
-      number("target", {0, 1, Ends::open}, "proportion of right answers on which it converges")
+      number("target", {0, 1, Ends::open},
+             "proportion of right answers (or of those that it tracks) on which it converges")
           .required()
           .only_with("kind", {"weighted-up-down", "accelerated-stochastic-approximation"}),
-      word("scale", {"linear", "log10", "dB"}, "the scale of the steps and of the psychometric function")
+      word("scale", {"linear", "log10", "dB"},
+           "on which scale steps are counted, and level and threshold compared: \"linear\" for differences "
+           "(also of levels in dB), else for ratios")
           .by_default("\"linear\"")
           .only_with("kind", joined(joined(tracks, posteriors), {"limits"})),
       word("function", {"weibull", "normal", "logistic", "signal-detection"},
@@ -198,16 +221,18 @@ Keys all() {
           .required()
           .only_with("kind", posteriors),
       grid("stimuli", "the levels from which it chooses").required().only_with("kind", posteriors),
-      table("second",
-            {string("level", "the second factor that it sets").required(),
-             grid("stimuli", "the values from which it chooses").required(),
-             number("origin", any_level, "where the threshold is that of grid.threshold").by_default("0")},
-            "a second dimension, along which the threshold changes")
+      table(
+          "second",
+          {string("level", "the second factor that it sets").required(),
+           grid("stimuli", "the values from which it chooses").required(),
+           number("origin", any_level, "the value at which grid.threshold applies; choose it near the middle")
+               .by_default("0")},
+          "a second dimension, along which the threshold changes")
           .only_with("kind", two_dimensions),
       table("grid", grids, "the values of each parameter").required().only_with("kind", posteriors),
       table("prior", priors, "what is believed before the first trial, for each parameter; even without it")
           .only_with("kind", posteriors),
-      words("nuisance", parameters, "parameters about which it need not learn")
+      words("nuisance", parameters, "psi-marginal: parameters that are not to be estimated")
           .only_with("kind", two_dimensions),
       word("select", {"min-expected-entropy"}, "how it chooses the next level")
           .by_default("\"min-expected-entropy\"")

@@ -4,26 +4,30 @@
 
 #include "station/core/number.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/protocol/visits.hpp"
 
 namespace turnpoint::protocol {
 
 namespace {
 
-/// For factor number `next` in `by` and all factors after it: adds a name for each combination of their
-/// levels.
+/// For factor number `next` in `by` and all factors after it: adds each combination of their levels.
 void combine(const protocol::Protocol& protocol, std::size_t next, protocol::Factors& factors,
-             std::vector<std::string>& names) {
+             std::vector<protocol::Factors>& all) {
   const auto& by = protocol.analysis.by;
-  if (next == by.size()) {
-    names.push_back(condition_of(protocol, factors, ""));
-    return;
-  }
+  if (next == by.size()) return all.push_back(factors);
   for (const auto& factor : protocol.factors)
     if (factor.name == by[next])
       for (const auto& level : factor.levels) {
         factors[factor.name] = level;
-        combine(protocol, next + 1, factors, names);
+        combine(protocol, next + 1, factors, all);
       }
+}
+
+std::vector<protocol::Factors> combinations_of_by(const protocol::Protocol& protocol) {
+  std::vector<protocol::Factors> all;
+  protocol::Factors factors;
+  combine(protocol, 0, factors, all);
+  return all;
 }
 
 }  // namespace
@@ -57,11 +61,23 @@ std::string condition_of(const protocol::Protocol& protocol, const protocol::Fac
   return name;
 }
 
+std::map<std::string, std::string> groups_of_conditions(const protocol::Protocol& protocol) {
+  std::map<std::string, std::string> groups;
+  for (const auto& factors : combinations_of_by(protocol)) {
+    std::string group;
+    for (const auto& factor : protocol.factors)
+      if (const auto found = factors.find(factor.name); is_group(factor) && found != factors.end())
+        group += (group.empty() ? "" : ", ") + level_in_words(factor.name, found->second);
+    if (!group.empty()) groups.emplace(condition_of(protocol, factors, ""), group);
+  }
+  return groups;
+}
+
 std::vector<std::string> conditions(const protocol::Protocol& protocol) {
   std::vector<std::string> names;
   if (!protocol.analysis.by.empty()) {
-    protocol::Factors factors;
-    combine(protocol, 0, factors, names);
+    for (const auto& factors : combinations_of_by(protocol))
+      names.push_back(condition_of(protocol, factors, ""));
     return names;
   }
   for (const auto& block : protocol::all_blocks(protocol))

@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,10 @@ std::string condition_of(const protocol::Protocol& protocol, const protocol::Fac
 /// instructions come in the order in which the blocks in the file use them. The order is the same for every
 /// participant.
 std::vector<std::string> conditions(const protocol::Protocol& protocol);
+
+/// The group of participants that has a condition, in words, by the name of the condition. Empty if the
+/// protocol has no groups or `by` names none: then every participant has all conditions.
+std::map<std::string, std::string> groups_of_conditions(const protocol::Protocol& protocol);
 
 /// A factor's name in words and its unit: `mark_mm` gives "mark" and "mm", `_um` gives the unit \u00b5m. The
 /// unit is "" if the name has none.

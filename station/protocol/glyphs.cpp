@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+
+#include "station/core/letters.hpp"
 #include "station/core/toml.hpp"
 
 namespace turnpoint::protocol {
@@ -21,69 +25,87 @@ bool has_no_shape(char32_t c) {
          (c >= 0xFE00 && c <= 0xFE0F) || c == 0xFEFF;
 }
 
-struct Character {
-  char32_t code;
-  std::string bytes;
+/// The characters without a font in the texts of one language, and the place of the first of these texts.
+struct Missing {
+  core::Place place;
+  std::string characters;
 };
-
-// Splits a text into characters. The text is valid UTF-8, because the reader of TOML files refuses any other.
-std::vector<Character> characters(const std::string& text) {
-  std::vector<Character> list;
-  for (const char byte : text) {
-    const auto value = static_cast<unsigned char>(byte);
-    if ((value & 0xC0) == 0x80 && !list.empty()) {
-      list.back().code = (list.back().code << 6) | (value & 0x3F);
-    } else {
-      const unsigned char mask = value < 0x80 ? 0x7F : value < 0xE0 ? 0x1F : value < 0xF0 ? 0x0F : 0x07;
-      list.push_back({static_cast<char32_t>(value & mask), ""});
-    }
-    list.back().bytes += byte;
-  }
-  return list;
-}
 
 class Search {
  public:
-  explicit Search(const std::function<bool(char32_t)>& drawable) : drawable_(drawable) {}
+  Search(const Protocol& protocol, const std::function<bool(char32_t)>& drawable)
+      : languages_(protocol.languages), drawable_(drawable) {}
 
-  void look(const std::string& key, const core::Place& place, const core::Value& value) {
+  /// `language` is that of the texts in `value`; "" for texts that are shown in every language.
+  void look(const std::string& key, const core::Place& place, const core::Value& value,
+            const std::string& language = "") {
     std::string missing;
-    collect(value, missing);
+    collect(value, language.empty() ? missing : of_languages[language].characters);
+    if (auto& first = of_languages[language]; first.place.line == 0 && !first.characters.empty())
+      first.place = place;
     if (!missing.empty())
-      found.push_back({place,
-                       phrase("\"%1\" has characters that no font on this machine can draw: %2",
-                              {plain(key), plain(missing)}),
-                       phrase("use other characters, or install a font for them; fonts-noto-core and "
-                              "fonts-noto-cjk together cover almost all scripts")});
-    for (const auto& entry : value.entries) look(key + "." + entry.key, entry.place, entry.value);
+      everywhere.push_back({place,
+                            phrase("\"%1\" has characters that no font on this machine can draw: %2",
+                                   {plain(key), plain(missing)}),
+                            advice()});
+    const auto within = [&](const std::string& name) {
+      return std::find(languages_.begin(), languages_.end(), name) == languages_.end() ? language : name;
+    };
+    for (const auto& entry : value.entries)
+      look(key + "." + entry.key, entry.place, entry.value, within(entry.key));
     for (const auto& item : value.items)
-      for (const auto& entry : item.entries) look(key + "." + entry.key, entry.place, entry.value);
+      for (const auto& entry : item.entries)
+        look(key + "." + entry.key, entry.place, entry.value, within(entry.key));
   }
 
-  std::vector<core::Problem> found;
+  static core::Phrase advice() {
+    return phrase("use other characters, or install a font for them; fonts-noto-core and fonts-noto-cjk together "
+                  "cover almost all scripts");
+  }
+
+  std::vector<core::Problem> everywhere;
+  std::map<std::string, Missing> of_languages;
 
  private:
   void collect(const core::Value& value, std::string& missing) {
-    for (const auto& [code, bytes] : characters(value.string))
+    for (const char32_t code : core::code_points(value.string)) {
+      const auto bytes = core::utf8(code);
       if (!in_every_font(code) && !has_no_shape(code) && missing.find(bytes) == std::string::npos &&
           !drawable_(code))
         missing +=
             (missing.empty() ? "" : ", ") + fmt::format("{} (U+{:04X})", bytes, static_cast<unsigned>(code));
+    }
     for (const auto& item : value.items)
       if (item.kind == core::Value::Kind::string) collect(item, missing);
   }
 
+  const std::vector<std::string>& languages_;
   const std::function<bool(char32_t)>& drawable_;
 };
 
 }  // namespace
 
-std::vector<core::Problem> undrawable(const Protocol& protocol,
-                                      const std::function<bool(char32_t)>& drawable) {
-  Search search(drawable);
+Drawable drawn_with(const Protocol& protocol, const std::function<bool(char32_t)>& drawable) {
+  Search search(protocol, drawable);
   for (const auto& entry : core::parse_toml(protocol.source, protocol.path).entries)
     search.look(entry.key, entry.place, entry.value);
-  return search.found;
+  Drawable result;
+  result.problems = std::move(search.everywhere);
+  for (const auto& language : protocol.languages) {
+    const auto& [place, characters] = search.of_languages[language];
+    if (characters.empty())
+      result.languages.push_back(language);
+    else
+      result.other_languages.push_back(
+          {place,
+           phrase("this station does not offer the language %1, because no font on this machine can draw: %2",
+                  {plain(language), plain(characters)}),
+           Search::advice()});
+  }
+  if (result.languages.empty())
+    for (auto& problem : result.other_languages) result.problems.push_back(std::move(problem));
+  if (result.languages.empty()) result.other_languages.clear();
+  return result;
 }
 
 }  // namespace turnpoint::protocol

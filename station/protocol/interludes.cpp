@@ -31,6 +31,20 @@ bool compares(Relation relation, double a, double b) {
 
 }  // namespace
 
+const char* name(InterludeKind kind) {
+  switch (kind) {
+    case InterludeKind::questionnaire:
+      return "questionnaire";
+    case InterludeKind::consent:
+      return "consent";
+    case InterludeKind::explanation:
+      return "explanation";
+    case InterludeKind::screening:
+      break;
+  }
+  return "screening";
+}
+
 bool holds(const AnswerCondition& rule, const Answers& answers) {
   const auto found = answers.find(rule.about);
   if (found == answers.end()) return false;

@@ -12,6 +12,9 @@ namespace turnpoint::protocol {
 /// question was answered repeatedly, the newest value counts.
 using Answers = std::map<std::string, FactorValue>;
 
+/// The word by which the protocol file calls a kind of interlude.
+const char* name(InterludeKind kind);
+
 /// True if the rule holds; false if the answer or score that it names does not exist yet.
 bool holds(const AnswerCondition& rule, const Answers& answers);
 bool holds(const std::vector<AnswerCondition>& rules, const Answers& answers);

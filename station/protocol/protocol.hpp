@@ -284,6 +284,9 @@ struct Interlude {
   Place place;
 };
 
+/// Which comparisons of a report are corrected together for their number, by Holm's method.
+enum class Holm { none, measure, all };
+
 struct Analysis {
   std::vector<std::string> by;  ///< factors with levels: each combination of them is analysed separately
   std::optional<Linear> difficulty;
@@ -292,6 +295,7 @@ struct Analysis {
   /// Whether the report of a study counts sessions that were not completed. A session that was superseded
   /// (the participant began the same session again later) never counts.
   bool count_incomplete = false;
+  Holm holm = Holm::none;
   double exclude_below_s = 0;
   std::optional<double> exclude_mad;
 };

@@ -72,7 +72,9 @@ Keys rating() {
   Keys keys{
       integer("points", 2, most, "number of buttons").only_without("line"),
       interval("line", any_value, "ends of a line without points").only_without("points"),
-      integer("decimals", 0, 3, "decimals of a value on the line").by_default("0").only_with("line"),
+      integer("decimals", 0, 3, "decimals of a value on the line, which has 10 to 1000 steps")
+          .by_default("0")
+          .only_with("line"),
       tables("labels",
              {number("at", any_value, "the value").required(), localised("text", "what it means").required()},
              "what values mean, from the lowest to the highest, both ends among them")
@@ -95,9 +97,10 @@ Keys factor() {
               "^[A-Za-z_][A-Za-z0-9_]*$",
               "letters, digits and _, not beginning with a digit; end the name with the unit: \"offset_mm\"")
           .required(),
-      interval("range", any_value, "lowest and highest value"),
+      interval("range", any_value, "lowest and highest value that a procedure may set or a draw may give"),
       several("levels", {numbers("", any_value, ""), strings("", "")},
-              "the values: all numbers, or all names"),
+              "the values: all numbers, or all names; one is drawn in each trial if nothing else sets the "
+              "factor"),
       several("draw",
               {word("", {"uniform", "without-repetition", "per-participant"}, ""),
                table("",
@@ -107,52 +110,70 @@ Keys factor() {
                             "a normal distribution, cut off at the range")
                           .required()},
                      "")},
-              "how a value is drawn: with a range \"uniform\" or normal, with levels the two others")};
+              "how a value is drawn if nothing else sets the factor; \"without-repetition\": each once "
+              "before any comes again; \"per-participant\": groups")
+          .without_it("levels independently; a range not at all")};
   return keys.some_of({"range", "levels"});
 }
 
 Key edge() {
   return several("edge",
                  {word("", {"turning", "peak", "p70", "p50", "p25", "p10"}, ""),
-                  table("", {number("friction", share, "relative friction at the boundary").required()}, "")},
-                 "which place the boundary is")
+                  table("",
+                        {number("friction", share, "friction at the boundary, as a share of that at rest")
+                             .required()},
+                        "")},
+                 "which place the boundary is: local cut-off, last maximum of the vibration, where it has "
+                 "fallen to so "
+                 "many percent, or where friction under a fingertip crosses a share of its value at rest")
       .required()
       .only_with("boundary_mm");
 }
 
 Key scene() {
   Keys tone{
-      expression("boundary_mm", position_mm, "where it ends").only_without("frequency_Hz"), edge(),
+      expression("boundary_mm", position_mm, "where its vibration ends").only_without("frequency_Hz"), edge(),
       expression("frequency_Hz", {0, 1e6, Ends::open_low, "Hz"}, "its frequency").only_without("boundary_mm"),
       expression("displacement_um", displacement_um, "peak displacement at its last maximum").required(),
       number("phase_deg", {-360, 360, Ends::closed, "degrees"}, "its phase").by_default("0")};
   return table(
       "NAME",
-      {string("base", "scene from which everything is taken that this one does not state"),
-       expression("boundary_mm", position_mm, "where the boundary is, from the wide end"), edge(),
-       expression("displacement_um", displacement_um, "peak displacement at the last maximum"),
-       expression("friction", share, "mean relative friction on the vibrating side"),
-       expression("displacement_under_finger_um", displacement_um, "peak displacement under a finger"),
-       expression("finger_mm", position_mm, "where this finger is, from the wide end"),
+      {string("base",
+              "scene from which everything is taken that this one does not state; of zone and tolerance, "
+              "each key"),
+       expression("boundary_mm", position_mm, "where the smooth part ends, from the wide end"), edge(),
+       expression("displacement_um", displacement_um,
+                  "peak displacement at the last maximum, without a finger"),
+       expression("friction", share, "instead of displacement_um: relative friction at the last maximum"),
+       expression("displacement_under_finger_um", displacement_um,
+                  "instead of both: peak displacement under a finger, as a mean over its contact; edge must "
+                  "be a name"),
+       expression("finger_mm", position_mm,
+                  "where this finger is, from the wide end; required with displacement_under_finger_um"),
        tables("tones", tone.one_of({"boundary_mm", "frequency_Hz"}), "explicit tones"),
        table("zone",
              {number("from_mm", {0, 1e5, Ends::closed, "mm"}, "where it begins")
                   .without_it("that of the base; else required"),
               expression("friction", share, "mean relative friction inside")
                   .without_it("that of the base; else required"),
-              integer("tones", 1, 16, "number of tones").without_it("that of the base; else required")},
-             "a stretch of even friction that ends at the boundary"),
-       expression("friction_contrast_dB",
-                  {-std::numeric_limits<double>::infinity(), 0, Ends::open_high, "dB"},
-                  "by how much the friction is lower than that of the base"),
-       number("rove_dB", {0, 40, Ends::closed, "dB"}, "the level is drawn within this range in each trial")
+              integer("tones", 1, 16,
+                      "largest number of tones; each fills gaps of the others; 3 is a good choice")
+                  .without_it("that of the base; else required")},
+             "a stretch of even friction that ends at boundary_mm"),
+       expression(
+           "friction_contrast_dB", {-std::numeric_limits<double>::infinity(), 0, Ends::open_high, "dB"},
+           "contrast to the base: 20 log10(difference / friction of the base); -20 is a tenth less friction"),
+       number("rove_dB", {0, 40, Ends::closed, "dB"},
+              "the strength of each interval is drawn up to this much above or below, so that it is no cue")
            .by_default("0"),
-       number("ramp_ms", {1, 2000, Ends::closed, "ms"}, "length of the ramps").by_default("50"),
+       number("ramp_ms", {1, 2000, Ends::closed, "ms"},
+              "length of the ramps at onset and end; below 20 the onset itself can be felt")
+           .by_default("50"),
        table("tolerance",
              {number("boundary_mm", {0, 1000, Ends::open_low, "mm"}, "of the boundary"),
-              number("level_dB", {0, 60, Ends::open_low, "dB"}, "of the level"),
+              number("level_dB", {0, 60, Ends::open_low, "dB"}, "of the level at the last maximum"),
               number("friction", share, "of the friction")},
-             "the largest error that the physics model may have")},
+             "the largest error that the physics model may have; the simplest model within it is used")},
       "what the surface presents");
 }
 
@@ -160,10 +181,14 @@ Keys task() {
   const Words several_scenes{"3ifc", "4ifc", "same-different", "oddity", "abx", "match-to-sample"};
   const Words intervals{"single-interval", "2ifc", "adjustment"};
   Keys number_keys = typed();
-  number_keys.list.push_back(string("standard", "scene that begins each trial"));
-  number_keys.list.push_back(number("modulus", {0, 1e6}, "the number that stands for the standard")
-                                 .required()
-                                 .only_with("standard"));
+  number_keys.list.push_back(
+      string("standard",
+             "scene that begins each trial (with duration_s and gap_s); without it the modulus is free"));
+  number_keys.list.push_back(
+      number("modulus", {0, 1e6},
+             "the number that stands for the standard; the page shows it above the question")
+          .required()
+          .only_with("standard"));
   const auto comparisons = [](const char* of, const char* help) {
     return table("", Keys{}.with_free_names(string(of, help)), "");
   };
@@ -182,42 +207,50 @@ Keys task() {
           .required()
           .only_with("kind", several_scenes),
       string("target", "the scene that differs").required().only_with("kind", several_scenes),
-      word("odd", {"either", "target", "standard"}, "which scene is presented once")
+      word("odd", {"either", "target", "standard"}, "which scene may be the odd one")
           .by_default("\"either\"")
           .only_with("kind", {"oddity"}),
-      number("duration_s", {0, 600, Ends::open_low, "s"}, "length of an interval")
+      number("duration_s", {0, 600, Ends::open_low, "s"}, "length of each interval")
           .without_it("until the answer, in one interval; else required"),
-      number("gap_s", {0, 60, Ends::closed, "s"}, "pause between two intervals")
+      number("gap_s", {0, 60, Ends::closed, "s"}, "silence between two intervals")
           .without_it("required with several intervals"),
       time("foreperiod_s", "time before the second scene of an interval")
           .without_it("required with a second scene"),
       number("transition_ms", {1, 5000, Ends::closed, "ms"}, "length of the change to the second scene")
           .without_it("required with a second scene"),
-      word("device", {"touch", "buttons", "either"}, "how people answer").required(),
-      word("sound", {"none", "masking_noise"}, "what headphones play").by_default("\"none\""),
+      word("device", {"touch", "buttons", "either"},
+           "how people answer; buttons for response times, as a panel adds 50 ms and more")
+          .required(),
+      word("sound", {"none", "masking_noise"}, "noise on the rig's headphones while the surface vibrates")
+          .by_default("\"none\""),
       localised("question", "what is asked").required(),
       choices("the answers").holding(1, most_choices),
       several("correct", {string("", ""), comparisons("SCENE", "a comparison, such as \"change > 0\"")},
-              "the scene whose interval is right; or for each of the two scenes, when it is")
+              "the scene whose interval is right; or a comparison for each of the two scenes, if the level "
+              "decides it")
           .required()
           .only_with("kind", {"2ifc"}),
       several("correct", {comparisons("CHOICE", "a comparison, such as \"offset_mm < 0\"")},
-              "for each choice, when it is the right answer")
+              "for each choice, a comparison of factors that says when it is right; without it, answers are "
+              "not scored")
           .only_with("kind", {"single-interval"}),
-      string("present", "a comparison that says which trials have a signal").only_with("rating"),
-      string("adjusts", "the factor that the slider sets").required().only_with("kind", {"adjustment"}),
+      string("present", "a comparison of factors: which trials have a signal; the others are noise")
+          .only_with("rating"),
+      string("adjusts", "the factor that the slider moves over its range")
+          .required()
+          .only_with("kind", {"adjustment"}),
       number("step", {0, 1e6, Ends::open_low}, "smallest step of the slider")
           .required()
           .only_with("kind", {"adjustment"}),
       table("rating", rating(), "a rating instead of choices"),
-      table("number", number_keys, "a typed number instead of choices"),
+      table("number", number_keys, "magnitude estimation: a typed number instead of choices"),
       table("confidence",
             {localised("question", "what is asked after the answer").required(),
              list("labels", {localised("", "")},
                   "what the participant can say, from the least sure to the surest")
                  .holding(2, most_choices)
                  .required()},
-            "how sure the participant is"),
+            "a second question after each answer: how sure the participant is"),
   };
   return keys.some_of({"choices", "rating", "number"});
 }
@@ -226,55 +259,71 @@ Keys timing() {
   Words zeros;
   for (const auto zero : core::response_zeros) zeros.emplace_back(core::name(zero));
   return {
-      word("response_zero", zeros, "from when response times count").required(),
-      number("explore_s", {0, 600, Ends::open_low, "s"}, "time to explore before the answer"),
-      expression("deadline_s", deadline_s, "latest answer after response_zero")
+      word("response_zero", zeros,
+           "from when response times count: onset of the last interval, start of its second scene, its end, "
+           "or (with a sensor) the finger's contact or lift-off")
+          .required(),
+      number("explore_s", {0, 600, Ends::open_low, "s"}, "one interval: the tones last at most this long"),
+      expression("deadline_s", deadline_s,
+                 "latest answer, from response_zero; a later one is a timeout and no error")
           .without_it("none")
           .only_without("response_signal"),
       table(
           "response_signal",
-          {expression("after_s", {0.02, 60, Ends::closed, "s"}, "when the signal comes, after response_zero")
+          {expression("after_s", {0.02, 60, Ends::closed, "s"},
+                      "when the signal comes, from response_zero; factors in it must not decide which answer "
+                      "is right")
                .required(),
            number("window_s", {0.05, 10, Ends::closed, "s"}, "answers count until this time after the signal")
                .required(),
-           word("by", {"screen", "flash", "tone", "buzz"}, "what the signal is").by_default("\"screen\""),
-           string("scene", "scene that the surface presents as the signal")
+           word("by", {"screen", "flash", "tone", "buzz"},
+                "what the signal is: a band of the page, the whole page, a tone on the headphones, another "
+                "scene")
+               .by_default("\"screen\""),
+           string("scene", "scene that the surface presents as the signal; it must not contain factors")
                .required()
                .only_with("by", {"buzz"}),
            number("length_ms", {20, 500, Ends::closed, "ms"}, "length of the buzz")
                .required()
                .only_with("by", {"buzz"})},
-          "a signal to answer at once"),
+          "a signal to answer at once, instead of a deadline; trials answered too early or too late are "
+          "repeated"),
       time("iti_s", "pause between trials").required(),
-      expression("anticipation_s", {0, 10, Ends::closed, "s"}, "answers before this time are too early")
+      expression("anticipation_s", {0, 10, Ends::closed, "s"},
+                 "earlier answers are anticipations, and do not count")
           .by_default("0")
           .only_without("response_signal"),
   };
 }
 
 Keys pass_of_trials() {
-  return {number("accuracy", {0, 1, Ends::open_low}, "proportion of right answers that passes").required(),
-          integer("retries", 0, 20, "how often the block may be repeated").required()};
+  return {
+      number("accuracy", {0, 1, Ends::open_low}, "proportion of right answers needed to go on").required(),
+      integer("retries", 0, 20, "how often the block is repeated at most; then the session ends").required()};
 }
 
 /// The keys of a block of trials; with the condition of a [[block]] if it may have another kind.
 Keys trials(bool of_block) {
   Keys keys{
       strings("procedures", "procedures that choose the levels"),
-      string("level", "the factor of the fixed levels"),
-      numbers("levels", any_value, "fixed levels to present"),
-      integer("trials", 1, 100000, "number of trials").without_it("until the procedures end"),
-      word("feedback", {"none", "trial", "block"}, "when the participant learns what was right")
+      string("level", "instead of procedures: the factor of the fixed levels"),
+      numbers("levels", any_value, "fixed levels, presented in shuffled order"),
+      integer("trials", 1, 100000, "number of trials at most").without_it("until the procedures end"),
+      word("feedback", {"none", "trial", "block"},
+           "when the participant learns what was right: never, after each trial, after the block")
           .by_default("\"none\""),
-      boolean("practice", "its trials are not analysed"),
+      boolean("practice", "its trials are marked as practice and left out of all estimates"),
       table("pass", pass_of_trials(), "when practice is passed").only_with("practice", {"true"}),
-      word("interleave", {"none", "random", "alternate", "passes"}, "how several procedures alternate"),
+      word("interleave", {"none", "random", "alternate", "passes"},
+           "how several procedures are mixed: one after the other, at random, each in turn, or each once in "
+           "a pass of random order")
+          .without_it("required with several procedures"),
       table(
           "catch",
           Keys{number("rate", {0, 0.5, Ends::open_low}, "share of catch trials").required()}.with_free_names(
               several("FACTOR", {number("", any_value, ""), numbers("", any_value, "")}, "its easy levels")),
-          "easy trials among the others"),
-      string("instruction", "name of a table of [instructions]"),
+          "easy trials that show whether people pay attention"),
+      string("instruction", "name of the [instructions.NAME] to show before the block"),
   };
   if (of_block)
     for (auto& key : keys.list) {
@@ -287,7 +336,7 @@ Key break_after() {
   return table("break_after",
                {integer("trials", 1, 100000, "trials before each break").required(),
                 number("min_s", seconds, "its shortest length").by_default("0")},
-               "breaks within the block");
+               "a break after so many trials");
 }
 
 Keys block() {
@@ -299,28 +348,31 @@ Keys block() {
   keys.and_also(trials(true));
   keys.and_also({
       break_after(),
-      number("duration_s", {0.5, 20, Ends::closed, "s"}, "time of a stroke")
+      number("duration_s", {0.5, 20, Ends::closed, "s"},
+             "length of each trial; the strokes of [sensing] must fit in it")
           .required()
           .only_with("kind", strokes),
-      integer("strokes", 1, 200, "number of strokes").by_default("10").only_with("kind", {"training"}),
+      integer("strokes", 1, 200, "number of trials").by_default("10").only_with("kind", {"training"}),
       table("pass",
-            {integer("strokes", 1, 200, "good strokes that pass").required(),
-             integer("retries", 0, 20, "how often the block may be repeated").required()},
+            {integer("strokes", 1, 200, "trials with a right movement that are needed to go on").required(),
+             integer("retries", 0, 20, "how often the block is repeated at most; then the session ends")
+                 .required()},
             "when the training is passed")
           .only_with("kind", {"training"}),
-      string("scene", "the scene whose strength is changed").required().only_with("kind", table_only),
-      number("from_mm", place, "where strokes begin").required().only_with("kind", table_only),
-      number("to_mm", place, "where strokes end, at least 20 mm further")
+      string("scene", "the scene whose strength is changed; it must not contain factors")
           .required()
           .only_with("kind", table_only),
-      numbers("displacement_um", {0, 100, Ends::open_low, "um"}, "displacements, ascending")
+      number("from_mm", place, "displacement and friction are averaged from here ...")
+          .required()
+          .only_with("kind", table_only),
+      number("to_mm", place, "... to here, at least 20 mm further").required().only_with("kind", table_only),
+      numbers("displacement_um", {0, 100, Ends::open_low, "um"},
+              "displacements (rms) to measure, the smallest first")
           .holding(3)
           .required()
           .only_with("kind", table_only),
-      integer("repeats", 3, 50, "strokes of each displacement in each direction")
-          .by_default("6")
-          .only_with("kind", table_only),
-      boolean("use", "whether the measured table replaces that of the rig in this session")
+      integer("repeats", 3, 50, "trials at each displacement").by_default("6").only_with("kind", table_only),
+      boolean("use", "later trials of the session are planned with the measured table instead of the rig's")
           .only_with("kind", table_only),
   });
   return keys.and_also(audience());
@@ -331,11 +383,16 @@ Keys sequence() {
   below.list.push_back(break_after());
   Keys keys{
       name("name", "a name, which is stored with the data"),
-      word("design", {"latin-square"}, "how the order differs between participants").required(),
+      word("design", {"latin-square"},
+           "how the order differs between participants: a Williams square, in which each level follows each "
+           "other one equally often")
+          .required(),
       string("over", "the factor that differs between the blocks").required(),
-      integer("cycles", 1, 100, "how often all blocks are presented").by_default("1"),
-      boolean("mirror", "the blocks follow again in reverse order"),
-      word("each_session", {"all", "one"}, "levels that each planned session presents").by_default("\"all\""),
+      integer("cycles", 1, 100, "how often all levels run").by_default("1"),
+      boolean("mirror", "every second cycle runs backwards (A B B A), so that fatigue cancels out"),
+      word("each_session", {"all", "one"},
+           "with [sessions]: each session has all levels, or one, and the square orders the sessions")
+          .by_default("\"all\""),
       table("block", below, "what each block presents").required(),
   };
   return keys.and_also(audience());
@@ -351,9 +408,11 @@ Keys procedure() {
   };
   keys.and_also(procedure::procedure_keys());
   return keys.and_also({
-      by_factor("with", "values that other factors have in its trials"),
-      string("for_each", "factor: one procedure is made for each of its levels"),
-      boolean("continues", "goes on from its state in the participant's earlier sessions"),
+      by_factor("with", "values that other factors have in all of its trials"),
+      string("for_each",
+             "a factor: the table becomes one procedure for each of its levels, called NAME-LEVEL"),
+      boolean("continues",
+              "goes on, in the next planned session, from the state in which the last one left it"),
   });
 }
 
@@ -364,11 +423,14 @@ Keys questionnaire() {
       choices("the answers").holding(2, most_choices),
       table("rating", rating(), "a rating"),
       table("number", typed(), "a typed number"),
-      one_or_more("when",
-                  "comparisons with answers and scores above, all of which must hold for it to be asked"),
-      several("simulated", {string("", ""), number("", any_value, "")}, "the answer in simulated sessions")};
+      one_or_more(
+          "when",
+          "comparisons with answers and scores above, such as \"hand == left\"; it is asked if all are true"),
+      several("simulated", {string("", ""), number("", any_value, "")}, "what the simulated observer answers")
+          .without_it("a random answer")};
   Keys keys{name("name", "a name, which is stored with the data"),
-            string("after_each", "block or sequence after each of whose blocks it comes"),
+            string("after_each",
+                   "block or sequence: it comes after each of its blocks, wherever it stands in the file"),
             tables("item", item.one_of({"choices", "rating", "number"}), "its questions")
                 .required()
                 .holding(1, 200)};
@@ -377,16 +439,20 @@ Keys questionnaire() {
 
 Keys explanation() {
   Keys example{localised("label", "what the button says").required(),
-               string("scene", "the scene to present").required(), by_factor("with", "values of factors"),
+               string("scene", "the scene to present").required(),
+               by_factor("with", "values of the factors on which the scene depends"),
                number("duration_s", {0.2, 10, Ends::closed, "s"}, "how long").by_default("2")};
-  Keys keys{name("name", "a name, which is stored with the data"),
-            string("after_each", "block or sequence after each of whose blocks it comes"),
-            tables("page",
-                   {localised("text", "what it says").required(),
-                    string("picture", "PNG or JPEG file, as seen from this file"),
-                    tables("examples", example, "scenes to feel").holding(0, 4)},
-                   "its pages")
-                .required()};
+  Keys keys{
+      name("name", "a name, which is stored with the data"),
+      string("after_each",
+             "block or sequence: it comes after each of its blocks, wherever it stands in the file"),
+      tables("page",
+             {localised("text", "what it says").required(),
+              string("picture", "PNG or JPEG file, as seen from this file"),
+              tables("examples", example, "buttons with which a stimulus can be felt, as often as wished")
+                  .holding(0, 4)},
+             "its pages")
+          .required()};
   return keys.and_also(audience());
 }
 
@@ -395,7 +461,7 @@ Keys consent() {
             localised("text", "what people agree to").required(),
             localised("agree", "what the button says that agrees").required(),
             localised("refuse", "what the other button says").required(),
-            localised("farewell", "what is said to those who refuse").required()};
+            localised("farewell", "what is said to those who refuse; the session then ends").required()};
   return keys.and_also(audience());
 }
 
@@ -403,7 +469,7 @@ Keys screening() {
   Keys keys{
       name("name", "a name, which is stored with the data"),
       one_or_more("pass", "comparisons that must all hold, such as \"practice.accuracy >= 0.8\"").required(),
-      localised("farewell", "what is said to those who do not pass").required()};
+      localised("farewell", "what is said to those who do not pass; the session then ends").required()};
   return keys.and_also(audience());
 }
 
@@ -411,7 +477,8 @@ Key seed() {
   auto whole = integer("", 0, 0, "");
   whole.range.high = 9007199254740992;
   return several("seed", {word("", {"per-session"}, ""), whole},
-                 "\"per-session\", or a whole number from 0 to 2^53")
+                 "\"per-session\": a new seed is drawn and stored, as without [random]; a number: the same "
+                 "order each time")
       .required();
 }
 
@@ -435,67 +502,96 @@ const Keys& all() {
       tables("procedure", procedure(), "how levels are chosen"),
       tables("block", block(), "blocks of trials"),
       tables("sequence", sequence(), "counterbalanced blocks, one for each level of a factor"),
+      table("instructions",
+            Keys{}.with_free_names(table(
+                "NAME",
+                {localised("text", "what is said before a block").required(),
+                 localised("late_message",
+                           "what the page says after a missed deadline, instead of the station's words"),
+                 expression("deadline_s", deadline_s,
+                            "latest answer in these blocks; missed ones are then data, and fixed levels do "
+                            "not come again")
+                     .without_it("that of [timing]"),
+                 interval("target_accuracy", {0, 1},
+                          "accuracy to aim at: a note for you, which check compares with guessing")},
+                "an instruction")),
+            "instructions of blocks"),
       table(
-          "instructions",
-          Keys{}.with_free_names(table("NAME",
-                                       {localised("text", "what is said before a block").required(),
-                                        localised("late_message", "what is said after a missed deadline"),
-                                        expression("deadline_s", deadline_s, "latest answer in these blocks")
-                                            .without_it("that of [timing]"),
-                                        interval("target_accuracy", {0, 1}, "accuracy to aim at")},
-                                       "an instruction")),
-          "instructions of blocks"),
-      table("analysis",
-            {one_or_more("by", "factors for each of whose levels a curve is fitted"),
-             expression("difficulty", {-1e9, 1e9}, "how difficult a trial is"),
-             words("show",
-                   {"psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime", "response-signal", "trace"},
-                   "parts of the report")
-                 .without_it("all that apply"),
-             word("incomplete_sessions", {"leave_out", "count"}, "whether unfinished sessions count")
-                 .without_it("as [sessions] says"),
-             table("response_time_exclude",
-                   {number("below_s", {0, 10, Ends::closed, "s"}, "shorter response times").by_default("0"),
-                    number("mad", {0, 100, Ends::open_low, "median absolute deviations"},
-                           "response times further from the median")
-                        .without_it("none")},
-                   "response times that are left out")},
-            "what the report shows"),
+          "analysis",
+          {one_or_more("by",
+                       "factors with levels: a curve and scores for each combination, and their differences")
+               .without_it("each instruction"),
+           expression("difficulty", {-1e9, 1e9},
+                      "arithmetic with the same value for equally difficult trials: the diffusion model has "
+                      "a drift for each")
+               .without_it("the size of the level"),
+           words("show",
+                 {"psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime", "response-signal", "trace"},
+                 "parts of the report")
+               .without_it("all that apply"),
+           word("incomplete_sessions", {"leave_out", "count"},
+                "whether a report of a study counts sessions that were not completed")
+               .without_it("as [sessions] says"),
+           word("holm", {"measure", "all"},
+                "which differences between conditions have their p values corrected together for their number "
+                "(Holm): those of each measure, or all of a table")
+               .without_it("no correction"),
+           table(
+               "response_time_exclude",
+               {number("below_s", {0, 10, Ends::closed, "s"}, "shorter times").by_default("0"),
+                number(
+                    "mad", {0, 100, Ends::open_low, "median absolute deviations"},
+                    "times further from the median than this many median absolute deviations (times 1.4826)")
+                    .without_it("none")},
+               "times that means, medians and scores leave out; the fit of the diffusion model has all")},
+          "what the report shows"),
       table(
           "exclusion",
-          Keys{integer("fewer_trials_than", 1, 100000, "fewer counted trials"),
-               number("accuracy_below", share, "a lower proportion of right answers"),
-               number("catch_accuracy_below", {0, 1, Ends::open_low}, "the same in catch trials"),
-               number("timeouts_above", {0, 1, Ends::open_high}, "a larger share of missed deadlines"),
-               number("anticipations_above", {0, 1, Ends::open_high},
-                      "a larger share of answers that are too early"),
-               number("median_time_below_s", {0, 600, Ends::open_low, "s"}, "a shorter median response time"),
-               number("median_time_above_s", {0, 600, Ends::open_low, "s"}, "a longer median response time"),
-               boolean("incomplete", "an unfinished session")}
+          Keys{
+              integer("fewer_trials_than", 1, 100000, "fewer answered trials"),
+              number("accuracy_below", share, "a lower proportion of right answers"),
+              number("catch_accuracy_below", {0, 1, Ends::open_low}, "the same, in catch trials"),
+              number("timeouts_above", {0, 1, Ends::open_high}, "a larger share of trials answered too late"),
+              number("anticipations_above", {0, 1, Ends::open_high},
+                     "a larger share of trials answered too early"),
+              number("median_time_below_s", {0, 600, Ends::open_low, "s"}, "a shorter median response time"),
+              number("median_time_above_s", {0, 600, Ends::open_low, "s"}, "a longer median response time"),
+              boolean("incomplete", "a session that was neither completed nor begun again later")}
               .holding(1),
-          "participants that a report of a study leaves out"),
-      table(
-          "resume",
-          {word("incomplete", {"ask", "resume", "restart", "block"}, "what happens to an interrupted session")
-               .by_default("\"ask\""),
-           number("max_age_h", {0, 8760, Ends::open_low, "h"}, "how long it can be resumed").by_default("24"),
-           integer("warmup", 0, 100, "practice trials after resuming").by_default("0"),
-           word("restart_unit", {"block"}, "what is repeated").without_it("nothing")},
-          "interrupted sessions"),
+          "participants that a report of a study leaves out: those with ... (over all trials but practice)"),
+      table("resume",
+            {word("incomplete", {"ask", "resume", "restart", "block"},
+                  "what becomes of an interrupted session: the operator chooses, it goes on, it or its block "
+                  "begins again")
+                 .by_default("\"ask\""),
+             number("max_age_h", {0, 8760, Ends::open_low, "h"},
+                    "how long after its interruption it can be resumed")
+                 .by_default("24"),
+             integer("warmup", 0, 100, "easy trials after resuming, which do not count").by_default("0"),
+             word("restart_unit", {"block"},
+                  "a resumed session begins the interrupted block again; its rows are kept and marked")
+                 .without_it("the next trial comes")},
+            "interrupted sessions"),
       table(
           "sensing",
-          {interval("normal_N", {0.1, 5, Ends::closed, "N"}, "force of the finger"),
-           interval("speed_mm_s", {10, 1000, Ends::closed, "mm/s"}, "speed of the finger"),
-           number("fraction", {0, 1, Ends::open_low}, "share of a stroke that must be within these")
+          {interval("normal_N", {0.1, 5, Ends::closed, "N"}, "normal force of the finger").without_it("any"),
+           interval("speed_mm_s", {10, 1000, Ends::closed, "mm/s"}, "speed of the strokes").without_it("any"),
+           number("fraction", {0, 1, Ends::open_low},
+                  "share of the strokes' time for which force, and speed, must be in range")
                .by_default("0.8"),
-           integer("strokes", 1, 100, "strokes of a trial").by_default("2"),
-           word("outside", {"mark", "repeat"}, "what happens to trials with other movements")
+           integer("strokes", 1, 100,
+                   "least number of strokes of a trial; one is 30 mm or longer and faster than 10 mm/s")
+               .by_default("2"),
+           word("outside", {"mark", "repeat"},
+                "a trial with another movement counts, and its row says what was wrong; or it is repeated")
                .by_default("\"mark\""),
-           integer("repeats", 1, 10, "how often one trial is presented again")
+           integer("repeats", 1, 10, "how often a trial is repeated at most; then it counts")
                .by_default("2")
                .only_with("outside", {"repeat"}),
-           boolean("guidance", "tells the participant after a trial what to change"),
-           boolean("live_guidance", "shows force and speed during a stroke").only_with("guidance", {"true"})},
+           boolean("guidance",
+                   "shows the participant bars of normal force and speed, and a block that slides at the "
+                   "right speed"),
+           boolean("live_guidance", "the bars move during stimuli, too").only_with("guidance", {"true"})},
           "how the finger should move"),
       table("triggers",
             {words("send", trigger_event_names(), "events that get a code")
@@ -503,9 +599,10 @@ const Keys& all() {
                  .holding(1),
              tables("code",
                     {word("event", trigger_event_names(), "the event").required(),
-                     string("condition", "only in this condition"),
+                     string("condition", "a level of by, or an instruction")
+                         .without_it("trials that belong to none"),
                      integer("code", 1, 255, "its code").required()},
-                    "codes that differ from the standard ones")
+                    "codes that differ from the default ones")
                  .holding(0)},
             "codes for an EEG amplifier or a recorder"),
       tables("consent", consent(), "a page on which people agree"),
@@ -514,8 +611,12 @@ const Keys& all() {
       tables("screening", screening(), "ends the session of those who do not fit"),
       table("sessions",
             {integer("count", 2, 100, "planned sessions of each participant").required(),
-             integer("min_days", 0, 366, "days between two of them, at least").by_default("0"),
-             word("incomplete", {"repeat", "count"}, "whether an unfinished one is repeated")
+             integer("min_days", 0, 366,
+                     "calendar days from one session to the next, at least; 1: not on the same day")
+                 .by_default("0"),
+             word("incomplete", {"repeat", "count"},
+                  "a session that was begun and is not resumed: it comes again from its beginning, or counts "
+                  "as done")
                  .by_default("\"repeat\"")},
             "several visits"),
   };

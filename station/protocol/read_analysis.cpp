@@ -4,6 +4,7 @@
 #include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
+#include "station/protocol/visits.hpp"
 
 namespace turnpoint::protocol {
 
@@ -43,6 +44,17 @@ void read_by(TableReader& reader, Reading& reading) {
   }
 }
 
+/// The number of conditions that the report of a study has: those of `by` or the instructions, for each group
+/// of participants.
+std::size_t conditions_of_study(const Protocol& protocol) {
+  const auto& by = protocol.analysis.by;
+  std::size_t count = by.empty() ? std::max<std::size_t>(1, protocol.instructions.size()) : 1;
+  for (const auto& factor : protocol.factors)
+    if (is_group(factor) || std::find(by.begin(), by.end(), factor.name) != by.end())
+      count *= factor.levels.size();
+  return count;
+}
+
 /// Why a value of `show` would add nothing to the report of this protocol; empty if it would add something.
 core::Phrase without_effect(const std::string& word, const Protocol& protocol) {
   const auto& task = protocol.task;
@@ -74,7 +86,7 @@ core::Phrase without_effect(const std::string& word, const Protocol& protocol) {
     return phrase("[timing] has no \"response_signal\"");
   if (word == "dprime" && (task.kind == TaskKind::oddity || task.kind == TaskKind::same_different))
     return phrase("d' is not estimated for \"oddity\" and \"same-different\"");
-  if (word == "bis" && protocol.analysis.by.empty() && protocol.instructions.size() < 2)
+  if (word == "bis" && conditions_of_study(protocol) < 2)
     return phrase("BIS compares conditions, and there is only one");
   return {};
 }
@@ -117,6 +129,8 @@ void read_analysis(TableReader& file, Reading& reading) {
   read_show(reader, reading);
   const auto& sessions = reading.protocol.sessions;
   const auto incomplete = reader.maybe_word("incomplete_sessions");
+  if (const auto holm = reader.maybe_word("holm"))
+    analysis.holm = *holm == "all" ? Holm::all : Holm::measure;
   if (incomplete) analysis.count_incomplete = *incomplete == "count";
   if (incomplete == "leave_out" && sessions && sessions->incomplete == Unfinished::count)
     reader.problem(

@@ -10,6 +10,7 @@
 #include "physics/python/array.hpp"
 #include "station/analysis/diffusion.hpp"
 #include "station/analysis/first_passage.hpp"
+#include "station/analysis/group.hpp"
 #include "station/analysis/psychometric_posterior.hpp"
 #include "station/analysis/response_signal.hpp"
 #include "station/analysis/trade.hpp"
@@ -145,8 +146,9 @@ py::array first_passage(const std::string& what, const py::array_t<double>& time
       values[i] = of(static_cast<bool>(sides(k)), times(k));
     }
   };
+  const FirstPassageDensity densities[] = {{d, false}, {d, true}};
   if (what == "density")
-    fill([&](bool up, double time_s) { return log_density(d, up, time_s); });
+    fill([&](bool up, double time_s) { return densities[up ? 1 : 0].log_at(time_s); });
   else if (what == "distribution")
     fill([&](bool up, double time_s) { return log_distribution(d, up, time_s); });
   else if (what == "tail")
@@ -287,7 +289,9 @@ void add_speed_accuracy(py::module_& module) {
       .add("second", &Difference::second, "name of a condition")
       .add("measure", &Difference::measure, "what differs")
       .add("unit", &Difference::unit, "of the measure")
-      .add("estimate", &Difference::estimate, "the difference; None if it cannot be determined");
+      .add("estimate", &Difference::estimate, "the difference; None if it cannot be determined")
+      .add("p", [](const Difference& one) { return one.estimate ? one.estimate->p : std::nullopt; },
+           "two-sided p value, not corrected for the number of comparisons; holm() does");
   Shown<Trade>(module, "SpeedAccuracy", "Speed and accuracy by condition; see speed_accuracy().")
       .add("conditions", &Trade::instructions, "in order")
       .add("differences", &Trade::differences, "one for each measure and pair of conditions")
@@ -349,6 +353,25 @@ void add_detection(py::module_& module) {
       .add("intercept_s", &S::intercept_s, "time at which the curve leaves 0, s")
       .add("statements", spoken<S>, "remarks, as in the report");
   module.def("response_signal", &signal_curves);
+  using D = CurveDifference;
+  const auto p_of = [](std::size_t which) { return [which](const D& pair) { return pair.p[which]; }; };
+  Shown<D>(module, "CurveDifference", "The second curve compared with the first one; see compare_curves().")
+      .add("first", &D::first, "name of a condition")
+      .add("second", &D::second, "name of a condition")
+      .add("asymptote", &D::asymptote, "the difference; None if a curve lacks it")
+      .add("rate_ratio", &D::rate_ratio, "the second rate divided by the first one")
+      .add("intercept_s", &D::intercept_s, "the difference, s")
+      .add("asymptote_p", p_of(0), "p value of the model with one asymptote and everything else free")
+      .add("rate_p", p_of(1), "p value of the model with one rate")
+      .add("intercept_p", p_of(2), "p value of the model with one intercept");
+  module.def("compare_curves", [](const std::vector<S>& curves) { return curve_differences(curves); });
+  module.def("holm", [](const Numbers& p, const Texts& family) {
+    std::vector<Tested> tests;
+    for (std::size_t i = 0; i < p.size(); ++i) tests.push_back({family[i], known(p[i])});
+    Numbers found;
+    for (const auto& one : holm(tests)) found.push_back(one.value_or(std::numeric_limits<double>::quiet_NaN()));
+    return physics::python::array(std::move(found));
+  });
 }
 
 void add_psychometric(py::module_& module) {

@@ -12,6 +12,7 @@
 #include "station/protocol/answers.hpp"
 #include "station/protocol/design_advice.hpp"
 #include "station/protocol/glyphs.hpp"
+#include "station/protocol/interludes.hpp"
 #include "station/protocol/triggers.hpp"
 #include "station/protocol/visits.hpp"
 #include "station/rehearsal/parallel.hpp"
@@ -76,6 +77,14 @@ double breaks_s(const protocol::Block& block, std::size_t trials) {
   return static_cast<double>((trials - 1) / every) * block.break_after->min_s;
 }
 
+std::vector<CheckedInterlude> interludes(const Protocol& protocol, const std::vector<protocol::Block>& blocks,
+                                         std::size_t next, const protocol::Visit& visit) {
+  std::vector<CheckedInterlude> list;
+  for (const auto* one : protocol::interludes_before(protocol, blocks, next, visit))
+    list.push_back({one->kind, one->name, one->items.size() + one->pages.size()});
+  return list;
+}
+
 Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed) {
   const auto order = protocol::block_order(protocol, visit);
   // Procedures that continue have fewer trials left after earlier sessions.
@@ -99,12 +108,15 @@ Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::u
                                  start.instruction,
                                  start.practice,
                                  {}});
+      estimate.blocks.back().before = interludes(protocol, order, static_cast<std::size_t>(start.block_index), visit);
       estimate.trials.push_back(0);
     }
     estimate.trials.back() += static_cast<double>(trials.size());
     estimate.duration_s +=
         instruction_s + breaks_s(order[static_cast<std::size_t>(start.block_index)], trials.size());
   }
+  if (!estimate.blocks.empty())
+    estimate.blocks.back().after = interludes(protocol, order, order.size(), visit);
   return estimate;
 }
 
@@ -138,59 +150,21 @@ int runs_sessions(double trials) {
   return static_cast<int>(std::clamp(most_trials / std::max(1.0, trials), 20.0, 200.0));
 }
 
-/// Simulates sessions in which one trial of ten is not answered, and counts those in which runs of trials
-/// were longer than the protocol allows. Trials that come again can make a run longer, so hardly any limit is
-/// certain.
-void check_runs(const Protocol& protocol, int sessions, const std::stop_token& stop, const Steps& steps,
-                Check& check) {
-  std::map<std::string, int> limits;
-  for (const auto& spec : protocol.procedures)
-    for (const auto& [key, limit] : spec.max_run) {
-      auto& smallest = limits.try_emplace(key, limit).first->second;
-      smallest = std::min(smallest, limit);
-    }
-  if (limits.empty() || sessions == 0) return;
-  const auto visits = protocol::different_visits(protocol);
-  std::vector<std::map<std::string, trial::Director::LongRun>> found(static_cast<std::size_t>(sessions));
-  const int done = in_parallel(
-      sessions, processors(), steps.counted("orders of trials simulated"),
-      [&](int i) {
-        if (stop.stop_requested()) throw protocol::Abandoned();
-        const auto seed = static_cast<std::uint64_t>(i);
-        auto careless = person(protocol);
-        careless.answer = [answer = careless.answer, seed](const trial::TrialSpec& spec,
-                                                           const simulation::Question& asked) {
-          auto reply = answer(spec, asked);
-          core::Draws draws(
-              {seed, core::Stream::observer, spec.block_index, spec.attempt, -1 - spec.trial_in_block});
-          if (draws.below(10) == 0) reply.response_time_s = 1e6;
-          return reply;
-        };
-        const auto at = static_cast<std::size_t>(i);
-        found[at] = rehearse(protocol, visits[at % visits.size()], seed, careless).long_runs;
-      },
-      steps.finish);
-  if (done == 0) return;
-  for (const auto& [key, limit] : limits) {
-    CheckedRuns runs{key, limit, limit, 0, done, {}};
-    for (const auto& session : found)
-      if (const auto run = session.find(key); run != session.end())
-        ++runs.longer, runs.longest = std::max(runs.longest, run->second.longest);
-    runs.share_longer = analysis::clopper_pearson(runs.longer, done);
+/// Says which limits of runs could not be kept.
+void warn_of_runs(const std::string& path, Check& check) {
+  for (const auto& runs : check.runs)
     if (runs.longer > 0)
       check.warnings.push_back(
-          {{protocol.path, 0, 0},
+          {{path, 0, 0},
            phrase(
                "in %1 of %2 simulated sessions, \"max_run\" could not be kept: up to %3 trials in a row had "
                "%4, and %5 are allowed",
-               {plain(runs.longer), plain(done), plain(runs.longest),
-                key == procedure::kRightAnswer ? phrase("the same right answer")
-                                               : phrase("the same \"%1\"", {plain(key)}),
-                plain(limit)}),
+               {plain(runs.longer), plain(runs.sessions), plain(runs.longest),
+                runs.of == procedure::kRightAnswer ? phrase("the same right answer")
+                                                   : phrase("the same \"%1\"", {plain(runs.of)}),
+                plain(runs.limit)}),
            phrase("allow longer runs, or use levels, catch trials and draws of factors that leave more "
                   "choice")});
-    check.runs.push_back(std::move(runs));
-  }
 }
 
 /// The number of sessions of each visit in the first round, if the protocol has this many visits. Fewer than
@@ -316,7 +290,8 @@ std::vector<core::Problem> language_notes(const Protocol& protocol) {
              : phrase("no native speaker has read the station's own words in \"%1\"", {plain(language)}),
          translation == core::Translation::none
              ? phrase("add a catalogue of texts for the language")
-             : phrase("let somebody read %1", {plain("station/core/texts/" + language.substr(0, 2) + ".toml")})});
+             : phrase("let somebody read %1",
+                      {plain("station/core/texts/" + language.substr(0, 2) + ".toml")})});
   }
   return notes;
 }
@@ -356,6 +331,48 @@ Check session_lengths(const Protocol& protocol, std::optional<int> sessions) {
   return check;
 }
 
+std::vector<CheckedRuns> check_runs(const Protocol& protocol, int sessions, const std::stop_token& stop,
+                                    const Steps& steps) {
+  std::map<std::string, int> limits;
+  for (const auto& spec : protocol.procedures)
+    for (const auto& [key, limit] : spec.max_run) {
+      auto& smallest = limits.try_emplace(key, limit).first->second;
+      smallest = std::min(smallest, limit);
+    }
+  if (limits.empty() || sessions == 0) return {};
+  const auto visits = protocol::different_visits(protocol);
+  std::vector<std::map<std::string, trial::Director::LongRun>> found(static_cast<std::size_t>(sessions));
+  const int done = in_parallel(
+      sessions, processors(), steps.counted("orders of trials simulated"),
+      [&](int i) {
+        if (stop.stop_requested()) throw protocol::Abandoned();
+        const auto seed = static_cast<std::uint64_t>(i);
+        auto careless = person(protocol);
+        careless.answer = [answer = careless.answer, seed](const trial::TrialSpec& spec,
+                                                           const simulation::Question& asked) {
+          auto reply = answer(spec, asked);
+          core::Draws draws(
+              {seed, core::Stream::observer, spec.block_index, spec.attempt, -1 - spec.trial_in_block});
+          if (draws.below(10) == 0) reply.response_time_s = 1e6;
+          return reply;
+        };
+        const auto at = static_cast<std::size_t>(i);
+        found[at] = rehearse(protocol, visits[at % visits.size()], seed, careless).long_runs;
+      },
+      steps.finish);
+  if (done == 0) return {};
+  std::vector<CheckedRuns> all;
+  for (const auto& [key, limit] : limits) {
+    CheckedRuns runs{key, limit, limit, 0, done, {}};
+    for (const auto& session : found)
+      if (const auto run = session.find(key); run != session.end())
+        ++runs.longer, runs.longest = std::max(runs.longest, run->second.longest);
+    runs.share_longer = analysis::clopper_pearson(runs.longer, done);
+    all.push_back(std::move(runs));
+  }
+  return all;
+}
+
 Check check(const std::string& protocol_path, const std::string& rig_path, const CheckOptions& options,
             const std::stop_token& stop) {
   Check check;
@@ -370,14 +387,16 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   };
   gather([&] { protocol = options.load_protocol(protocol_path); });
   gather([&] { rig = options.load_rig(rig_path); });
+  protocol::Drawable drawn;
   if (protocol && options.drawable) {
-    const auto texts = protocol::undrawable(*protocol, options.drawable);
-    check.problems.insert(check.problems.end(), texts.begin(), texts.end());
+    drawn = protocol::drawn_with(*protocol, options.drawable);
+    check.problems.insert(check.problems.end(), drawn.problems.begin(), drawn.problems.end());
   }
   if (check.problems.empty() && options.try_programs) check.problems = options.try_programs(*protocol);
   if (!check.problems.empty()) return check;
   for (const auto& meaning : protocol->meanings)
     check.measures.push_back(protocol::line_of(meaning, *protocol));
+  check.languages = options.drawable ? drawn.languages : protocol->languages;
   check.id = protocol->id, check.title = protocol->title, check.rig_name = rig->name;
   check.protocol_defaults = protocol->defaults_used;
   check.rig_defaults = rig->defaults_used;
@@ -386,6 +405,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
                        options.steps.counted("scenes planned"));
   check.problems = check.survey.problems;
   check.warnings = check.survey.warnings;
+  check.warnings.insert(check.warnings.end(), drawn.other_languages.begin(), drawn.other_languages.end());
   check.notes = protocol::notes(*protocol);
   for (const auto& note : language_notes(*protocol)) check.notes.push_back(note);
   if (rig::largest_trigger_code(*rig) > 0) check.triggers = protocol::trigger_codes(*protocol);
@@ -393,8 +413,10 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
     const auto& finish = options.steps.finish;
     estimate(*protocol, options.sessions, stop, options.steps, check);
     if (stop.stop_requested()) throw protocol::Abandoned();
-    check_runs(*protocol, std::min(runs_sessions(check.trials.median), options.sessions.value_or(kMostSessions)), stop,
-               options.steps, check);
+    check.runs = check_runs(
+        *protocol, std::min(runs_sessions(check.trials.median), options.sessions.value_or(kMostSessions)),
+        stop, options.steps);
+    warn_of_runs(protocol->path, check);
     if (check.problems.empty()) {
       if (options.finger) check.finger = shares(check.survey, *rig);
       if (options.sound) check.sound = loudest(check.survey, *rig, stop, options.steps);

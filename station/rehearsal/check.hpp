@@ -38,6 +38,13 @@ inline constexpr double kLengthPrecision = 0.03;
 inline constexpr int kMostSessions = 1000;
 
 /// A block as a participant will run it.
+/// A part of a session without trials: a questionnaire, a consent, an explanation or a screening.
+struct CheckedInterlude {
+  protocol::InterludeKind kind = protocol::InterludeKind::questionnaire;
+  std::string name;
+  std::size_t pages = 0;  ///< number of questions or pages; 0 for a screening
+};
+
 struct CheckedBlock {
   std::string visit;  ///< such as "session 2, group trained"; "" if there is only one session and no group
   int session = 0;    ///< number of the planned session; 0 if the protocol plans none
@@ -45,6 +52,8 @@ struct CheckedBlock {
   std::string name, instruction;
   bool practice = false;
   Spread trials;
+  /// what comes before the block and, for the last block of a session, after it
+  std::vector<CheckedInterlude> before = {}, after = {};
 };
 
 /// How often a limit of runs could not be kept in simulated sessions in which one trial of ten is not
@@ -64,6 +73,7 @@ struct Check {
   std::vector<core::Problem> warnings;
   std::vector<core::Problem> notes;  ///< remarks of little importance, which do not count as warnings
   std::string id, title, rig_name;
+  std::vector<std::string> languages;  ///< those of the protocol's languages that this machine can draw
   /// what the trials measure, one line for each analysis: "main: threshold of `contrast_dB` at 82 % correct"
   std::vector<std::string> measures;
   std::vector<CheckedBlock> blocks;
@@ -97,7 +107,7 @@ struct CheckOptions {
   /// the function that reads the rig file; a caller that knows a calibration can replace it by one that
   /// applies it
   std::function<rig::Rig(const std::string& path)> load_rig = rig::load;
-  /// says whether a character can be drawn on this machine (see protocol::undrawable); empty: not checked
+  /// says whether a character can be drawn on this machine (see protocol::drawn_with); empty: not checked
   std::function<bool(char32_t character)> drawable = {};
   Steps steps = {};
   /// starts the separate programs of the protocol and returns their problems; empty: they are not started
@@ -105,6 +115,12 @@ struct CheckOptions {
   /// reads the protocol file; a caller that has its text applies it here
   std::function<protocol::Protocol(const std::string& path)> load_protocol = protocol::load;
 };
+
+/// Simulates sessions in which one trial of ten is not answered, and counts those in which runs of trials
+/// were longer than the protocol allows. Trials that come again can make a run longer, so hardly any limit is
+/// certain. Empty if the protocol limits no runs.
+std::vector<CheckedRuns> check_runs(const protocol::Protocol& protocol, int sessions,
+                                    const std::stop_token& stop = {}, const Steps& steps = {});
 
 /// Returns a Check with blocks, trials, duration_s and the numbers of sessions only.
 Check session_lengths(const protocol::Protocol& protocol, std::optional<int> sessions = {});

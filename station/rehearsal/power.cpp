@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "station/protocol/visits.hpp"
 #include "station/rehearsal/power_session.hpp"
 #include "station/report/stored_trials.hpp"
+#include "station/report/study.hpp"
 #include "station/trial/question.hpp"
 
 namespace turnpoint::rehearsal {
@@ -21,7 +23,9 @@ namespace {
 
 /// True for estimates whose distribution has a long tail. A slope is one of them: if the best fit is a step,
 /// the slope has no upper limit.
-bool heavy_tailed(const std::string& parameter) { return parameter == "slope" || parameter == "spread"; }
+bool heavy_tailed(const std::string& parameter) {
+  return parameter == "slope" || parameter == "spread" || parameter == kRate || parameter == kRateRatio;
+}
 
 Recovery& entry_for(const Finding& finding, std::vector<Recovery>& recoveries) {
   for (auto& entry : recoveries)
@@ -70,6 +74,18 @@ class Truths {
     add_d_primes(protocol, generating, observer);
     add_fits(generating, observer, outcomes);
     add_differences(generating, observer, protocol::analysed_conditions(protocol));
+    for (const auto& condition : with_none(protocol::analysed_conditions(protocol))) {
+      const auto diffusion = source_of("diffusion", condition), signal = source_of("signal", condition);
+      add(diffusion, "boundary", generating.boundary(condition, observer));
+      add(diffusion, "drift", generating.drift(condition));
+      if (options.observer.residual_range_s == 0)
+        add(diffusion, "time outside the decision", observer.nondecision_s());
+      if (const auto curve = generating.curve(condition)) {
+        add(signal, kAsymptote, (*curve)[0]);
+        add(signal, kRate, (*curve)[1]);
+        add(signal, kIntercept, (*curve)[2]);
+      }
+    }
   }
 
   std::optional<double> find(const Recovery& recovery) const {
@@ -138,11 +154,20 @@ class Truths {
         add(source, "time outside the decision", 0);
         // its drift depends on the stimulus only
         add(source, "drift", 0);
+        const auto first = generating.curve(names[a]), second = generating.curve(names[b]);
+        if (!first || !second) continue;
+        add(source, kAsymptote, (*second)[0] - (*first)[0]);
+        add(source, kRateRatio, (*second)[1] / (*first)[1]);
+        add(source, kIntercept, (*second)[2] - (*first)[2]);
       }
   }
 
   std::vector<Finding> truths_;
 };
+
+analysis::Proportion proportion_of(int count, int of) {
+  return {count, of, static_cast<double>(count) / of, analysis::wilson(count, of)};
+}
 
 void finish(Recovery& entry, const std::vector<analysis::Interval>& intervals) {
   const auto n = static_cast<double>(entry.estimates.size());
@@ -167,34 +192,154 @@ void finish(Recovery& entry, const std::vector<analysis::Interval>& intervals) {
   const double width = analysis::quantile(std::move(widths), 0.5);
   if (std::isfinite(width)) entry.interval_width = width;
   if (entry.truth)
-    entry.coverage =
-        analysis::Proportion{hold, count, static_cast<double>(hold) / count, analysis::wilson(hold, count)};
+    entry.coverage = proportion_of(hold, count);
 }
 
-std::vector<Recovery> recover(const protocol::Protocol& protocol, const PowerOptions& options,
-                              const std::vector<SessionOutcome>& outcomes) {
+/// Gathers the findings of sessions or studies. `truth_of` says what is true of an entry.
+template <class TruthOf>
+std::vector<Recovery> recover(const std::vector<std::vector<Finding>>& all, int with_intervals,
+                              const TruthOf& truth_of) {
   std::vector<Recovery> recoveries;
   std::vector<std::vector<analysis::Interval>> intervals;
-  for (const auto& outcome : outcomes)
-    for (const auto& finding : outcome.findings) {
+  std::vector<std::pair<int, int>> claims;  // number of claims, and of findings that could be one
+  for (const auto& findings : all)
+    for (const auto& finding : findings) {
       auto& entry = entry_for(finding, recoveries);
       entry.estimates.push_back(finding.value);
-      intervals.resize(recoveries.size());
+      intervals.resize(recoveries.size()), claims.resize(recoveries.size());
       const auto index = static_cast<std::size_t>(&entry - recoveries.data());
       if (finding.interval) intervals[index].push_back(*finding.interval);
+      if (finding.claimed) claims[index].first += *finding.claimed, ++claims[index].second;
     }
-  const Truths truths(protocol, options, outcomes);
+  const auto count = static_cast<int>(all.size());
   for (std::size_t i = 0; i < recoveries.size(); ++i) {
-    const bool difference = recoveries[i].source.find(" - ") != std::string::npos;
-    recoveries[i].sessions =
-        difference ? std::min(options.interval_sessions, options.observers) : options.observers;
-    recoveries[i].truth = truths.find(recoveries[i]);
-    finish(recoveries[i], intervals[i]);
+    auto& entry = recoveries[i];
+    // findings that need many computations are made of some sessions only
+    const auto is = [&entry](const char* what) { return entry.source.starts_with(what); };
+    const bool some = entry.source.find(" - ") != std::string::npos || is("diffusion") || is("signal");
+    entry.sessions = some ? std::min(with_intervals, count) : count;
+    entry.truth = truth_of(entry);
+    finish(entry, intervals[i]);
+    if (claims[i].second > 0) entry.claimed = proportion_of(claims[i].first, claims[i].second);
   }
   return recoveries;
 }
 
+/// The means over people of what is true of them.
+class GroupTruths {
+ public:
+  explicit GroupTruths(const std::vector<SessionOutcome>& outcomes) {
+    for (const auto& outcome : outcomes)
+      for (const auto& truth : outcome.truths) {
+        auto& [sum, people] = sums_[{truth.condition, truth.measure}];
+        sum += truth.value, ++people;
+      }
+  }
+  std::optional<double> of(const std::string& condition, const std::string& measure) const {
+    const auto found = sums_.find({condition, measure});
+    if (found == sums_.end()) return std::nullopt;
+    return found->second.first / found->second.second;
+  }
+
+ private:
+  std::map<std::pair<std::string, std::string>, std::pair<double, int>> sums_;
+};
+
+/// A difference that is 0 for everybody leaves rounding errors in a mean over people.
+double exact_difference(double difference, double of) {
+  return std::fabs(difference) < 1e-12 * std::fabs(of) ? 0 : difference;
+}
+
+/// The findings of the report of a study, and what is true of each.
+std::vector<Finding> findings_of(const report::Study& study, const GroupTruths& truths,
+                                 std::map<std::pair<std::string, std::string>, double>& known) {
+  std::vector<Finding> findings;
+  const auto add = [&](Finding finding, const std::optional<double>& truth) {
+    if (truth) known[{finding.source, finding.parameter}] = *truth;
+    findings.push_back(std::move(finding));
+  };
+  for (const auto& mean : study.means)
+    if (mean.mean)
+      add({source_of("mean", mean.condition), mean.measure, mean.unit, mean.mean->value, mean.mean->interval},
+          truths.of(mean.condition, mean.measure));
+  for (const auto& effect : study.effects) {
+    if (!effect.difference) continue;
+    const auto first = truths.of(effect.first, effect.measure), second = truths.of(effect.second, effect.measure);
+    const auto& interval = effect.difference->interval;
+    const bool claimed =
+        effect.corrected_p ? *effect.corrected_p < 0.05 : interval.low > 0 || interval.high < 0;
+    add({effect.second + " - " + effect.first, effect.measure, effect.unit, effect.difference->value, interval,
+         claimed},
+        first && second ? std::optional(exact_difference(*second - *first, *first)) : std::nullopt);
+  }
+  return findings;
+}
+
+std::vector<Recovery> recover_studies(const protocol::Protocol& protocol, const PowerOptions& options,
+                                      const std::vector<SessionOutcome>& outcomes) {
+  const GroupTruths truths(outcomes);
+  std::map<std::pair<std::string, std::string>, double> known;
+  std::vector<std::vector<Finding>> studies;
+  const auto people = static_cast<std::size_t>(options.people);
+  for (std::size_t first = 0; first + people <= outcomes.size(); first += people) {
+    report::Study study;
+    study.settings = outcomes.front().settings;
+    study.groups_of_conditions = protocol::groups_of_conditions(protocol);
+    for (std::size_t i = first; i < first + people; ++i) {
+      auto& person = study.persons.emplace_back(*outcomes[i].person);
+      person.person = std::to_string(i);
+      for (auto& measure : person.measures) measure.person = person.person;
+    }
+    report::finish_study(study);
+    studies.push_back(findings_of(study, truths, known));
+  }
+  return recover(studies, static_cast<int>(studies.size()),
+                 [&known](const Recovery& entry) -> std::optional<double> {
+                   const auto found = known.find({entry.source, entry.parameter});
+                   return found == known.end() ? std::nullopt : std::optional(found->second);
+                 });
+}
+
+std::vector<Recovery> recover_sessions(const protocol::Protocol& protocol, const PowerOptions& options,
+                                       const std::vector<SessionOutcome>& outcomes) {
+  const Truths truths(protocol, options, outcomes);
+  std::vector<std::vector<Finding>> sessions;
+  for (const auto& outcome : outcomes) sessions.push_back(outcome.findings);
+  return recover(sessions, options.interval_sessions,
+                 [&truths](const Recovery& entry) { return truths.find(entry); });
+}
+
 }  // namespace
+
+Measures true_measures(const SessionOutcome& outcome, const simulation::Observer& observer,
+                       const report::SessionData& settings) {
+  Measures truths;
+  auto conditions = settings.conditions;
+  if (conditions.empty()) conditions.emplace_back();
+  const auto& generating = outcome.generating;
+  const auto add = [&](const std::string& condition, const char* measure, const std::optional<double>& value) {
+    if (value) truths.push_back({"", condition, measure, "", *value});
+  };
+  for (const auto& condition : conditions) {
+    add(condition, report::kCorrect, generating.share_correct(condition));
+    add(condition, "boundary", generating.boundary(condition, observer));
+    add(condition, "drift", generating.drift(condition));
+    if (observer.parameters().residual_range_s == 0)
+      add(condition, "time outside the decision", observer.nondecision_s());
+    if (const auto curve = generating.curve(condition)) {
+      add(condition, kAsymptote, (*curve)[0]);
+      add(condition, kRate, (*curve)[1]);
+      add(condition, kIntercept, (*curve)[2]);
+    }
+  }
+  if (!settings.parts.empty()) return truths;  // thresholds of several factors have other names
+  for (const auto& [condition, options] : outcome.fits) {
+    const auto truth = generating.fit(condition, options, observer);
+    add(condition, options.guess == analysis::Guess::tied_to_lapse ? "PSE" : "threshold", truth.threshold);
+    add(condition, spread_name(options), truth.slope);
+  }
+  return truths;
+}
 
 int sessions_of(const Part& part, int observers) { return (observers - part.number) / part.of + 1; }
 
@@ -213,7 +358,13 @@ Power power_of(const protocol::Protocol& protocol, const PowerOptions& asked,
     scored += outcome.scored, right += outcome.right;
   }
   if (scored > 0) power.accuracy = static_cast<double>(right) / scored;
-  power.recoveries = recover(protocol, options, outcomes);
+  int checked = 0, misfits = 0;
+  for (const auto& outcome : outcomes)
+    if (outcome.model_p) ++checked, misfits += *outcome.model_p < 0.05;
+  if (checked > 0) power.misfits = proportion_of(misfits, checked);
+  power.people = options.people;
+  power.recoveries = options.people > 0 ? recover_studies(report::by_group(protocol), options, outcomes)
+                                        : recover_sessions(protocol, options, outcomes);
   return power;
 }
 

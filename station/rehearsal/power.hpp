@@ -23,6 +23,10 @@ int sessions_of(const Part& part, int observers);  ///< number of sessions in a 
 struct PowerOptions {
   int observers = 1000;
   simulation::Parameters observer;
+  /// 0: each session stands alone. Otherwise so many sessions, by different people around `observer`, make a
+  /// study; its findings are those of the report of a study. `observers` must be a multiple.
+  int people = 0;
+  simulation::Spread between;  ///< how much these people differ
   std::uint64_t seed = 1;  ///< session i runs with seed + i, at place i of the counterbalancing
   /// Number of sessions with bootstrap intervals, which take most of the time. With a procedure
   /// that chooses levels by the answers, intervals come from a posterior instead. That is fast, so every
@@ -45,6 +49,9 @@ struct PowerOptions {
 ///   has at its threshold. The slope has a truth only if both functions are of the same family.
 /// - Difference between conditions: the truth is the difference of the probabilities, boundaries and times
 ///   that produced the answers.
+/// - Curve at a response signal: the truth is the curve of the fitted shape that describes the observer's own
+///   answers best (analysis::limiting_curve()).
+/// - Study: the truth is the mean over all simulated people.
 /// - Response times, and scores computed from them, have no truth.
 struct Recovery {
   std::string source;     ///< "procedure upper", "fit", "fit speed", "accuracy - speed"
@@ -60,6 +67,9 @@ struct Recovery {
   std::optional<double> bias;                    ///< mean - truth; if heavy-tailed, median - truth
   std::optional<analysis::Proportion> coverage;  ///< proportion of 95 % intervals that contain the truth
   std::optional<double> interval_width;          ///< median width of the 95 % intervals
+  /// of a difference: proportion of sessions (or studies) that claim it, because its interval excludes 0 (of a
+  /// ratio: 1) or its corrected p value is below 0.05. The power; if the truth is 0, the false alarms
+  std::optional<analysis::Proportion> claimed;
 };
 
 /// The results of simulated sessions of a protocol with one observer as the participant.
@@ -68,6 +78,10 @@ struct Power {
   int asked = 0;                   ///< PowerOptions::observers; after a stop it is larger than `observers`
   double trials = 0, minutes = 0;  ///< number of trials and duration, averaged over the simulated sessions
   std::optional<double> accuracy;  ///< proportion correct of all scored experimental answers
+  /// proportion of the sessions with intervals in which the check of the diffusion model finds a misfit (p
+  /// below 0.05): false alarms, if the observer is a diffusion without variability
+  std::optional<analysis::Proportion> misfits;
+  int people = 0;  ///< PowerOptions::people; Recovery::sessions are then studies
   std::vector<Recovery> recoveries;
 };
 

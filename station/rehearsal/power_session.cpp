@@ -13,6 +13,7 @@
 #include "station/rehearsal/rehearsal.hpp"
 #include "station/report/stored_estimates.hpp"
 #include "station/report/stored_trials.hpp"
+#include "station/report/study.hpp"
 #include "station/report/summary.hpp"
 #include "station/trial/earlier_trials.hpp"
 
@@ -132,11 +133,57 @@ void add_discriminations(const protocol::Protocol& protocol, const report::Sessi
   }
 }
 
-void add_differences(const analysis::Trade& trade, std::vector<Finding>& findings) {
-  for (const auto& difference : trade.differences)
-    if (difference.estimate)
-      findings.push_back({difference.second + " - " + difference.first, difference.measure, difference.unit,
-                          difference.estimate->value, difference.estimate->interval});
+bool excludes(const analysis::Interval& interval, double value) {
+  return interval.low > value || interval.high < value;
+}
+
+/// What the report shows of speed and accuracy, with its intervals.
+void add_trade(const report::SessionData& data, SessionOutcome& outcome) {
+  const auto trade = report::trade_of(data, report::trade_options(data));
+  outcome.model_p = trade.model_p;
+  auto& findings = outcome.findings;
+  for (const auto& entry : trade.instructions) {
+    const auto add = [&](const char* parameter, const char* unit, const auto& found) {
+      if (found)
+        findings.push_back({source_of("diffusion", entry.instruction), parameter, unit, found->value, found->interval});
+    };
+    add("boundary", "s = 0.1", entry.boundary);
+    add("time outside the decision", "s", entry.nondecision_s);
+    add("drift", "s = 0.1", entry.drift);
+  }
+  for (const auto& difference : trade.differences) {
+    if (!difference.estimate) continue;
+    const auto& interval = difference.estimate->interval;
+    findings.push_back({difference.second + " - " + difference.first, difference.measure, difference.unit,
+                        difference.estimate->value, interval,
+                        difference.corrected_p ? *difference.corrected_p < 0.05 : excludes(interval, 0)});
+  }
+}
+
+/// The curves at a response signal and their differences. A difference is claimed if its nested model is
+/// rejected.
+void add_curves(const report::SessionData& data, std::vector<Finding>& findings) {
+  const auto curves = report::curves_of(data);
+  for (const auto& curve : curves) {
+    const auto add = [&](const char* parameter, const char* unit, const auto& found) {
+      if (found)
+        findings.push_back({source_of("signal", curve.condition), parameter, unit, found->value, found->interval});
+    };
+    add(kAsymptote, "SD", curve.asymptote);
+    add(kRate, "1/s", curve.rate_per_s);
+    add(kIntercept, "s", curve.intercept_s);
+  }
+  for (const auto& pair : report::curve_differences_of(data, curves)) {
+    const auto add = [&](const char* parameter, const char* unit, const auto& found, std::size_t which) {
+      const auto& p = pair.corrected_p[which] ? pair.corrected_p[which] : pair.p[which];
+      if (found)
+        findings.push_back({pair.second + " - " + pair.first, parameter, unit, found->value, found->interval,
+                            p ? std::optional(*p < 0.05) : std::nullopt});
+    };
+    add(kAsymptote, "SD", pair.asymptote, 0);
+    add(kRateRatio, "ratio", pair.rate_ratio, 1);
+    add(kIntercept, "s", pair.intercept_s, 2);
+  }
 }
 
 void require_possible(const protocol::Protocol& protocol, const PowerOptions& options) {
@@ -145,6 +192,8 @@ void require_possible(const protocol::Protocol& protocol, const PowerOptions& op
     throw std::invalid_argument(
         "power: there must be at least 1 observer, 1 thread and 40 replicates, and the number of sessions "
         "with intervals must not be negative");
+  if (options.people < 0 || (options.people > 0 && options.observers % options.people != 0))
+    throw std::invalid_argument("power: the observers must make whole studies");
   if (options.part.number < 1 || options.part.number > options.part.of || options.part.of > options.observers)
     throw std::invalid_argument("power: each part must have at least one session");
   if (protocol::judges(protocol.task) && !(protocol.task.value && protocol.task.value->typed))
@@ -185,9 +234,27 @@ const char* spread_name(const analysis::FitOptions& options) {
   return options.function == core::Function::normal ? "spread" : "slope";
 }
 
+namespace {
+
+/// The person who sits in this session.
+simulation::Parameters person_in(const PowerOptions& options, int session) {
+  if (options.people == 0) return options.observer;
+  core::Draws draws({options.seed, core::Stream::observer, -1, 0, session});
+  return simulation::draw_person(options.observer, options.between, draws);
+}
+
+/// Adds the participant's part of the report of a study.
+void add_person(const protocol::Protocol& protocol, const report::SessionData& data, SessionOutcome& outcome) {
+  outcome.person = report::study_person(data, protocol.exclusion.value_or(protocol::Exclusion{}), false);
+  for (const auto& named : outcome.person->fits) outcome.fits.emplace_back(named.name, named.fit.options);
+  outcome.person->fits.clear();  // a fit of all people together would take longer than all the rest
+}
+
+}  // namespace
+
 SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerOptions& options,
                                 int session) {
-  const simulation::Observer observer(options.observer);
+  const simulation::Observer observer(person_in(options, session));
   SessionOutcome outcome;
   const auto seed = options.seed + static_cast<std::uint64_t>(session);
   auto sits = rehearser(observer);
@@ -205,27 +272,38 @@ SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerO
     trial::add_earlier_trials(protocol, sessions.back().blocks, earlier);
   }
   report::add_trials(joined(sessions), protocol, data);
-  data.replicates = session < options.interval_sessions ? options.replicates : 0;
   const auto& unit = data.level_unit;
-  for (std::size_t i = 0; i < sessions.size(); ++i) {
-    add_estimates(sessions[i], protocol, session_suffix(protocol, static_cast<int>(i) + 1), outcome.findings);
-    outcome.presented += sessions[i].trials;
-    outcome.duration_s += sessions[i].duration_s;
-  }
-  add_fits(data, unit, outcome);
-  add_discriminations(protocol, data, outcome.findings);
-  if (data.replicates > 0)
-    add_differences(analysis::trade(data.trials, report::trade_options(data)), outcome.findings);
+  for (const auto& one : sessions) outcome.presented += one.trials, outcome.duration_s += one.duration_s;
   outcome.design = data.design;
   for (const auto& trial : data.trials)
     if (trial.type == core::TrialType::experimental && trial.correct)
       ++outcome.scored, outcome.right += *trial.correct ? 1 : 0;
+  if (options.people > 0) {
+    data.replicates = options.replicates;
+    add_person(protocol, data, outcome);
+  } else {
+    data.replicates = session < options.interval_sessions ? options.replicates : 0;
+    for (std::size_t i = 0; i < sessions.size(); ++i)
+      add_estimates(sessions[i], protocol, session_suffix(protocol, static_cast<int>(i) + 1),
+                    outcome.findings);
+    add_fits(data, unit, outcome);
+    add_discriminations(protocol, data, outcome.findings);
+    if (data.replicates > 0) {
+      add_trade(data, outcome);
+      add_curves(data, outcome.findings);
+    }
+  }
+  if (options.people == 0) return outcome;
+  data.trials = {}, data.finger = {};
+  outcome.truths = true_measures(outcome, observer, data);
+  if (session == 0) outcome.settings = std::move(data);
   return outcome;
 }
 
-std::vector<SessionOutcome> simulate_sessions(const protocol::Protocol& protocol,
-                                              const PowerOptions& options) {
-  require_possible(protocol, options);
+std::vector<SessionOutcome> simulate_sessions(const protocol::Protocol& given, const PowerOptions& options) {
+  require_possible(given, options);
+  // the report of a study analyses groups of participants apart
+  const auto protocol = options.people > 0 ? report::by_group(given) : given;
   const auto& [number, of] = options.part;
   const int count = sessions_of(options.part, options.observers);
   std::vector<SessionOutcome> outcomes(static_cast<std::size_t>(count));
@@ -239,8 +317,9 @@ std::vector<SessionOutcome> simulate_sessions(const protocol::Protocol& protocol
   return outcomes;
 }
 
-void complete(const protocol::Protocol& protocol, const PowerOptions& options,
+void complete(const protocol::Protocol& given, const PowerOptions& options,
               std::vector<SessionOutcome>& outcomes) {
+  const auto protocol = options.people > 0 ? report::by_group(given) : given;
   auto quick = options;
   quick.interval_sessions = 0;
   GeneratingValues known;
@@ -248,7 +327,8 @@ void complete(const protocol::Protocol& protocol, const PowerOptions& options,
     if (i > 0 && known.has_all_of(outcomes[i].generating)) continue;
     const auto again = simulate_session(protocol, quick, static_cast<int>(i));
     outcomes[i].generating.take_questions(again.generating);
-    if (i == 0) outcomes[i].fits = again.fits, outcomes[i].design = again.design;
+    if (i == 0)
+      outcomes[i].fits = again.fits, outcomes[i].design = again.design, outcomes[i].settings = again.settings;
     known.add(again.generating);
   }
 }

@@ -9,6 +9,7 @@
 #include "station/rehearsal/power.hpp"
 #include "station/rehearsal/power_truth.hpp"
 #include "station/report/session_data.hpp"
+#include "station/report/study.hpp"
 
 namespace turnpoint::rehearsal {
 
@@ -17,8 +18,11 @@ namespace turnpoint::rehearsal {
 struct Finding {
   std::string source, parameter, unit;
   double value = 0;
-  std::optional<analysis::Interval> interval;
+  std::optional<analysis::Interval> interval = {};
+  std::optional<bool> claimed = {};  ///< of a difference: whether the analysis claims it (Recovery::claimed)
 };
+
+using Measures = std::vector<analysis::PersonMeasure>;
 
 /// What the analysis of one simulated session found.
 struct SessionOutcome {
@@ -29,6 +33,11 @@ struct SessionOutcome {
   report::Design design = report::Design::forced_choice;
   int presented = 0, scored = 0, right = 0;
   double duration_s = 0;
+  std::optional<double> model_p;  ///< analysis::Trade::model_p
+  /// the participant's part of a study; only with PowerOptions::people
+  std::optional<report::StudyPerson> person;
+  Measures truths;                              ///< the true values of this person's measures
+  report::SessionData settings;                 ///< of session 0: how trials are analysed; without trials
 };
 
 /// Simulates session number `session` (from 0) of a study and analyses it. Depends on nothing but its
@@ -49,6 +58,15 @@ Power power_of(const protocol::Protocol& protocol, const PowerOptions& options,
 /// each condition is simulated again, without intervals.
 void complete(const protocol::Protocol& protocol, const PowerOptions& options,
               std::vector<SessionOutcome>& outcomes);
+
+/// Names of the parameters of a curve at a response signal, as in the report of a study.
+inline constexpr const char *kAsymptote = "asymptote of d'", *kRate = "rate of d'",
+                            *kIntercept = "intercept of d'", *kRateRatio = "ratio of rates of d'";
+
+/// What is true of the person in a session: the measures that the report of a study has, as far as they follow
+/// from the person's parameters.
+Measures true_measures(const SessionOutcome& outcome, const simulation::Observer& observer,
+                       const report::SessionData& settings);
 
 /// Returns the text of Finding::source: `what`, followed by the condition if there is one.
 std::string source_of(const std::string& what, const std::string& condition);

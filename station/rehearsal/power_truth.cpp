@@ -7,6 +7,7 @@
 #include "physics/root.hpp"
 #include "station/analysis/diffusion.hpp"
 #include "station/analysis/proportion.hpp"
+#include "station/analysis/response_signal.hpp"
 #include "station/procedure/description.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/trial/question.hpp"
@@ -125,6 +126,46 @@ std::map<std::string, double> true_parameters(const protocol::Protocol& protocol
   return truth;
 }
 
+namespace {
+
+/// The drift towards the right answer, with s = 0.1; NaN if the diffusion that the report fits does not have
+/// it: it varies, or more than the drift decides.
+double drift_towards(const simulation::Question& question, int correct, const simulation::Observer& observer) {
+  using simulation::Decides;
+  const auto& p = observer.parameters();
+  if (question.answers != 2 || question.rating || question.decides == Decides::category ||
+      question.finding != simulation::Finding::weibull || p.drift_sd > 0 || p.start_range > 0)
+    return std::nan("");
+  const double drift = analysis::kDiffusionScale * observer.drift(question);
+  return question.decides == Decides::right_answer || correct == question.positive ? drift : -drift;
+}
+
+/// Enters the drift of one difficulty. Two different ones make NaN.
+void put_drift(double difficulty, double drift, std::map<double, double>& drifts) {
+  const auto [entry, is_new] = drifts.try_emplace(difficulty, drift);
+  if (!is_new && !(std::fabs(entry->second - drift) < 1e-9)) entry->second = std::nan("");
+}
+
+analysis::Detecting detecting_of(const protocol::Meaning& meaning) {
+  return meaning.design == protocol::Design::yes_no      ? analysis::Detecting::presence
+         : meaning.design == protocol::Design::two_sided ? analysis::Detecting::sides
+                                                         : analysis::Detecting::forced_choice;
+}
+
+/// The sums at a lag with one more trial.
+GeneratingValues::Lag with_trial(GeneratingValues::Lag lag, const protocol::Meaning& meaning,
+                                 const simulation::Question& question, int correct,
+                                 const simulation::Observer& observer) {
+  const int yes = detecting_of(meaning) == analysis::Detecting::forced_choice ? 1 : question.positive;
+  const std::size_t with = correct == yes ? 1 : 0;
+  lag.time_s += *question.signal_s + observer.latency_s(question);
+  ++lag.trials[with];
+  lag.yes[with] += observer.share(question, yes);
+  return lag;
+}
+
+}  // namespace
+
 void GeneratingValues::add(const protocol::Protocol& protocol, const trial::TrialSpec& trial,
                            const simulation::Question& question, const simulation::Observer& observer) {
   if (trial.type != core::TrialType::experimental || !trial.level) return;
@@ -136,29 +177,53 @@ void GeneratingValues::add(const protocol::Protocol& protocol, const trial::Tria
       protocol::condition_in(meaning, protocol::condition_of(protocol, trial.factors, instruction));
   auto [entry, is_new] = conditions_.try_emplace(condition);
   auto& made = entry->second;
-  if (is_new) made.question = question;
-  made.one_deadline =
-      made.one_deadline && !question.signal_s && made.question.deadline_s == question.deadline_s;
+  if (is_new) made.question = question, made.sum.deadline_s = question.deadline_s;
+  auto& sum = made.sum;
+  sum.one_deadline =
+      sum.one_deadline && !question.signal_s && made.question.deadline_s == question.deadline_s;
   if (!trial.correct) return;
-  ++made.trials;
-  made.correct += observer.share(question, *trial.correct);
+  ++sum.trials;
+  sum.correct += observer.share(question, *trial.correct);
+  if (question.signal_s) {
+    made.detecting = detecting_of(meaning);
+    if (question.answers != 2) return;
+    auto& lag = sum.lags[*question.signal_s];
+    lag = with_trial(lag, meaning, question, *trial.correct, observer);
+    return;
+  }
+  const double drift = drift_towards(question, *trial.correct, observer);
+  const double difficulty = protocol.analysis.difficulty
+                                ? protocol::evaluate(*protocol.analysis.difficulty, trial.factors)
+                                : std::fabs(*trial.level);
+  put_drift(difficulty, drift, sum.drifts);
+}
+
+void GeneratingValues::add(const Sum& more, Sum& sum) {
+  sum.one_deadline = sum.one_deadline && more.one_deadline && sum.deadline_s == more.deadline_s;
+  sum.trials += more.trials, sum.correct += more.correct;
+  // with levels that follow the answers, sessions have different difficulties, so no mean drift is true of all
+  const bool same = sum.drifts.size() == more.drifts.size() &&
+                    std::equal(sum.drifts.begin(), sum.drifts.end(), more.drifts.begin(),
+                               [](const auto& a, const auto& b) { return a.first == b.first; });
+  for (const auto& [difficulty, drift] : more.drifts)
+    put_drift(difficulty, same ? drift : std::nan(""), sum.drifts);
+  for (const auto& [lag_s, lag] : more.lags) {
+    auto& all = sum.lags[lag_s];
+    all.time_s += lag.time_s;
+    for (std::size_t i = 0; i < 2; ++i) all.trials[i] += lag.trials[i], all.yes[i] += lag.yes[i];
+  }
 }
 
 void GeneratingValues::add(const GeneratingValues& other) {
   for (const auto& [condition, more] : other.conditions_) {
     auto [entry, is_new] = conditions_.try_emplace(condition, more);
-    if (is_new) continue;
-    auto& made = entry->second;
-    made.one_deadline =
-        made.one_deadline && more.one_deadline && made.question.deadline_s == more.question.deadline_s;
-    made.trials += more.trials, made.correct += more.correct;
+    if (!is_new) add(more.sum, entry->second.sum);
   }
 }
 
 std::map<std::string, GeneratingValues::Sum> GeneratingValues::sums() const {
   std::map<std::string, Sum> sums;
-  for (const auto& [condition, made] : conditions_)
-    sums[condition] = {made.question.deadline_s, made.one_deadline, made.trials, made.correct};
+  for (const auto& [condition, made] : conditions_) sums[condition] = made.sum;
   return sums;
 }
 
@@ -166,8 +231,7 @@ GeneratingValues GeneratingValues::of_sums(const std::map<std::string, Sum>& sum
   GeneratingValues values;
   for (const auto& [condition, sum] : sums) {
     auto& made = values.conditions_[condition];
-    made.question.deadline_s = sum.deadline_s, made.one_deadline = sum.one_deadline;
-    made.trials = sum.trials, made.correct = sum.correct;
+    made.sum = sum, made.question.deadline_s = sum.deadline_s;
   }
   return values;
 }
@@ -175,7 +239,7 @@ GeneratingValues GeneratingValues::of_sums(const std::map<std::string, Sum>& sum
 void GeneratingValues::take_questions(const GeneratingValues& other) {
   for (auto& [condition, made] : conditions_)
     if (const auto found = other.conditions_.find(condition); found != other.conditions_.end())
-      made.question = found->second.question;
+      made.question = found->second.question, made.detecting = found->second.detecting;
 }
 
 bool GeneratingValues::has_all_of(const GeneratingValues& other) const {
@@ -191,14 +255,14 @@ const GeneratingValues::Condition* GeneratingValues::find(const std::string& con
 
 std::optional<double> GeneratingValues::share_correct(const std::string& condition) const {
   const auto* made = find(condition);
-  if (!made || made->trials == 0) return std::nullopt;
-  return made->correct / made->trials;
+  if (!made || made->sum.trials == 0) return std::nullopt;
+  return made->sum.correct / made->sum.trials;
 }
 
 std::optional<double> GeneratingValues::share_correct_at(const std::string& condition, double level,
                                                          const simulation::Observer& observer) const {
   const auto* made = find(condition);
-  if (!made || !made->one_deadline || made->question.decides != simulation::Decides::right_answer)
+  if (!made || !made->sum.one_deadline || made->question.decides != simulation::Decides::right_answer)
     return std::nullopt;
   auto question = made->question;
   question.level = level, question.correct = 0;
@@ -208,14 +272,35 @@ std::optional<double> GeneratingValues::share_correct_at(const std::string& cond
 std::optional<double> GeneratingValues::boundary(const std::string& condition,
                                                  const simulation::Observer& observer) const {
   const auto* made = find(condition);
-  if (!made || !made->one_deadline) return std::nullopt;
+  if (!made || !made->sum.one_deadline) return std::nullopt;
   return 2 * analysis::kDiffusionScale * observer.bound(made->question.deadline_s);
+}
+
+std::optional<double> GeneratingValues::drift(const std::string& condition) const {
+  const auto* made = find(condition);
+  if (!made || made->sum.drifts.empty()) return std::nullopt;
+  double sum = 0;
+  for (const auto& [difficulty, drift] : made->sum.drifts) sum += drift;
+  if (std::isnan(sum)) return std::nullopt;
+  return sum / static_cast<double>(made->sum.drifts.size());
+}
+
+std::optional<std::array<double, 3>> GeneratingValues::curve(const std::string& condition) const {
+  const auto* made = find(condition);
+  if (!made) return std::nullopt;
+  std::vector<analysis::ExpectedLag> lags;
+  for (const auto& [lag_s, lag] : made->sum.lags) {
+    const auto& n = lag.trials;
+    if (!(n[0] > 0 && n[1] > 0)) return std::nullopt;
+    lags.push_back({lag.time_s / (n[0] + n[1]), n[1], lag.yes[1] / n[1], n[0], lag.yes[0] / n[0]});
+  }
+  return analysis::limiting_curve(lags, made->detecting);
 }
 
 FitTruth GeneratingValues::fit(const std::string& condition, const analysis::FitOptions& options,
                                const simulation::Observer& observer) const {
   const auto* made = find(condition);
-  if (!made || !made->one_deadline) return {};
+  if (!made || !made->sum.one_deadline) return {};
   const auto& p = observer.parameters();
   auto question = made->question;
   question.absent = false, question.correct = 0;

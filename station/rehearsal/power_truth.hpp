@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -6,6 +7,7 @@
 #include <vector>
 
 #include "station/analysis/psychometric_fit.hpp"
+#include "station/analysis/signal_detection.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/simulation/observer.hpp"
 #include "station/trial/director.hpp"
@@ -40,6 +42,13 @@ class GeneratingValues {
            const simulation::Question& question, const simulation::Observer& observer);
   void add(const GeneratingValues& other);
 
+  /// The trials at one lag of the response signal: their number and the sum of the probabilities of "yes", in
+  /// trials in which it is wrong and in which it is right; and the sum of the expected times of the answers.
+  struct Lag {
+    double time_s = 0;
+    std::array<double, 2> trials{}, yes{};
+  };
+
   /// Sums over the trials of one condition. Sums of several sessions can be added. They do not contain the
   /// questions that were asked.
   struct Sum {
@@ -47,6 +56,9 @@ class GeneratingValues {
     bool one_deadline = true;
     int trials = 0;
     double correct = 0;
+    /// by difficulty: the drift towards the right answer (s = 0.1); NaN if it is not the same in all trials
+    std::map<double, double> drifts;
+    std::map<double, Lag> lags;  ///< by the time of the response signal
   };
   std::map<std::string, Sum> sums() const;
   static GeneratingValues of_sums(const std::map<std::string, Sum>& sums);
@@ -67,14 +79,20 @@ class GeneratingValues {
                                          const simulation::Observer& observer) const;
   /// The true boundary separation of the diffusion model (with the scaling parameter s = 0.1).
   std::optional<double> boundary(const std::string& condition, const simulation::Observer& observer) const;
+  /// The mean over the difficulties of the drift towards the right answer, per s, with s = 0.1. Empty if it
+  /// differs between trials of one difficulty.
+  std::optional<double> drift(const std::string& condition) const;
+  /// Asymptote, rate per s and intercept in s of the curve at a response signal (analysis::limiting_curve()).
+  /// The observer's own curve has another shape than the fitted one, so this is the one that fits best.
+  std::optional<std::array<double, 3>> curve(const std::string& condition) const;
 
  private:
   struct Condition {
     simulation::Question question;  ///< question that the first trial asks the observer
-    bool one_deadline = true;
-    int trials = 0;
-    double correct = 0;
+    Sum sum;
+    analysis::Detecting detecting = analysis::Detecting::forced_choice;
   };
+  static void add(const Sum& more, Sum& sum);
   const Condition* find(const std::string& condition) const;
   std::map<std::string, Condition> conditions_;
 };

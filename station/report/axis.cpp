@@ -48,6 +48,15 @@ std::vector<Tick> linear_ticks(const Axis& axis, int wanted) {
   return result;
 }
 
+std::vector<Tick> named_ticks(const Axis& axis) {
+  std::vector<Tick> result;
+  for (std::size_t i = 0; i < axis.names.size(); ++i) {
+    const auto place = static_cast<double>(i + 1);
+    if (place >= axis.low && place <= axis.high) result.push_back({place, axis.names[i]});
+  }
+  return result;
+}
+
 /// Formats a power of ten with a raised exponent.
 std::string power_of_ten(int exponent) {
   static const char* const raised[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
@@ -80,6 +89,7 @@ std::vector<Tick> log_ticks(const Axis& axis, int wanted) {
 
 std::vector<Tick> ticks(const Axis& axis, int wanted) {
   check(axis);
+  if (!axis.names.empty()) return named_ticks(axis);
   return axis.scale == AxisScale::linear ? linear_ticks(axis, wanted) : log_ticks(axis, wanted);
 }
 

@@ -12,6 +12,8 @@ struct Axis {
   double low = 0, high = 1;
   AxisScale scale = AxisScale::linear;
   bool counts = false;  ///< true if only whole numbers get a tick; for a linear axis
+  /// Names of the places 1, 2, 3, ... of the axis, such as participants' codes. They are its only ticks.
+  std::vector<std::string> names = {};
 };
 
 struct Tick {

@@ -25,10 +25,11 @@ void marker(Canvas& canvas, Point at, double radius, const Style& style, bool op
 struct LegendEntry {
   std::string name;
   int series = 0;
-  bool line = false, points = false, open_points = false, area = false;
+  bool line = false, faint_line = false, points = false, open_points = false, area = false;
 };
 
-/// Returns an entry for each layer of the chart that has a name.
+/// Returns an entry for each layer of the chart that has a name; none if there is only one, which has nothing to be told
+/// from.
 std::vector<LegendEntry> legend_of(const Chart& chart);
 
 /// Draws the legend between title and data, in rows that fit the width (px). Returns its height in px.
@@ -72,11 +73,12 @@ std::vector<LegendEntry> legend_of(const Chart& chart) {
         entry.*what = true;
         return;
       }
-    entries.push_back({name, series, false, false, false, false});
+    entries.push_back({name, series});
     entries.back().*what = true;
   };
   for (const auto& layer : chart.layers) {
-    if (const auto* line = std::get_if<Line>(&layer)) add(line->name, line->series, &LegendEntry::line);
+    if (const auto* line = std::get_if<Line>(&layer))
+      add(line->name, line->series, line->faint ? &LegendEntry::faint_line : &LegendEntry::line);
     if (const auto* dots = std::get_if<Points>(&layer)) {
       const bool open =
           !dots->open.empty() && std::find(dots->open.begin(), dots->open.end(), false) == dots->open.end();
@@ -85,6 +87,7 @@ std::vector<LegendEntry> legend_of(const Chart& chart) {
     if (const auto* band = std::get_if<Band>(&layer)) add(band->name, band->series, &LegendEntry::area);
     if (const auto* bars = std::get_if<Histogram>(&layer)) add(bars->name, bars->series, &LegendEntry::area);
   }
+  if (entries.size() == 1) entries.clear();
   return entries;
 }
 
@@ -100,6 +103,7 @@ double draw_legend(Canvas* canvas, const std::vector<LegendEntry>& entries, doub
       if (entry.area)
         canvas->rectangle({x, y + 3}, sample, 10, {"", look.colour, 0, "", entry.line ? 0.18 : 0.85});
       if (entry.line) canvas->line({x, y + 8}, {x + sample, y + 8}, {look.colour, "", 2, look.dash, 1});
+      if (entry.faint_line) canvas->line({x, y + 8}, {x + sample, y + 8}, {look.colour, "", 1, look.dash, 0.4});
       if (entry.points || entry.open_points) marker(*canvas, {x + sample / 2, y + 8}, 4, look, !entry.points);
       canvas->text({x + sample + 6, y + 12}, entry.name, kText_px, Anchor::start, kInk);
     }
@@ -169,9 +173,10 @@ struct Draw {
     check(curve.x.size() == curve.y.size(),
           "line \"" + curve.name + "\": the lists of x and y must have the same length");
     const auto look = style(curve.series);
+    const report::Paint paint{look.colour, "", curve.faint ? 1.0 : 2.0, look.dash, curve.faint ? 0.4 : 1};
     std::vector<Point> run;
     const auto flush = [&] {
-      if (run.size() > 1) canvas.polyline(run, {look.colour, "", 2, look.dash, 1});
+      if (run.size() > 1) canvas.polyline(run, paint);
       run.clear();
     };
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
@@ -191,14 +196,48 @@ struct Draw {
           "points \"" + dots.name + "\": the lists must have the same length");
     const auto look = style(dots.series);
     const auto radii = marker_radii_px(dots);
-    for (std::size_t i = 0; i < dots.low.size(); ++i)
-      if (drawable(*frame.up, dots.low[i]) && drawable(*frame.up, dots.high[i]))
-        canvas.line(frame.at(dots.x[i], dots.low[i]), frame.at(dots.x[i], dots.high[i]),
-                    {look.colour, "", 1.3, "", 1});
+    for (std::size_t i = 0; i < dots.low.size(); ++i) {
+      if (!drawable(*frame.across, dots.x[i])) continue;
+      const auto part = shown(*frame.up, dots.low[i], dots.high[i]);
+      if (!part) continue;
+      const auto low = frame.at(dots.x[i], part->low), high = frame.at(dots.x[i], part->high);
+      canvas.line(low, high, {look.colour, "", 1.3, "", 1});
+      if (part->cut_low) arrow(low, 0, 1, look.colour);
+      if (part->cut_high) arrow(high, 0, -1, look.colour);
+    }
     for (std::size_t i = 0; i < n; ++i) {
       if (!drawable(*frame.across, dots.x[i]) || !drawable(*frame.up, dots.y[i])) continue;
       marker(canvas, frame.at(dots.x[i], dots.y[i]), radii[i], look, !dots.open.empty() && dots.open[i]);
     }
+  }
+
+  void operator()(const Span& span) const {
+    if (!drawable(*frame.up, span.at)) return;
+    const auto part = shown(*frame.across, span.low, span.high);
+    if (!part) return;
+    constexpr double cap = 4;
+    const auto colour = style(span.series).colour;
+    const auto end = [&](Point at, bool cut, double towards) {
+      if (cut)
+        arrow(at, towards, 0, colour);
+      else
+        canvas.line({at.first, at.second - cap}, {at.first, at.second + cap}, {colour, "", 1.6, "", 1});
+    };
+    const auto low = frame.at(part->low, span.at), high = frame.at(part->high, span.at);
+    canvas.line(low, high, {colour, "", 1.6, "", 1});
+    end(low, part->cut_low, -1);
+    end(high, part->cut_high, 1);
+  }
+
+  /// An arrow with its tip at the edge of the axes, in the direction of the part of an interval that is not shown.
+  void arrow(Point tip, double to_right, double down, const std::string& colour) const {
+    constexpr double length = 8, half = 4;
+    const auto [x, y] = tip;
+    const double back_x = x - length * to_right, back_y = y - length * down;
+    canvas.polygon({tip,
+                    {back_x - half * down, back_y - half * to_right},
+                    {back_x + half * down, back_y + half * to_right}},
+                   {"", colour, 0, "", 1});
   }
 };
 
@@ -224,40 +263,64 @@ void draw_colour_bar(Canvas& canvas, const Frame& frame, double from, const Heat
               90);
 }
 
+/// True if the labels of these ticks do not touch each other along an axis of this width.
+bool have_room(const std::vector<Tick>& list, const Axis& axis, double width) {
+  double free_from = -1e9;
+  return std::all_of(list.begin(), list.end(), [&](const Tick& tick) {
+    const double x = position(axis, tick.value) * width, half = text_width(tick.label, kText_px) / 2;
+    const bool free = x - half >= free_from;
+    free_from = x + half + 6;
+    return free;
+  });
+}
+
+/// If the names on a horizontal axis do not fit beside each other, they are turned upright. Returns the height in px that
+/// they then need below an ordinary label; otherwise 0.
+double turned_names_px(const Axis& axis, double width) {
+  if (axis.names.empty()) return 0;
+  const auto names = ticks(axis);
+  if (have_room(names, axis, width)) return 0;
+  double longest = 0;
+  for (const auto& tick : names) longest = std::max(longest, text_width(tick.label, kText_px));
+  return longest + 4 - kText_px;
+}
+
 void draw_axes(Canvas& canvas, const Frame& frame, const std::vector<Tick>& across,
                const std::vector<Tick>& up) {
   const double bottom = frame.y + frame.height;
+  double free_below = 1e9;
   for (const auto& tick : up) {
     const double y = frame.at(frame.across->low, tick.value).second;
     canvas.line({frame.x, y}, {frame.x + frame.width, y}, {kGrid, "", 1, "", 1});
+    if (y > free_below) continue;  // skip labels that would touch the one below
+    free_below = y - 1.1 * kText_px;
     canvas.text({frame.x - kTick - 3, y + 4}, tick.label, kText_px, Anchor::end, kInk);
   }
+  const double turned_px = turned_names_px(*frame.across, frame.width);
   double free_from = -1e9;
   for (const auto& tick : across) {
     const double x = frame.at(tick.value, frame.up->low).first;
     canvas.line({x, bottom}, {x, bottom + kTick}, {kInk, "", 1, "", 1});
+    if (turned_px > 0) {
+      if (x - kText_px / 2 < free_from) continue;
+      canvas.text({x + 4, bottom + kTick + 4}, tick.label, kText_px, Anchor::end, kInk, 400, 90);
+      free_from = x + kText_px / 2;
+      continue;
+    }
     const double half = text_width(tick.label, kText_px) / 2;
     if (x - half < free_from) continue;  // skip labels that would touch the previous one
     canvas.text({x, bottom + kTick + 13}, tick.label, kText_px, Anchor::middle, kInk);
     free_from = x + half + 6;
   }
   canvas.line({frame.x, bottom}, {frame.x + frame.width, bottom}, {kInk, "", 1, "", 1});
-  canvas.text({frame.x + frame.width / 2, bottom + 37}, frame.across->label, kText_px, Anchor::middle, kInk);
+  canvas.text({frame.x + frame.width / 2, bottom + 37 + turned_px}, frame.across->label, kText_px,
+              Anchor::middle, kInk);
 }
 
 /// Returns those ticks of the horizontal axis whose labels fit. On a log axis, some ticks have no label.
 std::vector<Tick> ticks_with_room(const Axis& axis, double width) {
-  for (int wanted = 7; wanted > 2 && axis.scale == AxisScale::linear; --wanted) {
-    const auto some = ticks(axis, wanted);
-    double free_from = -1e9;
-    const bool fit = std::all_of(some.begin(), some.end(), [&](const Tick& tick) {
-      const double x = position(axis, tick.value) * width, half = text_width(tick.label, kText_px) / 2;
-      const bool free = x - half >= free_from;
-      free_from = x + half + 6;
-      return free;
-    });
-    if (fit) return some;
-  }
+  for (int wanted = 7; wanted > 2 && axis.scale == AxisScale::linear; --wanted)
+    if (const auto some = ticks(axis, wanted); have_room(some, axis, width)) return some;
   return ticks(axis, axis.scale == AxisScale::linear ? 2 : 7);
 }
 
@@ -270,6 +333,7 @@ struct Division {
   double left = 0, width = 0, legend_top = 0;  ///< left end and width of the data area; top of the legend
   std::vector<Tick> up;
   std::vector<LegendEntry> entries;
+  std::vector<Layer> layers;  ///< the chart's layers, with intervals beside each other
   Labelled labelled;
 };
 
@@ -284,8 +348,12 @@ Division divided(const Chart& chart, const Place& place, VerticalLabels where, i
   d.entries = legend_of(chart);
   Frame frame{d.left, d.legend_top, d.width, 0, &chart.x, &chart.y};
   frame.y += draw_legend(nullptr, d.entries, d.left, 0, d.width);
-  frame.height = place.top + place.height - kPad - 38 - frame.y;
-  d.labelled = place_labels(chart, frame, where);
+  frame.height =
+      place.top + place.height - kPad - 38 - turned_names_px(chart.x, frame.width) - frame.y;
+  d.layers = beside(chart, frame);
+  Chart moved;
+  moved.layers = d.layers;
+  d.labelled = place_labels(moved, frame, where, d.up);
   return d;
 }
 
@@ -324,7 +392,7 @@ void draw_chart(Canvas& canvas, const Chart& chart, const Place& place, const Di
               kInk, 400, 90);
   const auto clip = drawn_in(frame);
   canvas.begin_clip({clip.left, clip.top}, clip.right - clip.left, clip.bottom - clip.top);
-  for (const auto& layer : chart.layers) std::visit(Draw{canvas, frame}, layer);
+  for (const auto& layer : d.layers) std::visit(Draw{canvas, frame}, layer);
   canvas.end_clip();
   for (const auto& label : d.labelled.labels)
     canvas.text(label.at, label.text, kLabelText_px, label.anchor, kSoft);
@@ -360,7 +428,8 @@ void draw(Canvas& canvas, const Figure& figure) {
   check(figure.columns > 0, "the number of columns must be at least 1");
   const int count = static_cast<int>(figure.charts.size());
   const int columns = std::min(figure.columns, count), rows = (count + columns - 1) / columns;
-  const double width = columns * figure.chart_width_px, charts = rows * figure.chart_height_px;
+  const auto [width, height] = size_px(figure);
+  const double charts = rows * figure.chart_height_px;
   std::vector<Place> places;
   for (int i = 0; i < count; ++i)
     places.push_back({i % columns * figure.chart_width_px, i / columns * figure.chart_height_px,
@@ -370,8 +439,6 @@ void draw(Canvas& canvas, const Figure& figure) {
   for (std::size_t i = 0; i < places.size(); ++i)
     divisions.push_back(divided_with_room(figure.charts[i], places[i], where));
   const auto caption = caption_lines(figure.caption, width - 4 * kPad);
-  const double height =
-      charts + (caption.empty() ? 0 : kPad + kCaptionLine * static_cast<double>(caption.size()));
   canvas.begin(width, height, figure.title);
   canvas.rectangle({0, 0}, width, height, {"", "#ffffff", 0, "", 1});
   for (std::size_t i = 0; i < places.size(); ++i)
@@ -381,6 +448,18 @@ void draw(Canvas& canvas, const Figure& figure) {
     canvas.text({2 * kPad, y}, line, kText_px, Anchor::start, kSoft);
     y += kCaptionLine;
   }
+}
+
+Point size_px(const Figure& figure) {
+  const int count = static_cast<int>(figure.charts.size()), columns = std::min(figure.columns, count);
+  const int rows = (count + columns - 1) / columns;
+  return {columns * figure.chart_width_px, rows * figure.chart_height_px + caption_height_px(figure)};
+}
+
+double caption_height_px(const Figure& figure) {
+  const int columns = std::min(figure.columns, static_cast<int>(figure.charts.size()));
+  const auto lines = caption_lines(figure.caption, columns * figure.chart_width_px - 4 * kPad).size();
+  return lines == 0 ? 0 : kPad + kCaptionLine * static_cast<double>(lines);
 }
 
 std::string render(const Figure& figure) {

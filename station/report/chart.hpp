@@ -18,7 +18,8 @@ constexpr int kNeutral = -1;
 struct Line {
   std::vector<double> x, y;
   int series = 0;
-  std::string name;  ///< name in the legend; "" leaves it out
+  std::string name;    ///< name in the legend; "" leaves it out
+  bool faint = false;  ///< true for one of many curves, such as a participant's behind the group's
 };
 
 /// Markers. If `low` and `high` are given (one value per point), each marker has a vertical error bar.
@@ -29,6 +30,12 @@ struct Points {
   std::vector<bool> open;
   int series = 0;
   std::string name;
+};
+
+/// A horizontal interval at one height, such as that of a threshold, with a stroke at each end.
+struct Span {
+  double low = 0, high = 0, at = 0;
+  int series = 0;
 };
 
 /// The area between two curves.
@@ -62,12 +69,15 @@ struct Rule {
   std::string label;
 };
 
-using Layer = std::variant<Band, Histogram, HeatMap, Rule, Line, Points>;
+using Layer = std::variant<Band, Histogram, HeatMap, Rule, Line, Points, Span>;
 
 struct Chart {
   std::string title;
   Axis x, y;
   std::vector<Layer> layers;  ///< drawn one over another, the first at the bottom
+  /// Whether intervals of several series that would lie on each other are drawn beside each other. The distance is a few
+  /// px, the same for all points of a series.
+  bool beside = true;
 };
 
 /// A figure of one or more charts, arranged in rows of `columns` charts.
@@ -79,12 +89,17 @@ struct Figure {
   std::string caption;  ///< text below the charts, broken into lines; "" for none
 };
 
-/// Draws the figure. Throws std::invalid_argument for lists of different lengths, axes without a range, or a
+/// Draws the figure. Where an axis cuts an interval, an arrow points to the end that is not shown. A legend appears
+/// only if there are several entries. Throws std::invalid_argument for lists of different lengths, axes without a range, or a
 /// figure without charts. If a chart leaves no room for its data, it throws before anything is drawn.
 void draw(Canvas& canvas, const Figure& figure);
 
 /// Returns the figure as an SVG document. The same figure always gives the same bytes.
 std::string render(const Figure& figure);
+
+/// The height of the caption below the charts, and the size of the whole figure, in px.
+double caption_height_px(const Figure& figure);
+Point size_px(const Figure& figure);
 
 /// Returns the figure laid out for a document of this size. The number of columns is chosen so that the
 /// charts have the best proportions. Text is never made smaller: if there is not enough room, the document

@@ -13,9 +13,8 @@ namespace turnpoint::report {
 namespace {
 
 /// A cell contains the trials of one condition with equal difficulty. Cells with fewer trials than
-/// kFewestOfCell are left out of the figure. If there are more cells than kMostJoined, no line joins them.
+/// kFewestOfCell are left out of the figure.
 constexpr int kFewestOfCell = 5;
-constexpr std::size_t kMostJoined = 8;
 // a level below this, from a surface that hardly moves, is drawn at this level
 constexpr double kLowestLevel_dB = -40;
 
@@ -41,10 +40,12 @@ Line curve(const NamedFit& named, int series, const Axis& axis, const std::strin
   line.name = name;
   const auto& options = named.fit.options;
   const bool logarithmic = axis.scale == AxisScale::log10;
+  // the curve ends where its band does
+  const auto& along = named.intervals.band_level;
+  const double low = along.empty() ? axis.low : along.front(), high = along.empty() ? axis.high : along.back();
   for (int i = 0; i <= 120; ++i) {
     const double share = i / 120.0;
-    const double x = logarithmic ? axis.low * std::pow(axis.high / axis.low, share)
-                                 : axis.low + share * (axis.high - axis.low);
+    const double x = logarithmic ? low * std::pow(high / low, share) : low + share * (high - low);
     line.x.push_back(x);
     line.y.push_back(analysis::probability(options.function, options.scale, *named.fit.parameters, x));
   }
@@ -58,24 +59,64 @@ std::optional<double> false_alarms(const NamedFit& named) {
   return std::nullopt;
 }
 
-/// Marks the threshold (or PSE) on the curve: a thin line labelled with its value and, at the curve, its
-/// interval.
+/// Marks the threshold (or PSE) on the curve: a thin line labelled with its value and the height of the curve there,
+/// which is the criterion that the threshold stands for, and its interval at that height.
 void mark_threshold(const NamedFit& named, const LevelAnalysis& data, const Words& words, int series,
                     const std::string& name, Chart& panel) {
   const auto& fit = named.fit;
   const double at = fit.parameters->threshold;
   if (at < panel.x.low || at > panel.x.high) return;
   const auto unit = data.level_unit.empty() ? "" : " " + data.level_unit;
+  const double height = analysis::probability(fit.options.function, fit.options.scale, *fit.parameters, at);
+  const auto* interval = named.intervals.threshold ? &named.intervals.threshold->interval : nullptr;
   panel.layers.push_back(Rule{Rule::Direction::vertical, at,
                               words(data.design == Design::two_sided ? "figure.pse" : "figure.threshold",
-                                    (name.empty() ? "" : name + " ") + core::number(at, 3) + unit)});
-  if (!named.intervals.threshold) return;
-  const auto& interval = named.intervals.threshold->interval;
-  const double height = analysis::probability(fit.options.function, fit.options.scale, *fit.parameters, at);
-  panel.layers.push_back(Line{{std::max(interval.low, panel.x.low), std::min(interval.high, panel.x.high)},
-                              {height, height},
-                              series,
-                              ""});
+                                    (name.empty() ? "" : name + " ") + in_digits(at, interval) + unit + " (" +
+                                        core::number(std::round(100 * height)) + " %)")});
+  if (interval != nullptr) panel.layers.push_back(Span{interval->low, interval->high, height, series});
+}
+
+/// What all captions of a session's figures begin with: whose trials they are, and how many.
+std::string of_trials(const Summary& summary, int trials) {
+  return Words(summary.data.language)("figure.caption_trials",
+                                      {summary.data.participant, std::to_string(trials)});
+}
+std::string of_trials(const Summary& summary, std::size_t trials) {
+  return of_trials(summary, static_cast<int>(trials));
+}
+
+std::string of_answers(const Summary& summary) {
+  int answered = 0;
+  for (const auto& entry : summary.trade.instructions) answered += entry.answered - entry.excluded;
+  return of_trials(summary, answered);
+}
+
+const char* curve_caption(core::Function function) {
+  switch (function) {
+    case core::Function::normal:
+      return "figure.caption_normal";
+    case core::Function::logistic:
+      return "figure.caption_logistic";
+    case core::Function::weibull:
+      break;
+  }
+  return "figure.caption_weibull";
+}
+
+std::string psychometric_caption(const Summary& summary) {
+  const Words words(summary.data.language);
+  int trials = 0;
+  bool bands = false, thresholds = false;
+  for (const auto& named : summary.fits) {
+    for (const auto& point : named.fit.data) trials += point.trials;
+    bands = bands || !named.intervals.band_level.empty();
+    thresholds = thresholds || named.intervals.threshold;
+  }
+  auto caption = of_trials(summary, trials) + " " +
+                 words.together({"figure.caption_points", curve_caption(summary.fits.front().fit.options.function)});
+  if (bands) caption += " " + words("figure.caption_band");
+  if (thresholds) caption += " " + words("figure.caption_threshold");
+  return caption;
 }
 
 std::string or_default(const std::string& name, const std::string& fallback) {
@@ -147,6 +188,7 @@ std::optional<Figure> psychometric_figure(const Summary& summary) {
     if (chart) figure.charts.push_back(std::move(*chart));
   }
   if (figure.charts.empty()) return std::nullopt;
+  figure.caption = psychometric_caption(summary);
   return figure;
 }
 
@@ -156,7 +198,9 @@ std::optional<Figure> trace_figure(const Summary& summary) {
   figure.title = "Levels in the order presented";
   figure.chart_width_px = 620;
   figure.chart_height_px = 240;
+  std::size_t trials = 0;
   for (const auto& trace : summary.traces) {
+    trials += trace.points.size();
     Points right, wrong;
     right.series = wrong.series = static_cast<int>(figure.charts.size());
     Line line;
@@ -188,16 +232,19 @@ std::optional<Figure> trace_figure(const Summary& summary) {
     figure.charts.push_back(std::move(panel));
   }
   if (figure.charts.empty()) return std::nullopt;
+  figure.caption = of_trials(summary, trials) + " " + words("figure.caption_trace");
   return figure;
 }
 
 std::optional<Figure> settings_figure(const Summary& summary) {
   Figure figure;
+  std::size_t count = 0;
   figure.title = "Settings in the order made";
   figure.chart_width_px = 620;
   figure.chart_height_px = 260;
   for (const auto& settings : summary.settings) {
     Points starts, ends;
+    count += settings.values.size();
     starts.name = "start", starts.series = report::kNeutral;
     ends.name = "setting", ends.series = static_cast<int>(figure.charts.size());
     for (std::size_t i = 0; i < settings.values.size(); ++i) {
@@ -214,12 +261,14 @@ std::optional<Figure> settings_figure(const Summary& summary) {
     panel.x = report::fitted("Setting (number)", starts.x, 0.03);
     panel.y = report::fitted(summary.data.level_label, both, 0.1);
     if (settings.mean)
-      panel.layers.push_back(Rule{Rule::Direction::horizontal, settings.mean->value, "mean"});
+      panel.layers.push_back(Rule{Rule::Direction::horizontal, settings.mean->value,
+                                  "mean " + in_digits(settings.mean->value, &settings.mean->interval)});
     panel.layers.push_back(starts);
     panel.layers.push_back(ends);
     figure.charts.push_back(std::move(panel));
   }
   if (figure.charts.empty()) return std::nullopt;
+  figure.caption = of_trials(summary, count) + " " + Words(summary.data.language)("figure.caption_settings");
   return figure;
 }
 
@@ -228,12 +277,14 @@ std::optional<Figure> judgement_figure(const Summary& summary) {
   const bool numbers = summary.data.design == Design::numbers;
   Chart chart;
   std::vector<double> levels, values;
+  std::size_t count = 0;
   for (const auto& judged : summary.judgements) {
     Points points;
     Line line;
     points.series = line.series = static_cast<int>(chart.layers.size()) / 2;
     if (!judged.condition.empty()) points.name = judged.condition;
     for (const auto& level : judged.levels) {
+      count += level.values.size();
       if (!level.mean) continue;
       points.x.push_back(level.level), points.y.push_back(level.mean->value);
       points.low.push_back(level.mean->interval.low), points.high.push_back(level.mean->interval.high);
@@ -256,6 +307,8 @@ std::optional<Figure> judgement_figure(const Summary& summary) {
   figure.title = numbers ? "Numbers at each level" : "Ratings at each level";
   figure.chart_width_px = 620;
   figure.chart_height_px = 320;
+  figure.caption = of_trials(summary, count) + " " +
+                   words(numbers ? "figure.caption_numbers" : "figure.caption_ratings");
   figure.charts.push_back(std::move(chart));
   return figure;
 }
@@ -268,23 +321,31 @@ std::optional<Figure> confusion_figure(const Summary& summary) {
   };
   Figure figure;
   const Words words(summary.data.language);
+  int trials = 0;
   figure.title = "Answers to each stimulus";
   figure.chart_width_px = 620;
   figure.chart_height_px = 380;
   for (const auto& confusion : summary.confusions) {
     if (confusion.rows.empty()) continue;
+    for (const auto& row : confusion.rows) trials += row.trials;
     HeatMap shares{
         edges(summary.data.choices.size()), edges(confusion.rows.size()), {}, 0, 1, words("figure.share")};
     for (const auto& row : confusion.rows)
       for (const int count : row.answers) shares.values.push_back(static_cast<double>(count) / row.trials);
     Chart chart;
     chart.title = or_default(confusion.condition, words("figure.all_trials"));
-    chart.x = {words("figure.answer"), 0.5, shares.x_edges.back(), AxisScale::linear, true};
+    chart.x = {words("figure.answer"), 0.5, shares.x_edges.back(), AxisScale::linear, true,
+               summary.data.choices};
     chart.y = {words("figure.stimulus"), 0.5, shares.y_edges.back(), AxisScale::linear, true};
+    for (const auto& row : confusion.rows)
+      chart.y.names.push_back(row.stimulus ? summary.data.choices.at(static_cast<std::size_t>(*row.stimulus))
+                              : row.level ? in_digits(*row.level, nullptr)
+                                          : "");
     chart.layers.push_back(std::move(shares));
     figure.charts.push_back(std::move(chart));
   }
   if (figure.charts.empty()) return std::nullopt;
+  figure.caption = of_trials(summary, trials);
   return figure;
 }
 
@@ -307,6 +368,8 @@ std::optional<Figure> vibration_figure(const Summary& summary) {
   chart.layers.push_back(points);
   Figure figure;
   figure.title = "Vibration of the surface";
+  figure.caption = of_trials(summary, points.x.size()) + " " +
+                   Words(summary.data.language)("figure.caption_vibration");
   figure.chart_width_px = 620;
   figure.chart_height_px = 220;
   figure.charts.push_back(std::move(chart));
@@ -342,9 +405,12 @@ std::optional<Figure> response_time_figure(const Summary& summary) {
     panel.layers.push_back(bars[i]);
     if (entry.times)
       panel.layers.push_back(Rule{Rule::Direction::vertical, entry.times->median_s,
-                                  words("figure.median", core::number(entry.times->median_s, 3))});
+                                  words("figure.median", in_digits(entry.times->median_s,
+                                                                   entry.median_s ? &entry.median_s->interval
+                                                                                  : nullptr))});
     figure.charts.push_back(std::move(panel));
   }
+  figure.caption = of_trials(summary, all.size()) + " " + words("figure.caption_times");
   return figure;
 }
 
@@ -354,13 +420,14 @@ std::optional<Figure> quantile_probability_figure(const Summary& summary) {
   figure.chart_width_px = 420;
   figure.columns = 2;
   figure.caption =
-      "Quantiles 0.1 to 0.9 of the response times over the probability of the answer: right answers on the "
+      of_answers(summary) +
+      " Quantiles 0.1 to 0.9 of the response times over the probability of the answer: right answers on the "
       "right, wrong ones on the left. Markers: observed, with 95 % intervals. Lines: the fitted diffusion "
       "model.";
   std::vector<double> times{0};
   for (const auto& entry : summary.trade.instructions) {
     if (!entry.check) continue;
-    Chart chart{or_default(entry.instruction, "all trials"), {}, {}, {}};
+    Chart chart{or_default(entry.instruction, "all trials"), {}, {}, {}, false};
     for (std::size_t q = 0; q < analysis::kPredictedQuantiles.size(); ++q) {
       Points points;
       std::vector<std::pair<double, double>> predicted;
@@ -478,7 +545,7 @@ std::optional<Figure> trade_figure(const Summary& summary) {
   const bool categories = summary.data.design == Design::categories;
   for (const auto& entry : summary.trade.instructions) {
     Points bins, by_difficulty;
-    Line bin_line, cell_line;
+    Line bin_line;
     for (const auto& bin : entry.caf) {
       const auto interval = analysis::wilson(bin.correct, bin.trials);
       bins.x.push_back(bin.mean_time_s);
@@ -498,13 +565,11 @@ std::optional<Figure> trade_figure(const Summary& summary) {
     caf_times.insert(caf_times.end(), bins.x.begin(), bins.x.end());
     cell_times.insert(cell_times.end(), by_difficulty.x.begin(), by_difficulty.x.end());
     const auto name = or_default(entry.instruction, words("figure.all_trials"));
-    bins.series = bin_line.series = by_difficulty.series = cell_line.series = series++;
-    bins.name = bin_line.name = by_difficulty.name = cell_line.name = name;
+    bins.series = bin_line.series = by_difficulty.series = series++;
+    bins.name = bin_line.name = by_difficulty.name = name;
     bin_line.x = bins.x, bin_line.y = bins.y;
-    cell_line.x = by_difficulty.x, cell_line.y = by_difficulty.y;
     caf.layers.insert(caf.layers.end(), {bin_line, bins});
-    // If there are many levels, as after an adaptive procedure, leave out the line: it would only zigzag.
-    if (cell_line.x.size() <= kMostJoined) cells.layers.push_back(cell_line);
+    // no line joins the difficulties: times do not rise in their order, so it would only zigzag
     cells.layers.push_back(by_difficulty);
   }
   if (cell_times.empty() && caf_times.empty()) return std::nullopt;
@@ -517,9 +582,52 @@ std::optional<Figure> trade_figure(const Summary& summary) {
   figure.columns = 2;
   figure.chart_width_px = 400;
   figure.chart_height_px = 330;
-  if (auto conditions = conditions_chart(summary, words)) figure.charts.push_back(std::move(*conditions));
-  if (!caf_times.empty()) figure.charts.push_back(std::move(caf));
-  if (!cell_times.empty()) figure.charts.push_back(std::move(cells));
+  figure.caption = of_answers(summary) + " " + words("figure.caption_trade");
+  const auto add = [&](Chart chart, const char* caption) {
+    figure.charts.push_back(std::move(chart));
+    figure.caption += " " + words(caption);
+  };
+  if (auto conditions = conditions_chart(summary, words))
+    add(std::move(*conditions), "figure.caption_conditions");
+  if (!caf_times.empty()) add(std::move(caf), "figure.caption_conditional");
+  if (!cell_times.empty()) add(std::move(cells), "figure.caption_cells");
+  return figure;
+}
+
+std::optional<Figure> macro_figure(const Summary& summary) {
+  const Words words(summary.data.language);
+  Chart chart{"", {}, {}, {}};
+  std::vector<double> times_s, heights{0};
+  std::vector<std::pair<double, double>> joined;
+  int series = 0;
+  for (const auto& entry : summary.trade.instructions) {
+    const int own = series++;
+    if (!entry.d_prime || !entry.median_s) continue;
+    const auto &time = *entry.median_s, &height = *entry.d_prime;
+    Line across;
+    across.x = {time.interval.low, time.interval.high}, across.y = {height.value, height.value};
+    Points point;
+    point.x = {time.value}, point.y = {height.value};
+    point.low = {height.interval.low}, point.high = {height.interval.high};
+    across.series = point.series = own;
+    point.name = or_default(entry.instruction, words("figure.all_trials"));
+    chart.layers.insert(chart.layers.end(), {across, point});
+    joined.emplace_back(time.value, height.value);
+    times_s.insert(times_s.end(), across.x.begin(), across.x.end());
+    heights.insert(heights.end(), {height.interval.low, height.interval.high});
+  }
+  if (joined.size() < 2) return std::nullopt;
+  std::sort(joined.begin(), joined.end());
+  Line line;
+  line.series = report::kNeutral;
+  for (const auto& [x, y] : joined) line.x.push_back(x), line.y.push_back(y);
+  chart.layers.insert(chart.layers.begin(), line);
+  chart.x = report::fitted(words("figure.median_time"), times_s, 0.12);
+  chart.y = report::fitted(words("figure.sensitivity"), heights, 0.08);
+  Figure figure;
+  figure.title = "Sensitivity against time over the conditions";
+  figure.chart_width_px = 560;
+  figure.charts.push_back(std::move(chart));
   return figure;
 }
 

@@ -36,6 +36,9 @@ std::optional<Figure> confusion_figure(const Summary& summary);
 /// Plots accuracy against response time in two panels: the conditional accuracy functions, and one point for
 /// the trials of each difficulty.
 std::optional<Figure> trade_figure(const Summary& summary);
+/// The macro trade: d' over all levels against the median response time, one point for each condition, with
+/// intervals in both directions. Empty with fewer than two points.
+std::optional<Figure> macro_figure(const Summary& summary);
 /// Quantiles of response times over the probability of the answer: right answers on the right, wrong ones on
 /// the left, one chart for each condition (Ratcliff & McKoon 2008). Markers are observed, lines predicted.
 std::optional<Figure> quantile_probability_figure(const Summary& summary);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "station/analysis/proportion.hpp"
 #include "station/core/number.hpp"
 #include "station/report/figures.hpp"
 #include "station/report/html_choices.hpp"
@@ -149,6 +150,7 @@ using Result = analysis::InstructionResult;
 constexpr MeasureRow kRows[] = {
     {"Proportion correct (0 to 1)", "proportion correct", "", &Result::proportion_correct},
     {"Median response time (s)", "median response time", "", &Result::median_s},
+    {"Sensitivity d\u2032 over all levels (standard deviations)", "d'", "d'", &Result::d_prime},
     {"Boundary a (diffusion, s = 0.1)", "boundary", "ez", &Result::boundary},
     {"Time outside the decision Ter (s)", "time outside the decision", "ez", &Result::nondecision_s},
     {"Drift v, mean over difficulties (1/s, s = 0.1)", "drift", "ez", &Result::drift},
@@ -160,6 +162,9 @@ constexpr MeasureRow kRows[] = {
     {"Boundary, second half of the blocks \u2212 first half (s = 0.1)", "", "ez", &Result::late_boundary}};
 
 bool has(const MeasureRow& row, const Summary& summary) {
+  const auto& conditions = summary.trade.instructions;
+  if (row.value == &Result::d_prime)
+    return std::any_of(conditions.begin(), conditions.end(), [](const auto& one) { return one.d_prime; });
   return *row.part == '\0' || shows(summary.data, row.part);
 }
 
@@ -174,11 +179,58 @@ std::string instruction_table(const Summary& summary) {
     for (const auto& entry : trade.instructions) html += cell(entry.*row.value);
     html += "</tr>";
   }
-  html += "<tr><th>Trials presented / timed out / excluded</th>";
+  html += "<tr><th>Deadline (s)</th>";
+  for (const auto& entry : trade.instructions)
+    html += "<td class=\"n\">" + (entry.deadline_s ? number(*entry.deadline_s) : std::string("\u2013")) + "</td>";
+  html += "</tr><tr><th>Trials presented / timed out / excluded</th>";
   for (const auto& entry : trade.instructions)
     html += "<td class=\"n\">" + std::to_string(entry.presented) + " / " + std::to_string(entry.timeouts) +
             " / " + std::to_string(entry.excluded) + "</td>";
   return html + "</tr></table>\n";
+}
+
+/// A difference with its interval and, if the protocol asks for it, its corrected p value.
+std::string difference_cell(const analysis::Difference& difference) {
+  auto html = cell(difference.estimate);
+  if (difference.corrected_p)
+    html.insert(html.rfind("</td>"), "<br><span class=\"soft\">p = " + number(*difference.corrected_p, 2) + "</span>");
+  return html;
+}
+
+/// Conditional accuracy in each bin of time, and its differences between conditions; "" without bins.
+std::string conditional_table(const Summary& summary) {
+  std::size_t bins = 0;
+  for (const auto& entry : summary.trade.instructions) bins = std::max(bins, entry.caf.size());
+  if (bins == 0) return "";
+  std::string html =
+      "<table><tr><th>Conditional accuracy: bin of time</th><th>Condition</th><th>Mean time (s)</th>"
+      "<th>Proportion correct (0 to 1)</th></tr>";
+  for (std::size_t i = 0; i < bins; ++i) {
+    const auto of = std::to_string(i + 1) + " of " + std::to_string(bins);
+    for (const auto& entry : summary.trade.instructions) {
+      if (i >= entry.caf.size()) continue;
+      const auto& bin = entry.caf[i];
+      html += "<tr><td>" + of + "</td><td>" + escaped(name_of(entry.instruction)) + "</td><td class=\"n\">" +
+              number(bin.mean_time_s) + "</td><td class=\"n\">" +
+              estimated(static_cast<double>(bin.correct) / bin.trials,
+                        analysis::wilson(bin.correct, bin.trials)) +
+              "</td></tr>";
+    }
+    for (const auto& difference : summary.trade.differences)
+      if (difference.measure == analysis::kBinMeasure + of)
+        html += "<tr><td>" + of + "</td><td>" + escaped(name_of(difference.second)) + " \u2212 " +
+                escaped(name_of(difference.first)) + "</td><td></td>" + difference_cell(difference) + "</tr>";
+  }
+  return html + "</table>\n";
+}
+
+/// Says which comparisons were corrected for their number; "" if none were.
+std::string correction_note(const SessionData& data) {
+  if (data.holm == protocol::Holm::none) return "";
+  return std::string("<p class=\"soft\">p values are corrected by Holm\u2019s method for the number of ") +
+         (data.holm == protocol::Holm::all ? "all differences between conditions in this report"
+                                           : "pairs of conditions that a measure compares") +
+         ", as the protocol asks (holm). Intervals are not corrected.</p>\n";
 }
 
 /// Returns a table with one column for each pair of conditions.
@@ -201,7 +253,7 @@ std::string difference_table(const Summary& summary) {
     for (const auto& pair : pairs)
       for (const auto& difference : differences)
         if (difference.measure == row.measure && pair_of(difference) == pair)
-          html += cell(difference.estimate);
+          html += difference_cell(difference);
     html += "</tr>";
   }
   return html + "</table>\n";
@@ -235,13 +287,20 @@ std::string difficulty_table(const Summary& summary) {
 /// the evidence.
 std::string trade_sentences(const Summary& summary) {
   const auto& differences = summary.trade.differences;
-  const auto find = [&](const analysis::Difference& pair, const char* measure) -> const Estimate* {
+  const auto named = [&](const analysis::Difference& pair, const char* measure) -> const analysis::Difference* {
     for (const auto& one : differences)
       if (one.first == pair.first && one.second == pair.second && one.measure == measure && one.estimate)
-        return &*one.estimate;
+        return &one;
     return nullptr;
   };
-  const auto detected = [](const Estimate& gap) { return gap.interval.low > 0 || gap.interval.high < 0; };
+  const auto find = [&](const analysis::Difference& pair, const char* measure) -> const Estimate* {
+    const auto* one = named(pair, measure);
+    return one == nullptr ? nullptr : &*one->estimate;
+  };
+  const auto detected = [](const analysis::Difference& gap) {
+    if (gap.corrected_p) return *gap.corrected_p < 0.05;
+    return gap.estimate->interval.low > 0 || gap.estimate->interval.high < 0;
+  };
   const auto size = [](Estimate gap, double scale, const char* unit) {
     if (gap.value < 0) gap = {-gap.value, {-gap.interval.high, -gap.interval.low, gap.interval.confidence}};
     const analysis::Interval scaled{scale * gap.interval.low, scale * gap.interval.high,
@@ -257,15 +316,15 @@ std::string trade_sentences(const Summary& summary) {
             escaped(name_of(pair.second)) + "</b> came " + size(*time, 1, " s ") +
             (time->value < 0 ? "sooner" : "later") + " (median) and were right " +
             size(*right, 100, " % of the trials ") + (right->value < 0 ? "less" : "more") + " often.";
-    const auto *boundary = find(pair, "boundary"), *drift = find(pair, "drift");
+    const auto *boundary = named(pair, "boundary"), *drift = named(pair, "drift");
     if (boundary != nullptr && drift != nullptr)
       html += std::string(" The boundary ") +
               (!detected(*boundary)  ? "did not change detectably"
-               : boundary->value < 0 ? "was lower (less caution)"
+               : boundary->estimate->value < 0 ? "was lower (less caution)"
                                      : "was higher (more caution)") +
               "; the drift " +
               (!detected(*drift)  ? "did not change detectably"
-               : drift->value < 0 ? "was lower (weaker evidence)"
+               : drift->estimate->value < 0 ? "was lower (weaker evidence)"
                                   : "was higher (stronger evidence)") +
               ".";
     html += "</p>\n";
@@ -312,8 +371,9 @@ std::string trade_section(const Summary& summary) {
   if (summary.trade.instructions.empty() || !summary.data.scored) return "";
   const bool several = summary.trade.instructions.size() > 1;
   std::string html = several ? "<h2>Speed-accuracy trade-off</h2>\n" : "<h2>Speed and accuracy</h2>\n";
-  html += trade_sentences(summary) + picture(trade_figure(summary)) + instruction_table(summary) +
-          difference_table(summary) + picture(response_time_figure(summary));
+  html += trade_sentences(summary) + picture(trade_figure(summary)) + picture(macro_figure(summary)) +
+          instruction_table(summary) + difference_table(summary) + correction_note(summary.data) +
+          conditional_table(summary) + picture(response_time_figure(summary));
   if (summary.data.design != Design::categories) html += difficulty_table(summary);
   if (shows(summary.data, "ez"))
     html +=

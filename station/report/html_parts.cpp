@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "station/core/letters.hpp"
 #include "station/core/number.hpp"
+#include "station/report/figure_files.hpp"
 #include "station/report/svg.hpp"
 
 namespace turnpoint::report {
@@ -21,9 +23,30 @@ th,td{text-align:left;padding:.2rem 1rem .2rem 0;vertical-align:top;border-botto
 th{font-weight:600}td.n{text-align:right;white-space:nowrap}.note{background:#fff6e5;border-left:3px solid #e69f00;
 padding:.4rem .7rem;margin:.4rem 0}.mode{display:inline-block;border:2px solid #d55e00;color:#a84600;
 padding:0 .5rem;font-weight:600}.soft{color:#666}figure{margin:.5rem 0}svg{max-width:100%;height:auto}
-@media print{body{margin:0;max-width:none;font-size:10pt}h2{break-after:avoid}figure,table,.note{break-inside:avoid}}
+.save{font-size:.8rem;margin:.1rem 0}
+@media print{.save{display:none}body{margin:0;max-width:none;font-size:10pt}h2{break-after:avoid}figure,table,.note{break-inside:avoid}}
 @page{size:A4;margin:16mm}
 )";
+
+std::string base64(const std::string& bytes) {
+  static const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    unsigned three = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      three = (three << 8) | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += i + k < bytes.size() + 1 ? digits[(three >> (18 - 6 * k)) & 63U] : '=';
+  }
+  return text;
+}
+
+/// A link that saves a file which the page itself contains.
+std::string download(const std::string& name, const std::string& type, const std::string& bytes,
+                     const std::string& label) {
+  return "<a download=\"" + name + "\" href=\"data:" + type + ";base64," + base64(bytes) + "\">" + label +
+         "</a>";
+}
 
 }  // namespace
 
@@ -69,7 +92,25 @@ std::string notes(const std::vector<analysis::Statement>& statements) {
 }
 
 std::string picture(const std::optional<Figure>& figure) {
-  return figure ? "<figure>" + report::render(*figure) + "</figure>\n" : "";
+  if (!figure) return "";
+  std::string name;
+  for (const char c : figure->title) {
+    const char letter = core::lower(c);
+    if ((letter >= 'a' && letter <= 'z') || (letter >= '0' && letter <= '9'))
+      name += letter;
+    else if (!name.empty() && name.back() != '-')
+      name += '-';
+  }
+  const auto paper = [&](double width_mm) {
+    Svg svg(Svg::Unit::mm);
+    draw(svg, for_paper(*figure, width_mm));
+    return svg.finish();
+  };
+  return "<figure>" + report::render(*figure) + "<p class=\"soft save\">Save: " +
+         download(name + "-1-column.svg", "image/svg+xml", paper(kOneColumn_mm), "SVG, 85 mm wide") + ", " +
+         download(name + "-2-columns.svg", "image/svg+xml", paper(kTwoColumns_mm), "SVG, 180 mm wide") + ", " +
+         download(name + ".csv", "text/csv;charset=utf-8", data_csv(*figure), "data, CSV") +
+         "</p></figure>\n";
 }
 
 std::string name_of(const std::string& condition) { return condition.empty() ? "all trials" : condition; }

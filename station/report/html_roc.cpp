@@ -38,6 +38,7 @@ std::optional<Figure> roc_figure(const Summary& summary) {
   Figure figure;
   figure.title = "Receiver operating characteristic";
   figure.chart_width_px = 420, figure.chart_height_px = 420;
+  figure.caption = core::text("figure.caption_roc", "en");
   std::string last;
   for (const auto& entry : summary.rocs) {
     if (figure.charts.empty() || entry.condition != last) {

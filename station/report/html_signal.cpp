@@ -3,6 +3,7 @@
 #include "station/report/figures.hpp"
 #include "station/report/html_parts.hpp"
 #include "station/report/svg.hpp"
+#include "station/report/words.hpp"
 
 namespace turnpoint::report {
 
@@ -22,19 +23,22 @@ std::string curve_table(const Summary& summary) {
 
 /// A table with one row for each pair of conditions; "" if there is only one curve.
 std::string curve_difference_table(const Summary& summary) {
-  const auto differences = analysis::curve_differences(summary.curves);
+  const auto& differences = summary.curve_differences;
   if (differences.empty()) return "";
   std::string html =
       "<table><tr><th>Difference</th><th>Asymptote (d\u2032)</th><th>Ratio of rates (no unit)</th>"
       "<th>Intercept (s)</th><th>p if only the asymptote is shared</th><th>rate shared</th>"
       "<th>intercept shared</th></tr>";
-  const auto p_cell = [](const std::optional<double>& p) {
-    return "<td class=\"n\">" + (p ? number(*p) : std::string("\u2013")) + "</td>";
+  const auto p_cells = [](const analysis::CurveDifference& pair) {
+    std::string cells;
+    for (std::size_t i = 0; i < pair.p.size(); ++i)
+      cells += "<td class=\"n\">" + (pair.p[i] ? number(*pair.p[i]) : std::string("\u2013")) +
+               (pair.corrected_p[i] ? ", corrected " + number(*pair.corrected_p[i]) : "") + "</td>";
+    return cells;
   };
   for (const auto& pair : differences)
     html += "<tr><td>" + escaped(name_of(pair.second)) + " \u2212 " + escaped(name_of(pair.first)) + "</td>" +
-            cell(pair.asymptote) + cell(pair.rate_ratio) + cell(pair.intercept_s) + p_cell(pair.asymptote_p) + p_cell(pair.rate_p) + p_cell(pair.intercept_p) +
-            "</tr>";
+            cell(pair.asymptote) + cell(pair.rate_ratio) + cell(pair.intercept_s) + p_cells(pair) + "</tr>";
   return html + "</table>\n";
 }
 
@@ -101,6 +105,7 @@ std::optional<Figure> signal_figure(const Summary& summary) {
   Figure figure;
   figure.title = "Sensitivity over time";
   figure.chart_width_px = 560;
+  figure.caption = Words("en").together({"figure.caption_signal"});
   figure.charts.push_back(std::move(chart));
   return figure;
 }

@@ -79,7 +79,9 @@ Json instruction_json(const analysis::InstructionResult& entry) {
             {"answered", entry.answered},           {"timeouts", entry.timeouts},
             {"anticipations", entry.anticipations}, {"excluded", entry.excluded}};
   json["proportion_correct"] = value(entry.proportion_correct);
+  json["deadline_s"] = value(entry.deadline_s);
   json["median_response_time_s"] = value(entry.median_s);
+  json["d_prime"] = value(entry.d_prime);
   json["boundary"] = value(entry.boundary);
   json["nondecision_s"] = value(entry.nondecision_s);
   json["contaminants"] = value(entry.contaminants);
@@ -303,7 +305,9 @@ std::string to_json(const Summary& summary) {
                                    {"second", difference.second},
                                    {"measure", difference.measure},
                                    {"unit", difference.unit},
-                                   {"estimate", value(difference.estimate)}});
+                                   {"estimate", value(difference.estimate)},
+                                   {"p", difference.estimate ? value(difference.estimate->p) : Json(nullptr)},
+                                   {"corrected_p", value(difference.corrected_p)}});
   json["detection"] = Json::array();
   for (const auto& entry : summary.detections)
     json["detection"].push_back({{"condition", entry.condition},
@@ -340,13 +344,16 @@ std::string to_json(const Summary& summary) {
                                        {"lags", lags}});
   }
   json["response_signal_differences"] = Json::array();
-  for (const auto& pair : analysis::curve_differences(summary.curves))
+  for (const auto& pair : summary.curve_differences)
     json["response_signal_differences"].push_back({{"first", pair.first},
                                                    {"second", pair.second},
                                                    {"asymptote", value(pair.asymptote)},
-                                                   {"asymptote_p", value(pair.asymptote_p)},
-                                                   {"rate_p", value(pair.rate_p)},
-                                                   {"intercept_p", value(pair.intercept_p)},
+                                                   {"asymptote_p", value(pair.p[0])},
+                                                   {"rate_p", value(pair.p[1])},
+                                                   {"intercept_p", value(pair.p[2])},
+                                                   {"asymptote_corrected_p", value(pair.corrected_p[0])},
+                                                   {"rate_corrected_p", value(pair.corrected_p[1])},
+                                                   {"intercept_corrected_p", value(pair.corrected_p[2])},
                                                    {"rate_ratio", value(pair.rate_ratio)},
                                                    {"intercept_s", value(pair.intercept_s)}});
   json["discrimination"] = Json::array();

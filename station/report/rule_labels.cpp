@@ -9,6 +9,8 @@ namespace turnpoint::report {
 namespace {
 
 constexpr double kAscent = 9.5, kDescent = 3, kRow = 13, kBesideRule = 4;
+constexpr double kBeside_px = 8;  // between intervals that would lie on each other
+constexpr double kArrow_px = 4;
 constexpr double kOver = 6;  // how far lines and markers may extend beyond the frame, in px
 
 Box box_of(const std::string& text, Point at, Anchor anchor) {
@@ -74,16 +76,110 @@ struct Cover {
     const auto radii = marker_radii_px(dots);
     for (std::size_t i = 0; i < std::min(dots.x.size(), dots.y.size()); ++i) {
       if (!drawable(*frame.across, dots.x[i])) continue;
-      if (i < dots.low.size() && i < dots.high.size() && drawable(*frame.up, dots.low[i]) &&
-          drawable(*frame.up, dots.high[i]))
-        cover(boxes, frame.at(dots.x[i], dots.low[i]), frame.at(dots.x[i], dots.high[i]), 1);
+      if (i < dots.low.size() && i < dots.high.size())
+        if (const auto part = shown(*frame.up, dots.low[i], dots.high[i]))
+          cover(boxes, frame.at(dots.x[i], part->low), frame.at(dots.x[i], part->high),
+                part->cut_low || part->cut_high ? kArrow_px : 1);
       if (!drawable(*frame.up, dots.y[i])) continue;
       const auto [x, y] = frame.at(dots.x[i], dots.y[i]);
       const double r = 1.3 * radii[i] + 0.8;
       boxes.push_back({x - r, y - r, x + r, y + r});
     }
   }
+  void operator()(const Span& span) const {
+    if (!drawable(*frame.up, span.at)) return;
+    if (const auto part = shown(*frame.across, span.low, span.high))
+      cover(boxes, frame.at(part->low, span.at), frame.at(part->high, span.at), kArrow_px);
+  }
 };
+
+bool meet(double a_low, double a_high, double b_low, double b_high) {
+  return a_low <= b_high && b_low <= a_high;
+}
+
+/// True if two series have an interval at the same place of the axis, and these overlap.
+bool on_each_other(const Points& a, const Points& b, const Frame& frame) {
+  const auto count = [](const Points& dots) {
+    return std::min({dots.x.size(), dots.low.size(), dots.high.size()});
+  };
+  for (std::size_t i = 0; i < count(a); ++i)
+    for (std::size_t j = 0; j < count(b); ++j) {
+      if (!drawable(*frame.across, a.x[i]) || !drawable(*frame.across, b.x[j])) continue;
+      const double apart_px = frame.at(a.x[i], 0).first - frame.at(b.x[j], 0).first;
+      if (std::abs(apart_px) < 0.5 && meet(a.low[i], a.high[i], b.low[j], b.high[j])) return true;
+    }
+  return false;
+}
+
+/// The smallest distance in px between different places of these points.
+double closest_px(const std::vector<Points*>& all, const Frame& frame) {
+  std::vector<double> places;
+  for (const auto* dots : all)
+    for (const double x : dots->x)
+      if (drawable(*frame.across, x)) places.push_back(frame.at(x, 0).first);
+  std::sort(places.begin(), places.end());
+  double closest = frame.width;
+  for (std::size_t i = 1; i < places.size(); ++i)
+    if (places[i] - places[i - 1] >= 0.5) closest = std::min(closest, places[i] - places[i - 1]);
+  return closest;
+}
+
+void shift_along(std::vector<double>& x, const Axis& axis, double share) {
+  for (double& value : x)
+    value = axis.scale == AxisScale::linear ? value + share * (axis.high - axis.low)
+                                            : value * std::pow(axis.high / axis.low, share);
+}
+
+void move_points(std::vector<Layer>& layers, const Frame& frame) {
+  std::vector<Points*> all, clash;
+  for (auto& layer : layers)
+    if (auto* dots = std::get_if<Points>(&layer); dots != nullptr && !dots->low.empty()) all.push_back(dots);
+  for (auto* dots : all)
+    if (std::any_of(all.begin(), all.end(), [&](const Points* other) {
+          return other != dots && on_each_other(*dots, *other, frame);
+        }))
+      clash.push_back(dots);
+  if (clash.size() < 2) return;
+  const auto count = static_cast<double>(clash.size());
+  const double step_px = std::min(kBeside_px, 0.6 * closest_px(clash, frame) / count);
+  for (std::size_t i = 0; i < clash.size(); ++i) {
+    const double share = (static_cast<double>(i) - (count - 1) / 2) * step_px / frame.width;
+    for (auto& layer : layers)
+      if (auto* line = std::get_if<Line>(&layer);
+          line != nullptr && line->series == clash[i]->series && line->x == clash[i]->x)
+        shift_along(line->x, *frame.across, share);
+    shift_along(clash[i]->x, *frame.across, share);
+  }
+}
+
+void move_spans(std::vector<Layer>& layers, const Frame& frame) {
+  std::vector<Span*> spans;
+  for (auto& layer : layers)
+    if (auto* span = std::get_if<Span>(&layer)) spans.push_back(span);
+  std::vector<Span*> group;
+  const auto height = [&](const Span* span) { return frame.at(frame.across->low, span->at).second; };
+  std::sort(spans.begin(), spans.end(),
+            [&](const Span* a, const Span* b) { return height(a) < height(b); });
+  const auto spread = [&] {
+    for (std::size_t i = 0; i < group.size() && group.size() > 1; ++i) {
+      const double off_px =
+          (static_cast<double>(i) - (static_cast<double>(group.size()) - 1) / 2) * kBeside_px;
+      std::vector<double> at{group[i]->at};
+      shift_along(at, *frame.up, -off_px / frame.height);
+      group[i]->at = at.front();
+    }
+    group.clear();
+  };
+  for (auto* span : spans) {
+    const bool joins = std::any_of(group.begin(), group.end(), [&](const Span* other) {
+      return std::abs(height(other) - height(span)) < kBeside_px &&
+             meet(other->low, other->high, span->low, span->high);
+    });
+    if (!joins) spread();
+    group.push_back(span);
+  }
+  spread();
+}
 
 /// Returns possible places for a label beside a rule, best place first.
 std::vector<RuleLabel> places_beside(const Rule& rule, const Frame& frame) {
@@ -97,7 +193,7 @@ std::vector<RuleLabel> places_beside(const Rule& rule, const Frame& frame) {
         places.push_back(label_at(rule, {end, base}, Anchor::end));
   } else {
     const double x = frame.at(rule.at, frame.up->low).first;
-    for (double base = frame.y + 12; base + kDescent <= bottom; base += 0.5 * kRow) {
+    for (double base = frame.y + 12; base + kDescent <= bottom; base += 0.25 * kRow) {
       places.push_back(label_at(rule, {x + kBesideRule, base}, Anchor::start));
       places.push_back(label_at(rule, {x - kBesideRule, base}, Anchor::end));
     }
@@ -158,6 +254,25 @@ bool drawable(const Axis& axis, double value) {
   return std::isfinite(value) && (axis.scale == AxisScale::linear || value > 0);
 }
 
+std::optional<Shown> shown(const Axis& axis, double low, double high) {
+  if (std::isnan(low) || std::isnan(high)) return std::nullopt;
+  const auto place = [&axis](double value) {
+    return axis.scale == AxisScale::log10 && value <= 0 ? -1.0 : position(axis, value);
+  };
+  constexpr double rounding = 1e-9;
+  if (place(low) > 1 + rounding || place(high) < -rounding) return std::nullopt;
+  return Shown{std::max(low, axis.low), std::min(high, axis.high), place(low) < -rounding,
+               place(high) > 1 + rounding};
+}
+
+std::vector<Layer> beside(const Chart& chart, const Frame& frame) {
+  auto layers = chart.layers;
+  if (!chart.beside || frame.width <= 0 || frame.height <= 0) return layers;
+  move_points(layers, frame);
+  move_spans(layers, frame);
+  return layers;
+}
+
 std::vector<double> marker_radii_px(const Points& dots) {
   constexpr double least = 2.4, span = 2.4;
   if (dots.weight.size() != dots.x.size()) return std::vector<double>(dots.x.size(), least + 0.5 * span);
@@ -195,7 +310,7 @@ std::vector<Box> covered(const Chart& chart, const Frame& frame) {
   return boxes;
 }
 
-Labelled place_labels(const Chart& chart, Frame whole, VerticalLabels where) {
+Labelled place_labels(const Chart& chart, Frame whole, VerticalLabels where, const std::vector<Tick>& grid) {
   std::set<const Rule*> outside_data;
   for (const auto& layer : chart.layers)
     if (const auto* rule = std::get_if<Rule>(&layer);
@@ -203,7 +318,11 @@ Labelled place_labels(const Chart& chart, Frame whole, VerticalLabels where) {
       outside_data.insert(rule);
   for (;;) {
     const auto frame = without_labels(whole, outside_data);
-    const auto boxes = covered(chart, frame);
+    auto boxes = covered(chart, frame);
+    for (const auto& tick : grid) {
+      const double y = frame.at(frame.across->low, tick.value).second;
+      boxes.push_back({frame.x, y - 0.5, frame.x + frame.width, y + 0.5});
+    }
     Labelled result{frame, {}};
     const auto free = [&](const RuleLabel& place) {
       return std::none_of(boxes.begin(), boxes.end(),

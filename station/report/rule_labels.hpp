@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "station/report/canvas.hpp"
@@ -18,6 +19,18 @@ struct Frame {
 
 /// False if the value has no position on the axis: it is not finite, or not positive on a log axis.
 bool drawable(const Axis& axis, double value);
+
+/// The part of an interval that an axis shows, and which of its ends lie beyond the axis.
+struct Shown {
+  double low = 0, high = 0;
+  bool cut_low = false, cut_high = false;
+};
+/// Returns the shown part of an interval; nullopt if the axis shows nothing of it, or an end is not a number.
+std::optional<Shown> shown(const Axis& axis, double low, double high);
+
+/// Moves intervals of several series that would lie on each other beside each other: those of points to the side, those
+/// of a Span up and down. A line through the same points moves with them.
+std::vector<Layer> beside(const Chart& chart, const Frame& frame);
 
 /// False if the rule lies outside the chart's axes.
 bool is_shown(const Rule& rule, const Frame& frame);
@@ -59,6 +72,8 @@ struct Labelled {
   std::vector<RuleLabel> labels;
 };
 enum class VerticalLabels { beside, above };
-Labelled place_labels(const Chart& chart, Frame frame, VerticalLabels where = VerticalLabels::beside);
+/// `grid` contains the values at which lines cross the whole chart; labels stand between them.
+Labelled place_labels(const Chart& chart, Frame frame, VerticalLabels where = VerticalLabels::beside,
+                      const std::vector<Tick>& grid = {});
 
 }  // namespace turnpoint::report

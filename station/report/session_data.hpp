@@ -7,6 +7,7 @@
 
 #include "station/analysis/finger.hpp"
 #include "station/analysis/forced_choice.hpp"
+#include "station/analysis/group.hpp"
 #include "station/analysis/psychometric_fit.hpp"
 #include "station/analysis/speed_accuracy.hpp"
 #include "station/analysis/trial_record.hpp"
@@ -14,6 +15,7 @@
 #include "station/procedure/continuation.hpp"
 #include "station/procedure/description.hpp"
 #include "station/protocol/meaning.hpp"
+#include "station/protocol/protocol.hpp"
 
 namespace turnpoint::report {
 
@@ -138,6 +140,7 @@ struct SessionData : LevelAnalysis {
   /// measured vibration of each trial; empty if no pick-up measured the surface
   std::vector<MeasuredTrial> measured;
   analysis::TimeExclusion exclusion;
+  protocol::Holm holm = protocol::Holm::none;  ///< which comparisons are corrected together
   std::uint64_t seed = 1;  ///< seed of the bootstraps' random numbers
   int replicates = 1000;
 };
@@ -151,5 +154,9 @@ SessionData part_of(const SessionData& data, std::size_t part);
 /// with two exceptions: d' only for yes/no tasks and where `deciding` has a model, and the diffusion model
 /// only for two answers that come without a response signal.
 bool shows(const SessionData& data, const std::string& part);
+
+/// Corrects the p values of comparisons, each with its measure, as the protocol asks for. All are empty if it
+/// does not ask.
+std::vector<std::optional<double>> corrected(const SessionData& data, std::vector<analysis::Tested> tests);
 
 }  // namespace turnpoint::report

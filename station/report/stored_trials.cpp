@@ -271,6 +271,7 @@ void add_trials(const std::vector<core::BlockRecord>& blocks, const protocol::Pr
   data.signalled = protocol.timing.signal.has_value();
   for (const auto& choice : protocol.task.choices) data.choices.push_back(choice.id);
   data.show = protocol.analysis.show;
+  data.holm = protocol.analysis.holm;
   data.exclusion = {protocol.analysis.exclude_below_s, protocol.analysis.exclude_mad};
 }
 

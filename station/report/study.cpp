@@ -5,6 +5,8 @@
 
 #include "station/analysis/quantile.hpp"
 #include "station/core/number.hpp"
+#include "station/protocol/conditions.hpp"
+#include "station/protocol/meaning.hpp"
 
 namespace turnpoint::report {
 
@@ -14,7 +16,7 @@ using analysis::Outcome;
 using analysis::PersonMeasure;
 using analysis::TrialType;
 
-constexpr const char *kCorrect = "proportion correct", *kMeanCorrect = "mean time of right answers";
+constexpr const char* kMeanCorrect = "mean time of right answers";
 
 void count_trials(const SessionData& data, StudyPerson& person) {
   int right = 0, scored = 0, timeouts = 0, anticipations = 0;
@@ -127,7 +129,7 @@ void add_measures(const Summary& summary, StudyPerson& person) {
   }
   for (const auto& entry : summary.trade.instructions) {
     if (data.scored) measures.add(entry.instruction, kCorrect, "", entry.proportion_correct);
-    measures.add(entry.instruction, "median response time", "s", entry.median_s);
+    measures.add(entry.instruction, kMedianTime, "s", entry.median_s);
     if (data.scored && entry.correct_times)
       measures.add(entry.instruction, kMeanCorrect, "s", std::optional<double>(entry.correct_times->mean_s));
     measures.add(entry.instruction, "boundary", "s = 0.1", entry.boundary);
@@ -138,10 +140,18 @@ void add_measures(const Summary& summary, StudyPerson& person) {
     if (data.scored) measures.add(entry.instruction, "post-error slowing", "s", entry.post_error_s);
     if (data.scored) measures.add(entry.instruction, "repetition of answers", "", entry.repetition);
     measures.add(entry.instruction, "boundary, late minus early in a block", "s = 0.1", entry.late_boundary);
+    if (summary.detections.empty()) measures.add(entry.instruction, kSensitivity, "", entry.d_prime);
+    for (std::size_t i = 0; i < entry.caf.size(); ++i) {
+      const auto& bin = entry.caf[i];
+      const auto of = std::to_string(i + 1) + " of " + std::to_string(entry.caf.size());
+      measures.add(entry.instruction, analysis::kBinMeasure + of, "",
+                   std::optional(static_cast<double>(bin.correct) / bin.trials));
+      measures.add(entry.instruction, kBinTime + of, "s", std::optional(bin.mean_time_s));
+    }
   }
   for (const auto& detection : summary.detections)
     if (!detection.level) {
-      measures.add(detection.condition, "d'", "", detection.d_prime);
+      measures.add(detection.condition, kSensitivity, "", detection.d_prime);
       measures.add(detection.condition, "criterion c", "", detection.criterion);
     }
   for (const auto& entry : summary.rocs) {
@@ -162,6 +172,11 @@ void add_measures(const Summary& summary, StudyPerson& person) {
     measures.add(curve.condition, "asymptote of d'", "", curve.asymptote);
     measures.add(curve.condition, "rate of d'", "1/s", curve.rate_per_s);
     measures.add(curve.condition, "intercept of d'", "s", curve.intercept_s);
+    for (const auto& point : curve.points) {
+      const auto at = core::number(point.lag_s, 4) + " s";
+      measures.add(curve.condition, kLagSensitivity + at, "", point.d_prime);
+      measures.add(curve.condition, kLagTime + at, "s", std::optional(point.time_s));
+    }
   }
   // With several procedures, name the procedure too: a measure can have only one value in each condition.
   for (const auto& settings : summary.settings) {
@@ -228,9 +243,7 @@ StudyPerson study_person(const SessionData& data, const protocol::Exclusion& rul
   person.person = data.participant;
   person.incomplete = incomplete;
   count_trials(data, person);
-  auto kept = data;
-  kept.replicates = kStudyReplicates;
-  auto summary = summarise(kept);
+  auto summary = summarise(data);
   add_measures(summary, person);
   for (auto& named : summary.fits) {
     named.intervals.band_level.clear(), named.intervals.band_low.clear(), named.intervals.band_high.clear();
@@ -247,18 +260,34 @@ std::vector<std::string> rules_in_words(const protocol::Exclusion& rules) {
   return words;
 }
 
+protocol::Protocol by_group(protocol::Protocol protocol) {
+  auto& by = protocol.analysis.by;
+  std::vector<std::string> groups;
+  for (const auto& factor : protocol.factors)
+    if (factor.draw == protocol::FactorDraw::per_participant &&
+        std::find(by.begin(), by.end(), factor.name) == by.end())
+      groups.push_back(factor.name);
+  if (groups.empty()) return protocol;
+  // An empty `by` means that the conditions are the instructions. Keep that when groups are added.
+  const auto is_instruction = [](const protocol::Factor& factor) { return factor.name == "instruction"; };
+  if (by.empty() && std::any_of(protocol.factors.begin(), protocol.factors.end(), is_instruction) &&
+      std::find(groups.begin(), groups.end(), "instruction") == groups.end())
+    by.push_back("instruction");
+  by.insert(by.begin(), groups.begin(), groups.end());
+  protocol.meanings = protocol::meanings_of(protocol);
+  return protocol;
+}
+
 namespace {
 
-/// The words of a condition's name that say to which group of participants it belongs.
-std::vector<std::string> group_of(const std::string& condition, const std::vector<std::string>& groups) {
-  std::vector<std::string> found;
-  std::size_t from = 0;
-  while (from <= condition.size()) {
-    const auto to = std::min(condition.find(", ", from), condition.size());
-    const auto word = condition.substr(from, to - from);
-    if (std::find(groups.begin(), groups.end(), word) != groups.end()) found.push_back(word);
-    from = to + 2;
-  }
+/// The group of participants to which a condition belongs; "" if to all. The name of an analysis or a
+/// procedure may come before that of the condition.
+std::string group_of(const std::string& condition, const std::map<std::string, std::string>& groups) {
+  std::size_t longest = 0;
+  std::string found;
+  for (const auto& [name, group] : groups)
+    if ((condition == name || condition.ends_with(", " + name)) && name.size() > longest)
+      longest = name.size(), found = group;
   return found;
 }
 
@@ -313,10 +342,18 @@ void finish_study(Study& study) {
   std::stable_sort(measures.begin(), measures.end(),
                    [&place](const PersonMeasure& a, const PersonMeasure& b) { return place(a) < place(b); });
   study.means = analysis::group_means(measures);
-  const auto& groups = study.groups_in_words;
+  const auto& groups = study.groups_of_conditions;
+  std::erase_if(measures, [](const PersonMeasure& one) {  // where figures put their points; nothing to compare
+    return one.measure.starts_with(kBinTime) || one.measure.starts_with(kLagTime);
+  });
   study.effects = analysis::effects(measures, [&groups](const std::string& first, const std::string& second) {
     return group_of(first, groups) != group_of(second, groups);
   });
+  std::vector<analysis::Tested> tests;
+  for (const auto& effect : study.effects)
+    tests.push_back({effect.measure, effect.difference ? effect.difference->p : std::nullopt});
+  const auto p = corrected(study.settings, std::move(tests));
+  for (std::size_t i = 0; i < p.size(); ++i) study.effects[i].corrected_p = p[i];
   for (const auto& condition : conditions) {
     const bool fitted = std::any_of(study.persons.begin(), study.persons.end(), [&](const auto& person) {
       return person.excluded.empty() &&

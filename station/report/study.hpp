@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -63,8 +64,7 @@ struct Study {
   SessionData settings;     ///< how the trials are analysed; its list of trials is empty
   std::vector<Fact> facts;  ///< rows for the head of the report
   SessionCounts sessions;
-  /// for each group of participants, the words that the names of its conditions contain; empty without groups
-  std::vector<std::string> groups_in_words;
+  std::map<std::string, std::string> groups_of_conditions;  ///< as of protocol::groups_of_conditions()
   std::vector<std::string> rules;  ///< the rules of exclusion, as the protocol states them
   std::vector<StudyPerson> persons;
   std::vector<GroupFit> groups;
@@ -72,6 +72,13 @@ struct Study {
   std::vector<analysis::Effect> effects;
   std::vector<analysis::Statement> statements;
 };
+
+/// Names of measures that figures of a study look for. The last four, and analysis::kBinMeasure, are followed
+/// by the bin ("1 of 5") or the lag ("0.35 s").
+inline constexpr const char *kCorrect = "proportion correct", *kMedianTime = "median response time",
+                            *kSensitivity = "d'", *kBinTime = "mean time in time bin ",
+                            *kLagSensitivity = "d' at the signal after ",
+                            *kLagTime = "response time at the signal after ";
 
 /// Number of bootstrap replicates for the intervals of single participants.
 constexpr int kStudyReplicates = 400;
@@ -81,7 +88,11 @@ inline const LevelAnalysis& analysis_of(const GroupFit& group, const SessionData
   return data.parts.empty() ? data : data.parts.at(group.part);
 }
 
-/// Analyses the trials of one participant, from all sessions together, and applies the rules.
+/// Returns the protocol, changed so that each group of participants is analysed separately.
+protocol::Protocol by_group(protocol::Protocol protocol);
+
+/// Analyses the trials of one participant, from all sessions together, with data.replicates bootstrap
+/// replicates (kStudyReplicates in the report of a study), and applies the rules.
 StudyPerson study_person(const SessionData& data, const protocol::Exclusion& rules, bool incomplete);
 
 /// Returns the rules as sentences, in the order in which the manual lists them.
@@ -98,14 +109,22 @@ std::string to_json(const Study& study);
 std::optional<Figure> group_curve_figure(const Study& study);
 std::optional<Figure> shrinkage_figure(const Study& study);
 std::optional<Figure> group_trade_figure(const Study& study);
+/// Means of the participants with their 95 % intervals in both directions, joined within a condition: the
+/// conditional accuracy functions, d' over the lags of a response signal, and the macro trade (d' against the
+/// median response time, one point for each condition).
+std::optional<Figure> group_course_figure(const Study& study);
 
 /// A table that becomes a CSV file with one header row.
 struct Table {
   std::string name;  ///< name of the CSV file
   std::string csv;
 };
+/// A text, and a number, as a field of a CSV file. A number that is not finite, or does not exist, is an empty field.
+std::string csv_field(const std::string& text);
+std::string csv_number(double value);
+std::string csv_number(const std::optional<double>& value);
 /// Tidy tables for other programs: answers.csv (one row for each participant, condition and level),
-/// measures.csv, estimates.csv (the procedures' own estimates), participants.csv and groups.csv.
+/// measures.csv, effects.csv, estimates.csv (the procedures' own estimates), participants.csv and groups.csv.
 std::vector<Table> study_tables(const Study& study);
 /// The header and the rows of trials.csv: one row for each experimental trial of a participant.
 std::string trial_table_header();

@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
+#include "station/analysis/student.hpp"
 #include "station/report/chart.hpp"
 #include "station/report/study.hpp"
+#include "station/report/words.hpp"
 
 namespace turnpoint::report {
 
@@ -28,6 +31,50 @@ analysis::Psychometric group_parameters(const analysis::MixedFit& fit) {
   for (const auto& person : fit.persons)
     guess += person.parameters.guess / static_cast<double>(fit.persons.size());
   return {fit.threshold->value, fit.slope->value, guess, fit.lapse};
+}
+
+/// The mean of the participants' proportions, with its interval, at each level that at least three of them had.
+Points answers_of(const Study& study, const GroupFit& group, int series) {
+  struct Level {
+    int trials = 0;
+    std::vector<double> shares;
+  };
+  std::map<double, Level> levels;
+  for (const auto& person : study.persons)
+    for (const auto& named : person.fits) {
+      if (!person.excluded.empty() || named.part != group.part || named.name != group.condition) continue;
+      for (const auto& point : named.fit.data) {
+        if (point.level == analysis::kNoise || point.trials == 0) continue;
+        auto& level = levels[point.level];
+        level.trials += point.trials;
+        level.shares.push_back(static_cast<double>(point.positive) / point.trials);
+      }
+    }
+  Points points;
+  points.series = series;
+  points.name = "mean of the participants";
+  for (const auto& [at, level] : levels) {
+    const auto mean = level.shares.size() < 3 ? std::nullopt : analysis::student_mean(level.shares);
+    if (!mean) continue;
+    points.x.push_back(at), points.y.push_back(mean->value);
+    points.weight.push_back(level.trials);
+    points.low.push_back(std::max(0.0, mean->interval.low));
+    points.high.push_back(std::min(1.0, mean->interval.high));
+  }
+  return points;
+}
+
+int trials_of(const Study& study) {
+  int trials = 0;
+  for (const auto& group : study.groups)
+    if (group.result.fit)
+      for (const auto& person : group.result.fit->persons) trials += person.trials;
+  return trials;
+}
+
+std::size_t persons_of(const Study& study) {
+  return static_cast<std::size_t>(std::count_if(study.persons.begin(), study.persons.end(),
+                                                [](const auto& person) { return person.excluded.empty(); }));
 }
 
 std::vector<double> levels_of(const Study& study, std::size_t part) {
@@ -61,15 +108,22 @@ std::optional<Figure> group_curve_figure(const Study& study) {
                        fit.options.scale == analysis::Scale::log10 ? AxisScale::log10 : AxisScale::linear);
     chart.y = {"Proportion " + group.positive + " (0 to 1)", -0.03, 1.03};
     if (part.design == Design::forced_choice) chart.y.low = 0.3;
-    for (const auto& person : fit.persons)
-      if (person.threshold)
-        chart.layers.push_back(curve_of(fit.options, person.parameters, chart.x, report::kNeutral));
+    for (const auto& person : fit.persons) {
+      if (!person.threshold) continue;
+      auto alone = curve_of(fit.options, person.parameters, chart.x, report::kNeutral);
+      alone.name = "participants", alone.faint = true;
+      chart.layers.push_back(std::move(alone));
+    }
     auto whole = curve_of(fit.options, group_parameters(fit), chart.x, series);
     whole.name = "group";
     chart.layers.push_back(std::move(whole));
+    if (auto answers = answers_of(study, group, series); !answers.x.empty())
+      chart.layers.push_back(std::move(answers));
     figure.charts.push_back(std::move(chart));
   }
   if (figure.charts.empty()) return std::nullopt;
+  figure.caption = Words("en")("figure.caption_group",
+                               {std::to_string(persons_of(study)), std::to_string(trials_of(study))});
   return figure;
 }
 
@@ -87,8 +141,10 @@ std::optional<Figure> shrinkage_figure(const Study& study) {
     pooled.name = "partial pooling", pooled.series = series;
     std::vector<double> all;
     double number = 0;
+    std::vector<std::string> codes;
     for (const auto& person : group.result.fit->persons) {
       ++number;
+      codes.push_back(person.person);
       if (person.threshold) {
         pooled.x.push_back(number), pooled.y.push_back(person.threshold->value);
         pooled.low.push_back(person.threshold->interval.low);
@@ -105,7 +161,7 @@ std::optional<Figure> shrinkage_figure(const Study& study) {
     if (all.empty()) continue;
     Chart chart;
     chart.title = group.condition.empty() ? "all trials" : group.condition;
-    chart.x = {"Participant (number in the table below)", 0.4, number + 0.6, AxisScale::linear, true};
+    chart.x = {"Participant", 0.4, number + 0.6, AxisScale::linear, true, codes};
     chart.y = report::fitted(analysis_of(group, study.settings).level_label, all, 0.08);
     chart.layers.push_back(Rule{Rule::Direction::horizontal, group.result.fit->threshold->value, "group"});
     chart.layers.push_back(alone);
@@ -113,6 +169,7 @@ std::optional<Figure> shrinkage_figure(const Study& study) {
     figure.charts.push_back(std::move(chart));
   }
   if (figure.charts.empty()) return std::nullopt;
+  figure.caption = Words("en")("figure.caption_shrinkage", std::to_string(persons_of(study)));
   return figure;
 }
 
@@ -121,7 +178,7 @@ std::optional<Figure> group_trade_figure(const Study& study) {
   std::vector<double> times, accuracies;
   std::vector<std::string> conditions;
   for (const auto& mean : study.means)
-    if (mean.measure == "proportion correct") conditions.push_back(mean.condition);
+    if (mean.measure == kCorrect) conditions.push_back(mean.condition);
   int series = 0;
   for (const auto& condition : conditions) {
     Points points;
@@ -131,8 +188,8 @@ std::optional<Figure> group_trade_figure(const Study& study) {
       std::optional<double> time, accuracy;
       for (const auto& measure : person.measures) {
         if (measure.condition != condition) continue;
-        if (measure.measure == "median response time") time = measure.value;
-        if (measure.measure == "proportion correct") accuracy = measure.value;
+        if (measure.measure == kMedianTime) time = measure.value;
+        if (measure.measure == kCorrect) accuracy = measure.value;
       }
       if (!time || !accuracy || !person.excluded.empty()) continue;
       points.x.push_back(*time), points.y.push_back(*accuracy);
@@ -147,9 +204,88 @@ std::optional<Figure> group_trade_figure(const Study& study) {
   chart.y = {"Proportion correct (0 to 1)", std::min(0.45, lowest - 0.03), 1.03};
   Figure figure;
   figure.title = "Speed and accuracy of each participant";
+  figure.caption = Words("en")("figure.caption_persons", std::to_string(persons_of(study)));
   figure.chart_width_px = 620;
   figure.chart_height_px = 330;
   figure.charts.push_back(std::move(chart));
+  return figure;
+}
+
+namespace {
+
+/// A chart of the means of one measure against those of another, by condition. `heights` and `times` are the
+/// names of the measures, or what these begin with.
+std::optional<Chart> course_chart(const Study& study, const std::string& heights, const std::string& times,
+                                  bool joins_conditions) {
+  Chart chart{"", {}, {}, {}};
+  std::vector<double> xs, ys;
+  std::vector<std::string> conditions;
+  std::vector<std::pair<double, double>> across_conditions;
+  for (const auto& mean : study.means)
+    if (mean.measure.starts_with(heights) &&
+        std::find(conditions.begin(), conditions.end(), mean.condition) == conditions.end())
+      conditions.push_back(mean.condition);
+  int series = 0;
+  for (const auto& condition : conditions) {
+    Points points;
+    Line line;
+    points.series = line.series = series++;
+    points.name = condition.empty() ? "all trials" : condition;
+    for (const auto& height : study.means) {
+      if (!height.measure.starts_with(heights) || height.condition != condition || !height.mean) continue;
+      const auto wanted = times + height.measure.substr(heights.size());
+      for (const auto& time : study.means) {
+        if (time.measure != wanted || time.condition != condition || !time.mean) continue;
+        const auto &x = *time.mean, &y = *height.mean;
+        points.x.push_back(x.value), points.y.push_back(y.value);
+        points.low.push_back(y.interval.low), points.high.push_back(y.interval.high);
+        Line reach;
+        reach.series = points.series;
+        reach.x = {x.interval.low, x.interval.high}, reach.y = {y.value, y.value};
+        chart.layers.push_back(reach);
+        xs.insert(xs.end(), reach.x.begin(), reach.x.end());
+        ys.insert(ys.end(), {y.interval.low, y.interval.high});
+      }
+    }
+    if (points.x.empty()) continue;
+    line.x = points.x, line.y = points.y;
+    if (joins_conditions)
+      across_conditions.emplace_back(points.x.front(), points.y.front());
+    else
+      chart.layers.push_back(line);
+    chart.layers.push_back(points);
+  }
+  if (xs.empty() || (joins_conditions && across_conditions.size() < 2)) return std::nullopt;
+  std::sort(across_conditions.begin(), across_conditions.end());
+  Line joined;
+  joined.series = report::kNeutral;
+  for (const auto& [x, y] : across_conditions) joined.x.push_back(x), joined.y.push_back(y);
+  if (joins_conditions) chart.layers.insert(chart.layers.begin(), joined);
+  chart.x = report::fitted("Response time (s)", xs, 0.1);
+  chart.y = report::fitted("", ys, 0.08);
+  return chart;
+}
+
+}  // namespace
+
+std::optional<Figure> group_course_figure(const Study& study) {
+  Figure figure;
+  const auto add = [&](const char* title, const char* y, const std::string& heights, const std::string& times,
+                       bool joins_conditions) {
+    auto chart = course_chart(study, heights, times, joins_conditions);
+    if (!chart) return;
+    chart->title = title, chart->y.label = y;
+    figure.charts.push_back(std::move(*chart));
+  };
+  add("Conditional accuracy", "Proportion correct (0 to 1)", analysis::kBinMeasure, kBinTime, false);
+  add("Sensitivity at the signal", "Sensitivity d\u2032", kLagSensitivity, kLagTime, false);
+  if (!study.settings.signalled)
+    add("Sensitivity over the conditions", "Sensitivity d\u2032", kSensitivity, kMedianTime, true);
+  if (figure.charts.empty()) return std::nullopt;
+  figure.title = "Accuracy over time, means of the participants";
+  figure.columns = figure.charts.size() > 1 ? 2 : 1;
+  figure.chart_width_px = figure.columns > 1 ? 400 : 620;
+  figure.chart_height_px = 330;
   return figure;
 }
 

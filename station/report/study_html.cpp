@@ -108,7 +108,7 @@ std::string group_section(const Study& study) {
 std::string means_section(const Study& study) {
   if (study.means.empty()) return "";
   std::string html = "<h2>Speed, accuracy and other measures by condition</h2>\n" +
-                     picture(group_trade_figure(study)) +
+                     picture(group_trade_figure(study)) + picture(group_course_figure(study)) +
                      "<table><tr><th>Measure</th><th>Condition</th><th>Participants</th><th>Mean</th>"
                      "<th>Standard deviation</th></tr>";
   for (const auto& mean : study.means)
@@ -117,15 +117,32 @@ std::string means_section(const Study& study) {
             (mean.sd ? number(*mean.sd, 2) : "\u2013") + "</td></tr>";
   html += "</table>\n";
   if (study.effects.empty()) return html;
-  html +=
-      "<h2>Effects</h2>\n<table><tr><th>Measure</th><th>Difference</th><th>Participants</th><th>Mean "
-      "difference</th><th>In standard deviations</th></tr>";
+  const auto holm = study.settings.holm;
+  const bool p_values = holm != protocol::Holm::none;
+  const auto p_cell = [](const std::optional<double>& p) {
+    return "<td class=\"n\">" + (p ? number(*p, 2) : "\u2013") + "</td>";
+  };
+  html += std::string("<h2>Effects</h2>\n<table><tr><th>Measure</th><th>Difference</th><th>Participants</th>"
+                      "<th>Mean difference</th><th>In standard deviations</th>") +
+          (p_values ? "<th>p</th><th>p, corrected</th>" : "") + "</tr>";
   for (const auto& effect : study.effects)
     html += "<tr><td>" + with_unit(effect.measure, effect.unit) + "</td><td>" +
             escaped(name_of(effect.second)) + " \u2212 " + escaped(name_of(effect.first)) +
             (effect.between_groups ? ", groups" : "") + "</td>" + count_cell(effect.persons) +
             cell(effect.difference) + "<td class=\"n\">" +
-            (effect.standardised ? number(*effect.standardised, 2) : "\u2013") + "</td></tr>";
+            (effect.standardised ? number(*effect.standardised, 2) : "\u2013") + "</td>" +
+            (p_values ? p_cell(effect.difference ? effect.difference->p : std::nullopt) +
+                            p_cell(effect.corrected_p)
+                      : "") +
+            "</tr>";
+  const std::string correction =
+      holm == protocol::Holm::none
+          ? "The intervals are not corrected for the number of comparisons."
+          : std::string("p values are two-sided, of Student\u2019s or Welch\u2019s t; the last column corrects "
+                        "them by Holm\u2019s method for the number of ") +
+                (holm == protocol::Holm::all ? "all effects in this table"
+                                             : "pairs of conditions that a measure compares") +
+                ". The intervals are not corrected.";
   return html +
          "</table>\n<p class=\"soft\">Each participant counts once, with estimates from the "
          "participant\u2019s own trials. 95 % intervals of means: Student\u2019s t. Effects within "
@@ -134,8 +151,8 @@ std::string means_section(const Study& study) {
          "the means, in pooled standard deviations (d<sub>s</sub>). The balanced integration score (BIS) is "
          "the z "
          "score of accuracy minus that of the mean time of right answers; both standardise over all "
-         "participants who count and all their conditions. The intervals are not corrected for the number of "
-         "comparisons.</p>\n";
+         "participants who count and all their conditions. " +
+         correction + "</p>\n";
 }
 
 /// The procedures' own estimates, session by session.

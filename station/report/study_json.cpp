@@ -117,6 +117,8 @@ std::string to_json(const Study& study) {
                                {"participants", effect.persons},
                                {"difference", value(effect.difference)},
                                {"standardised", value(effect.standardised)},
+                               {"p", effect.difference ? value(effect.difference->p) : Json(nullptr)},
+                               {"corrected_p", value(effect.corrected_p)},
                                {"between_groups", effect.between_groups}});
   json["statements"] = value(study.statements);
   return json.dump(2, ' ', false, Json::error_handler_t::replace);

@@ -6,9 +6,7 @@
 
 namespace turnpoint::report {
 
-namespace {
-
-/// A field of a CSV file (RFC 4180).
+/// RFC 4180.
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -17,7 +15,10 @@ std::string csv_field(const std::string& text) {
 }
 
 std::string csv_number(double value) { return std::isfinite(value) ? core::number(value, 12) : ""; }
+
 std::string csv_number(const std::optional<double>& value) { return value ? csv_number(*value) : ""; }
+
+namespace {
 
 const char* yes_or_no(bool value) { return value ? "yes" : "no"; }
 
@@ -67,6 +68,23 @@ std::string measures_table(const Study& study) {
     csv += csv_field(person->person) + "," + yes_or_no(!person->excluded.empty()) + "," +
            csv_field(measure->condition) + "," + csv_field(measure->measure) + "," +
            csv_field(measure->unit) + "," + csv_number(measure->value) + "\n";
+  return csv;
+}
+
+std::string effects_table(const Study& study) {
+  std::string csv =
+      "measure,unit,first,second,participants,difference,low_95,high_95,standardised,between_groups,p,"
+      "corrected_p\n";
+  for (const auto& effect : study.effects) {
+    const auto& gap = effect.difference;
+    csv += csv_field(effect.measure) + "," + csv_field(effect.unit) + "," + csv_field(effect.first) + "," +
+           csv_field(effect.second) + "," + std::to_string(effect.persons) + "," +
+           (gap ? csv_number(gap->value) + "," + csv_number(gap->interval.low) + "," +
+                      csv_number(gap->interval.high)
+                : ",,") +
+           "," + csv_number(effect.standardised) + "," + yes_or_no(effect.between_groups) + "," +
+           (gap ? csv_number(gap->p) : "") + "," + csv_number(effect.corrected_p) + "\n";
+  }
   return csv;
 }
 
@@ -132,6 +150,7 @@ std::string groups_table(const Study& study) {
 std::vector<Table> study_tables(const Study& study) {
   return {{"answers.csv", answers_table(study)},
           {"measures.csv", measures_table(study)},
+          {"effects.csv", effects_table(study)},
           {"estimates.csv", estimates_table(study)},
           {"participants.csv", participants_table(study)},
           {"groups.csv", groups_table(study)}};

@@ -1,8 +1,10 @@
 #include "station/report/summary.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
+#include "station/analysis/proportion.hpp"
 #include "station/analysis/psychometric_posterior.hpp"
 #include "station/core/number.hpp"
 
@@ -110,6 +112,7 @@ void hide(const SessionData& data, analysis::Trade& trade) {
     const auto& name = difference.measure;
     return ((name == "boundary" || name == "time outside the decision" || name == "drift") &&
             !shows(data, "ez")) ||
+           (name.starts_with(analysis::kBinMeasure) && !shows(data, "caf")) ||
            (name == "LISAS" && !shows(data, "lisas")) ||
            (name == "inverse efficiency" && !shows(data, "ies"));
   });
@@ -135,8 +138,34 @@ std::vector<TrialRecord> around_cut(const SessionData& data) {
 }
 
 std::vector<analysis::Detection> detections_of(const SessionData& data) {
-  if (!data.scored || data.choices.size() > 2 || !data.deciding.empty() || !shows(data, "dprime")) return {};
+  if (!data.scored || data.choices.size() != 2 || !data.deciding.empty()) return {};
   return analysis::detect(around_cut(data), data.conditions, detecting(data), positive(data));
+}
+
+/// Adds d' over all levels to each condition, and its differences: the macro trade.
+void add_sensitivity(const SessionData& data, analysis::Trade& trade) {
+  if (data.signalled || !data.parts.empty()) return;  // lags, or levels of several factors, are not pooled
+  for (const auto& detection : detections_of(data))
+    for (auto& entry : trade.instructions)
+      if (!detection.level && detection.condition == entry.instruction) entry.d_prime = detection.d_prime;
+  const auto& conditions = trade.instructions;
+  for (std::size_t a = 0; a < conditions.size(); ++a)
+    for (std::size_t b = a + 1; b < conditions.size(); ++b) {
+      if (!conditions[a].d_prime || !conditions[b].d_prime) continue;
+      auto gap = analysis::difference_of(*conditions[a].d_prime, *conditions[b].d_prime);
+      const double error = (gap.interval.high - gap.interval.low) / (2 * analysis::kZ95);
+      gap.p = 2 * analysis::normal_cdf(-std::fabs(gap.value) / error);
+      trade.differences.push_back({conditions[a].instruction, conditions[b].instruction, "d'", "SD", gap});
+    }
+}
+
+/// Corrects the p values of differences between conditions.
+void correct_differences(const SessionData& data, std::vector<analysis::Difference>& differences) {
+  std::vector<analysis::Tested> tests;
+  for (const auto& one : differences)
+    tests.push_back({one.measure, one.estimate ? one.estimate->p : std::nullopt});
+  const auto p = corrected(data, std::move(tests));
+  for (std::size_t i = 0; i < p.size(); ++i) differences[i].corrected_p = p[i];
 }
 
 }  // namespace
@@ -152,6 +181,44 @@ SessionData part_of(const SessionData& data, std::size_t part) {
   one.parts.clear();
   std::erase_if(one.trials, [part](const auto& trial) { return trial.part != part; });
   return one;
+}
+
+std::vector<std::optional<double>> corrected(const SessionData& data, std::vector<analysis::Tested> tests) {
+  if (data.holm == protocol::Holm::none) return std::vector<std::optional<double>>(tests.size());
+  if (data.holm == protocol::Holm::all)
+    for (auto& test : tests) test.family.clear();
+  return analysis::holm(tests);
+}
+
+analysis::Trade trade_of(const SessionData& data, const analysis::TradeOptions& options) {
+  auto trade = analysis::trade(data.trials, options);
+  hide(data, trade);
+  add_sensitivity(data, trade);
+  correct_differences(data, trade.differences);
+  return trade;
+}
+
+std::vector<analysis::SpeedAccuracyCurve> curves_of(const SessionData& data) {
+  std::vector<analysis::SpeedAccuracyCurve> curves;
+  for (std::size_t i = 0; i < std::max<std::size_t>(1, data.parts.size()); ++i) {
+    const auto part = part_of(data, i);
+    if (!part.scored || part.choices.size() != 2 || !shows(part, "response-signal")) continue;
+    for (auto& curve :
+         analysis::response_signal(around_cut(part), part.conditions, detecting(part), positive(part)))
+      curves.push_back(std::move(curve));
+  }
+  return curves;
+}
+
+std::vector<analysis::CurveDifference> curve_differences_of(
+    const SessionData& data, const std::vector<analysis::SpeedAccuracyCurve>& curves) {
+  auto differences = analysis::curve_differences(curves);
+  std::vector<analysis::Tested> tests;
+  for (const auto& one : differences)
+    for (std::size_t i = 0; i < one.p.size(); ++i) tests.push_back({std::to_string(i), one.p[i]});
+  const auto p = corrected(data, std::move(tests));
+  for (std::size_t i = 0; i < p.size(); ++i) differences[i / 3].corrected_p[i % 3] = p[i];
+  return differences;
 }
 
 std::vector<NamedFit> fits_of(const SessionData& data) {
@@ -271,12 +338,11 @@ void add_levels(const SessionData& data, Summary& summary) {
     append(analysis::confusions(data.trials, data.conditions, static_cast<int>(data.choices.size())),
            summary.confusions);
   const auto detections = detections_of(data);
-  if (data.design == Design::yes_no && !detections.empty())
-    append(analysis::rocs(data.trials, data.conditions, data.positive), summary.rocs);
-  append(detections, summary.detections);
-  if (data.scored && data.choices.size() == 2 && shows(data, "response-signal"))
-    append(analysis::response_signal(around_cut(data), data.conditions, detecting(data), positive(data)),
-           summary.curves);
+  if (shows(data, "dprime")) {
+    if (data.design == Design::yes_no && !detections.empty())
+      append(analysis::rocs(data.trials, data.conditions, data.positive), summary.rocs);
+    append(detections, summary.detections);
+  }
   if (!data.deciding.empty() && shows(data, "dprime"))
     append(analysis::discriminate(data.trials, data.conditions, data.deciding, data.alternatives),
            summary.discriminations);
@@ -299,9 +365,10 @@ Summary summarise(const SessionData& data) {
   if (data.choices.size() <= 2) summary.bias = analysis::choice_bias(data.trials);
   auto how = trade_options(data);
   how.halves = shows(data, "ez");
-  summary.trade = analysis::trade(data.trials, how);
-  hide(data, summary.trade);
-  if (data.scored && summary.trade.instructions.size() > 1 && shows(data, "bis"))
+  summary.trade = trade_of(data, how);
+  summary.curves = curves_of(data);
+  summary.curve_differences = curve_differences_of(data, summary.curves);
+  if (data.scored && (data.show || summary.trade.instructions.size() > 1) && shows(data, "bis"))
     summary.trade.statements.push_back({"bis-study", phrase("statement.bis_study")});
   if (shows(data, "psychometric")) summary.fits = fits_of(data);
   return summary;

@@ -38,6 +38,7 @@ struct Summary {
   std::map<int, analysis::Proportion> confidence;
   analysis::Fatigue fatigue;
   analysis::Trade trade;
+  std::vector<analysis::CurveDifference> curve_differences;  ///< one for each pair of `curves`
   std::vector<analysis::Detection> detections;  ///< d' and criterion, if the report shows them
   std::vector<analysis::RatedDetection> rocs;   ///< only for yes/no with confidence, if the report shows d'
   std::vector<analysis::Discrimination> discriminations;  ///< d' computed with each model in data.deciding
@@ -73,6 +74,16 @@ core::Phrase describe_intervals(const NamedFit& named, const SessionData& data);
 
 /// The options for analysing the speed-accuracy trade-off of these data.
 analysis::TradeOptions trade_options(const SessionData& data);
+
+/// Speed and accuracy by condition, with what the protocol shows and its corrections.
+analysis::Trade trade_of(const SessionData& data, const analysis::TradeOptions& options);
+
+/// The curves at a response signal; empty if the protocol has none or does not show them.
+std::vector<analysis::SpeedAccuracyCurve> curves_of(const SessionData& data);
+
+/// The differences of curves, with the corrections of the protocol.
+std::vector<analysis::CurveDifference> curve_differences_of(
+    const SessionData& data, const std::vector<analysis::SpeedAccuracyCurve>& curves);
 
 /// Analyses one session and computes the parts that the protocol chooses. The result depends only on `data`,
 /// seed included. Takes about 0.3 s with 1000 replicates.

@@ -59,7 +59,10 @@ void Svg::begin(double width, double height, const std::string& title) {
   // One HTML page may contain several SVG documents. A hash of title and size at the beginning of each id
   // keeps ids unique.
   prefix_ = "c" + core::sha256(title + px(width) + px(height)).substr(0, 8);
-  body_ = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + px(width) + "\" height=\"" + px(height) +
+  const auto size = [this](double value_px) {
+    return unit_ == Unit::px ? px(value_px) : px(value_px * 25.4 / 96) + "mm";
+  };
+  body_ = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + size(width) + "\" height=\"" + size(height) +
           "\" viewBox=\"0 0 " + px(width) + " " + px(height) +
           "\" role=\"img\" font-family=\"Inter, 'DejaVu Sans', Helvetica, Arial, sans-serif\">\n<title>" +
           escaped(title) + "</title>\n";

@@ -13,6 +13,10 @@ std::string escaped(const std::string& text);
 /// std::invalid_argument for a coordinate that is not finite.
 class Svg : public Canvas {
  public:
+  /// What the size of the document is given in: px for a page, mm for a paper.
+  enum class Unit { px, mm };
+  explicit Svg(Unit unit = Unit::px) : unit_(unit) {}
+
   void begin(double width, double height, const std::string& title) override;
   void line(Point from, Point to, const Paint& paint) override;
   void polyline(const std::vector<Point>& points, const Paint& paint) override;
@@ -30,6 +34,7 @@ class Svg : public Canvas {
   void points(const char* element, const std::vector<Point>& list, const Paint& paint);
   std::string body_, prefix_;
   int clips_ = 0;
+  Unit unit_;
 };
 
 }  // namespace turnpoint::report

@@ -55,10 +55,15 @@ std::optional<Figure> threshold_curve_figure(const Summary& summary) {
   figure.title = "Threshold along the second dimension";
   figure.chart_width_px = 620;
   figure.chart_height_px = 340;
-  figure.caption = Words(summary.data.language)("figure.areas");
-  for (const auto& curve : summary.data.threshold_curves)
+  std::size_t trials = 0;
+  for (const auto& curve : summary.data.threshold_curves) {
     figure.charts.push_back(panel_of(curve, summary.data.level_label));
+    trials += curve.trials.size();
+  }
   if (figure.charts.empty()) return std::nullopt;
+  const Words words(summary.data.language);
+  figure.caption = words("figure.caption_trials", {summary.data.participant, std::to_string(trials)}) + " " +
+                   words.together({"figure.areas", "figure.caption_posterior"});
   return figure;
 }
 

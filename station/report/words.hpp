@@ -3,9 +3,20 @@
 #include <string>
 #include <utility>
 
+#include "station/analysis/estimate.hpp"
+#include "station/core/number.hpp"
 #include "station/core/texts.hpp"
 
 namespace turnpoint::report {
+
+/// Formats an estimate with the digits that its interval justifies, as tables show it, and with a typographic minus
+/// sign. Without an interval it has three digits.
+inline std::string in_digits(double value, const analysis::Interval* interval) {
+  auto text = interval == nullptr
+                  ? core::number(value, 3)
+                  : core::estimated(value, core::uncertainty(value, interval->low, interval->high));
+  return text.starts_with('-') ? "\u2212" + text.substr(1) : text;
+}
 
 /// Says the words of figures and tables in one language.
 class Words {
@@ -13,6 +24,12 @@ class Words {
   explicit Words(std::string language) : language_(std::move(language)) {}
   std::string operator()(const char* key) const { return core::text(key, language_); }
   std::string operator()(const core::Phrase& phrase) const { return core::say(phrase, language_); }
+  /// These texts, one after another.
+  std::string together(std::initializer_list<const char*> keys) const {
+    std::string all;
+    for (const auto* key : keys) all += (all.empty() ? "" : " ") + (*this)(key);
+    return all;
+  }
   /// The text with `value` in its place %1.
   std::string operator()(const char* key, const std::string& value) const {
     return core::say({key, "", {core::plain(value)}}, language_);

@@ -155,7 +155,7 @@ Solution Planner::State::solve(const Scene& scene, const std::vector<WantedTone>
   Solution solution;
   std::vector<Tone> tones;
   for (const auto& tone : wanted) {
-    tones.push_back({tone.frequency_Hz, 1, 0});
+    tones.push_back({on_grid(tone.frequency_Hz, kGridPerHz), 1, 0});
     solution.frequencies_Hz.push_back(tone.frequency_Hz);
   }
   // Zones are designed with the first mode. Their boundary has the error of that model, whichever model is
@@ -166,10 +166,13 @@ Solution Planner::State::solve(const Scene& scene, const std::vector<WantedTone>
     solution.choice = choose(scene, tones, Model::mode);
   for (std::size_t i = 0; i < tones.size(); ++i) {
     solution.frequencies_Hz[i] = on_grid(solution.frequencies_Hz[i], kGridPerHz);
+    if (tones[i].frequency_Hz != solution.frequencies_Hz[i]) solution.choice.solved.clear();
     tones[i].frequency_Hz = solution.frequencies_Hz[i];
   }
   solution.fields = physics::evaluate_tones(surface, tones, physics::linspace_points(surface, profile_points),
-                                            at_least_mode(solution.choice.model), physics::Normalise::none);
+                                            at_least_mode(solution.choice.model), physics::Normalise::none,
+                                            solution.choice.solved);
+  solution.choice.solved.clear();
   solution.uncertainty_m = boundary_uncertainty_m(surface, scene, wanted);
   solution.warnings = physics::tone_warnings(surface, tones);
   return solution;

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <string>
 
 #include "station/core/elementary.hpp"
@@ -212,9 +211,6 @@ int Observer::confidence(const Question& q, int choice, core::Draws& draws) cons
   return 1 + std::min(q.confidence - 1, static_cast<int>(std::max(0.0, evidence) / kRatingStep_sd));
 }
 
-/// Returns the drift in s^-1/2. What a positive drift leads to depends on q.decides: the right answer
-/// (right_answer), the answer that is right for levels above the observer's bias (side), "yes" (presence), or
-/// the category that contains the level rather than its nearest neighbour (category).
 double Observer::drift(const Question& q) const {
   double half_logit = 0;
   switch (q.decides) {
@@ -249,7 +245,6 @@ double Observer::upper(const Question& q, double drift) const {
   return upper_probability(drift, bound(q.deadline_s), parameters_.start_range);
 }
 
-/// Returns the mean time from the response signal to the answer.
 double Observer::latency_s(const Question& q) const {
   const double usual_s = 0.5 * parameters_.residual_s + parameters_.travel_s;
   return q.deadline_s > 0 ? std::min(usual_s, 0.8 * (q.deadline_s - *q.signal_s)) : usual_s;
@@ -377,48 +372,115 @@ void check(const Parameters& p) {
 
 }  // namespace
 
-Parameters parse(const std::string& text) {
-  Parameters p;
-  double threshold = 0, floor = 0;
-  const std::map<std::string, double*> known{{"threshold", &threshold},
-                                             {"gradient", &p.gradient},
-                                             {"floor", &floor},
-                                             {"slope", &p.slope},
-                                             {"lapse", &p.lapse},
-                                             {"bias", &p.bias},
-                                             {"criterion", &p.criterion},
-                                             {"scatter", &p.scatter},
-                                             {"bound", &p.bound},
-                                             {"residual", &p.residual_s},
-                                             {"travel", &p.travel_s},
-                                             {"drift_sd", &p.drift_sd},
-                                             {"start_range", &p.start_range},
-                                             {"residual_range", &p.residual_range_s},
-                                             {"anticipation", &p.anticipation}};
-  const std::string allowed =
-      "sim, or sim: and threshold, gradient, floor, slope, lapse, bias, criterion, scatter, bound, residual, "
-      "travel, "
-      "drift_sd, start_range, residual_range, anticipation with numbers, as in sim:threshold=6,slope=1.2";
-  const auto colon = text.find(':');
-  if (text.substr(0, colon) != "sim") throw core::UsageError("--observer " + text + ": " + allowed);
-  for (std::size_t at = colon; at != std::string::npos;) {
-    const auto end = text.find(',', at + 1);
-    const auto part = text.substr(at + 1, end == std::string::npos ? end : end - at - 1);
+namespace {
+
+/// A parameter by its name. Of `number` and `maybe` one is set.
+struct Key {
+  const char* name;
+  double Parameters::*number;
+  std::optional<double> Parameters::*maybe;
+  bool in_its_unit;  ///< people differ in its value, not in its logarithm
+};
+constexpr Key kKeys[] = {{"threshold", nullptr, &Parameters::threshold, true},
+                         {"gradient", &Parameters::gradient, nullptr, true},
+                         {"floor", nullptr, &Parameters::floor, true},
+                         {"slope", &Parameters::slope, nullptr, false},
+                         {"lapse", &Parameters::lapse, nullptr, false},
+                         {"bias", &Parameters::bias, nullptr, true},
+                         {"criterion", &Parameters::criterion, nullptr, true},
+                         {"scatter", &Parameters::scatter, nullptr, false},
+                         {"bound", &Parameters::bound, nullptr, false},
+                         {"residual", &Parameters::residual_s, nullptr, false},
+                         {"travel", &Parameters::travel_s, nullptr, false},
+                         {"drift_sd", &Parameters::drift_sd, nullptr, false},
+                         {"start_range", &Parameters::start_range, nullptr, false},
+                         {"residual_range", &Parameters::residual_range_s, nullptr, false},
+                         {"anticipation", &Parameters::anticipation, nullptr, false}};
+
+const Key* key_of(const std::string& name) {
+  const auto* found = std::find_if(std::begin(kKeys), std::end(kKeys),
+                                   [&name](const Key& key) { return name == key.name; });
+  return found == std::end(kKeys) ? nullptr : found;
+}
+
+std::string all_keys() {
+  std::string names;
+  for (const auto& key : kKeys) names += (names.empty() ? "" : ", ") + std::string(key.name);
+  return names;
+}
+
+/// Calls take(key, value) for each `name=number` of a list with commas. Throws core::UsageError, which begins
+/// with the option's name and ends with what is allowed.
+template <class Take>
+void read_list(const std::string& list, const char* option, const std::string& allowed, const Take& take) {
+  for (std::size_t at = 0; at != std::string::npos;) {
+    const auto end = list.find(',', at);
+    const auto part = list.substr(at, end == std::string::npos ? end : end - at);
     const auto equals = part.find('=');
-    const auto found = known.find(part.substr(0, equals));
+    const auto* found = key_of(part.substr(0, equals));
     double value = 0;
     const char* first = part.data() + (equals == std::string::npos ? part.size() : equals + 1);
     const auto [last, error] = std::from_chars(first, part.data() + part.size(), value);
-    if (found == known.end() || error != std::errc{} || last != part.data() + part.size() ||
-        !std::isfinite(value))
-      throw core::UsageError("--observer: \"" + part + "\" is not understood; write " + allowed);
-    *found->second = value;
-    if (found->first == "threshold") p.threshold = value;
-    if (found->first == "floor") p.floor = value;
-    at = end;
+    if (found == nullptr || error != std::errc{} || last != part.data() + part.size() || !std::isfinite(value))
+      throw core::UsageError(std::string(option) + ": \"" + part + "\" is not understood; write " + allowed);
+    take(*found, value);
+    at = end == std::string::npos ? end : end + 1;
   }
+}
+
+}  // namespace
+
+Parameters parse(const std::string& text) {
+  Parameters p;
+  const std::string allowed =
+      "sim, or sim: and " + all_keys() + " with numbers, as in sim:threshold=6,slope=1.2";
+  const auto colon = text.find(':');
+  if (text.substr(0, colon) != "sim") throw core::UsageError("--observer " + text + ": " + allowed);
+  if (colon == std::string::npos) return p;
+  read_list(text.substr(colon + 1), "--observer", allowed, [&p](const Key& key, double value) {
+    if (key.maybe != nullptr)
+      p.*key.maybe = value;
+    else
+      p.*key.number = value;
+  });
   check(p);
   return p;
+}
+
+Spread parse_spread(const std::string& text) {
+  Spread spread;
+  read_list(text, "--between", all_keys() + " with standard deviations, as in threshold=0.03,bound=0.15",
+            [&spread](const Key& key, double value) {
+              if (!(value > 0))
+                throw core::UsageError(std::string("--between: the standard deviation of ") + key.name +
+                                       " must be above 0");
+              spread[key.name] = value;
+            });
+  return spread;
+}
+
+Parameters draw_person(const Parameters& middle, const Spread& spread, core::Draws& draws) {
+  Parameters person = middle;
+  for (const auto& key : kKeys) {
+    const double z = draws.normal();  // drawn for each parameter, so that one more to vary changes no other
+    const auto found = spread.find(key.name);
+    if (found == spread.end()) continue;
+    if (key.maybe != nullptr && !(middle.*key.maybe))
+      throw core::UsageError(std::string("--between: people cannot differ in ") + key.name +
+                             " if --observer does not say it; write sim:" + key.name + "=...");
+    double& value = key.maybe != nullptr ? *(person.*key.maybe) : person.*key.number;
+    const double usual = value;
+    if (!key.in_its_unit) {
+      value *= core::exp(found->second * z);
+      continue;
+    }
+    value += found->second * z;
+    if (key.maybe != nullptr && usual != 0 && value / usual < 0.1) value = 0.1 * usual;
+  }
+  person.lapse = std::min(person.lapse, 1.0), person.anticipation = std::min(person.anticipation, 1.0);
+  person.start_range = std::min(person.start_range, 0.95);
+  person.residual_range_s = std::min(person.residual_range_s, 2 * person.residual_s);
+  return person;
 }
 
 }  // namespace turnpoint::simulation

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -59,6 +60,18 @@ struct Parameters {
 /// Reads `sim` or `sim:threshold=6,slope=1.2,lapse=0.02,bias=0,...`. Throws core::UsageError that names the
 /// wrong part and says what is allowed.
 Parameters parse(const std::string& text);
+
+/// How much people differ in the parameters of an observer, by their names in parse(). The standard deviation
+/// of `threshold`, `gradient`, `floor`, `bias` and `criterion` is in their own unit, that of all others is the
+/// standard deviation of the natural logarithm.
+using Spread = std::map<std::string, double>;
+
+/// Reads `threshold=0.03,bound=0.15,residual=0.1`. Throws core::UsageError.
+Spread parse_spread(const std::string& text);
+
+/// Draws a person from people whose middle is `middle`. A threshold keeps its sign, and is never nearer to 0
+/// than a tenth of the middle. Throws core::UsageError if a parameter is to vary that `middle` leaves open.
+Parameters draw_person(const Parameters& middle, const Spread& spread, core::Draws& draws);
 
 /// What decides which answer is given.
 enum class Decides {
@@ -167,6 +180,12 @@ class Observer {
   double bound(double deadline_s) const;
   /// Returns the mean non-decision time, in s.
   double nondecision_s() const { return parameters_.residual_s + parameters_.travel_s; }
+  /// Returns the mean time from the response signal to the answer, in s.
+  double latency_s(const Question& question) const;
+  /// Returns the mean drift in s^-1/2. What a positive drift leads to depends on question.decides: the right
+  /// answer (right_answer), the answer that is right for levels above the observer's bias (side), "yes"
+  /// (presence), or the category that contains the level rather than its nearest neighbour (category).
+  double drift(const Question& question) const;
   /// Moves the slider in ever smaller steps to where the stimuli seem equal: the bias away from where they
   /// are. The settings follow a normal distribution around that place; its 75 % point is one threshold above
   /// it (without a threshold: a tenth of the range). In a lapse, the setting is anywhere in the range.
@@ -175,11 +194,9 @@ class Observer {
  private:
   /// Returns the probability that the evidence decides for the upper boundary.
   double upper(const Question& question, double drift) const;
-  double latency_s(const Question& question) const;
   double threshold(const Question& question) const;
   double bias(const Question& question) const;
   double strength(const Question& question, double from) const;
-  double drift(const Question& question) const;
   double sensitivity(const Question& question) const;
   double centre(const Question& question) const;
   double category_sd(const Question& question) const;

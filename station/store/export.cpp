@@ -14,6 +14,7 @@
 #include <tuple>
 #include <utility>
 
+#include "station/core/letters.hpp"
 #include "station/core/usage_error.hpp"
 #include "station/store/export_files.hpp"
 #include "station/store/export_tables.hpp"
@@ -21,6 +22,7 @@
 #include "station/store/open.hpp"
 #include "station/store/sqlite.hpp"
 #include "station/store/whole_file.hpp"
+#include "station/store/withdraw.hpp"
 
 namespace turnpoint::store {
 namespace {
@@ -88,6 +90,8 @@ void check_style(const ExportOptions& options) {
     refuse(fmt::format(
         "the separator and the decimal mark are both '{}'; with a decimal comma, use the separator ';'",
         options.separator));
+  if (options.byte_order_mark && options.format != ExportFormat::csv)
+    refuse("--byte-order-mark is only for --format csv");
   if (options.format == ExportFormat::bids && (options.separator != ',' || options.decimal != '.'))
     refuse(
         "BIDS tables always use tabs and decimal points; --separator and --decimal are for the other "
@@ -112,7 +116,8 @@ std::vector<ProtocolSelection> select(Database& database, const std::string& dir
   std::map<std::string, std::string> owners;
   for (auto& [id, selection] : protocols) {
     const auto folder = file_name_of(id);
-    if (const auto [owner, fresh] = owners.emplace(folder, id); !fresh)
+    // some file systems ignore case
+    if (const auto [owner, fresh] = owners.emplace(core::lower(folder), id); !fresh)
       throw StoreError(ErrorKind::conflict,
                        fmt::format("export: the protocols \"{}\" and \"{}\" would share the folder "
                                    "{}; export one at a time with --protocol",
@@ -216,9 +221,10 @@ void export_csv(Database& database, const ProtocolSelection& selection, const Ta
   estimates.finish(files);
 }
 
-void check_csv_folder(const ProtocolSelection& selection, bool whole) {
+/// Refuses to write over sessions that are not part of this export, unless they were withdrawn.
+void check_csv_folder(Database& database, const ProtocolSelection& selection) {
   const auto list = selection.folder + "/sessions.csv";
-  if (whole || !file_exists(list)) return;
+  if (!file_exists(list)) return;
   std::ifstream file(list, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   // The columns may be separated by any character; session ids are UUIDs, which are found anywhere.
@@ -227,11 +233,12 @@ void check_csv_folder(const ProtocolSelection& selection, bool whole) {
   for (std::sregex_iterator found(text.begin(), text.end(), uuid), end; found != end; ++found)
     lost.insert(found->str());
   for (const auto& session : selection.sessions) lost.erase(session.session_id);
+  for (const auto& withdrawn : list_tombstones(database)) lost.erase(withdrawn.session_id);
   if (!lost.empty())
     throw StoreError(
         ErrorKind::conflict,
         fmt::format("export: {} has {} sessions that are not part of this export, such as {}; export "
-                    "all sessions of the protocol, or name an empty folder",
+                    "all sessions of the protocol from their database, or name an empty folder",
                     selection.folder, lost.size(), *lost.begin()));
 }
 
@@ -260,8 +267,7 @@ std::vector<ExportedFile> export_data(const std::string& path, const std::string
   for (const auto& selection : selections) locks.emplace_back(selection.folder);
   // Before anything is written, check all folders.
   for (const auto& selection : selections) {
-    if (options.format == ExportFormat::csv)
-      check_csv_folder(selection, options.session_id.empty() && options.participant.empty());
+    if (options.format == ExportFormat::csv) check_csv_folder(database, selection);
     if (options.format == ExportFormat::bids) check_bids_folder(selection);
     if (options.format == ExportFormat::signals) check_signals_folder(database, selection);
   }
@@ -269,7 +275,8 @@ std::vector<ExportedFile> export_data(const std::string& path, const std::string
     // Mark the folder as incomplete. Until the last file is written, old and new files may be mixed in it.
     const auto mark = selection.folder + "/EXPORT-INCOMPLETE.txt";
     write_file(mark, "An export into this folder did not finish. Export again.\n");
-    const TableStyle style{TableStyle::Kind::rfc4180, options.separator, options.decimal};
+    const TableStyle style{TableStyle::Kind::rfc4180, options.separator, options.decimal,
+                           options.byte_order_mark};
     switch (options.format) {
       case ExportFormat::csv:
         export_csv(database, selection, style, files);

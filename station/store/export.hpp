@@ -14,6 +14,7 @@ struct ExportOptions {
   ExportFormat format = ExportFormat::csv;
   char separator = ',';
   char decimal = '.';
+  bool byte_order_mark = false;  ///< only for ExportFormat::csv
 };
 
 struct ExportedFile {

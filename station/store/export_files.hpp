@@ -113,10 +113,10 @@ class FolderLock {
 };
 
 /// These functions throw StoreError (conflict) if the folder has an earlier export with sessions that are not
-/// part of this one. They change nothing. A part of the sessions would otherwise replace all of them, and
-/// readers would take the files of the other sessions for part of this export. `whole`: the options choose
-/// all sessions of the protocol; a CSV export of all sessions may replace any other.
-void check_csv_folder(const ProtocolSelection& selection, bool whole);
+/// part of this one. They change nothing. A part of the sessions, or those of another database, would
+/// otherwise replace all of them, and readers would take the files of the other sessions for part of this
+/// export. Sessions that were withdrawn from the database may disappear from CSV tables.
+void check_csv_folder(Database& database, const ProtocolSelection& selection);
 void check_bids_folder(const ProtocolSelection& selection);
 void check_signals_folder(Database& database, const ProtocolSelection& selection);
 

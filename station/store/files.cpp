@@ -32,10 +32,13 @@ struct stat status_of(int descriptor, const std::string& path) {
 
 /// If root created the file, gives it to the owner of its folder. A file of an ordinary user keeps its owner.
 void give_open_file_to_owner_of_folder(int descriptor, const std::string& path) {
-  if (::geteuid() != 0 || status_of(descriptor, path).st_uid != 0) return;
+  const auto file = status_of(descriptor, path);
+  if (::geteuid() != 0 || file.st_uid != 0) return;
   struct stat folder {};
   const auto name = folder_of(path);
-  if (::stat(name.c_str(), &folder) != 0 || ::fchown(descriptor, folder.st_uid, folder.st_gid) != 0)
+  const bool known = ::stat(name.c_str(), &folder) == 0;
+  if (known && file.st_uid == folder.st_uid && file.st_gid == folder.st_gid) return;
+  if (!known || ::fchown(descriptor, folder.st_uid, folder.st_gid) != 0)
     fail_system(kind_of_errno(errno), "owner of " + path, errno,
                 "run this command as the user who owns the folder " + name);
 }

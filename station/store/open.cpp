@@ -158,7 +158,13 @@ StationLock::StationLock(const std::string& database) {
   refuse_second_name(database);
   lock_ = open_lock(database + ".lock");
   const auto found = note_in(lock_.get());
-  if (::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0)
+  const bool locked = ::flock(lock_.get(), LOCK_EX | LOCK_NB) == 0;
+  if (!locked && errno != EWOULDBLOCK && errno != EINTR)
+    fail_system(
+        ErrorKind::io, "locking " + database + ".lock", errno,
+        "this file system cannot lock files, so that two stations could write to the database at the same "
+        "time; keep it on a disk of this machine, with ext4");
+  if (!locked)
     throw StoreError(ErrorKind::busy,
                      fmt::format("database {}: another station process{}{} is writing to it; end that "
                                  "process first, or name another database",

@@ -49,15 +49,20 @@ bool is_other(const std::string& known, const std::string& machine) {
 }
 
 void require_possible(const std::string& name) {
-  const auto allowed = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           std::string_view("._-").find(c) != std::string_view::npos;
+  // The same as deploy/collector, which makes a role of PostgreSQL from it.
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
   };
-  if (!name.empty() && name.size() <= 63 && std::all_of(name.begin(), name.end(), allowed)) return;
+  const auto allowed = [&](char c) {
+    return plain(c) || std::string_view("._-").find(c) != std::string_view::npos;
+  };
+  if (!name.empty() && name.size() <= 41 && plain(name.front()) &&
+      std::all_of(name.begin(), name.end(), allowed))
+    return;
   throw StoreError(
       ErrorKind::refused,
-      fmt::format("station-name: \"{}\" cannot be the name of a station; use 1 to 63 letters, digits, "
-                  "dots, hyphens and underscores; nothing was changed",
+      fmt::format("station-name: \"{}\" cannot be the name of a station; use 1 to 41 letters, digits, "
+                  "dots, hyphens and underscores, the first one a letter or a digit; nothing was changed",
                   name));
 }
 

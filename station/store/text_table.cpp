@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <stdexcept>
+#include <string_view>
 
 #include "station/core/number.hpp"
+#include "station/core/toml.hpp"
 
 namespace turnpoint::store {
 
@@ -51,6 +53,7 @@ struct Formatter {
 
 TextTable::TextTable(const TableStyle& style, const std::vector<std::string>& columns)
     : style_(style), columns_(columns.size()) {
+  if (style_.byte_order_mark) text_ = core::kByteOrderMark;
   for (const auto& column : columns) field(column);
   end_row();
   rows_ = 0;
@@ -79,9 +82,10 @@ void TextTable::end_row() {
   ++rows_;
 }
 
-std::vector<std::vector<std::string>> read_table(const std::string& text) {
+std::vector<std::vector<std::string>> read_table(const std::string& bytes) {
+  const auto text = core::without_byte_order_mark(bytes);
   const auto mark = text.find_first_of(",;|\t\n");
-  const char separator = mark == std::string::npos ? ',' : text[mark];
+  const char separator = mark == std::string_view::npos ? ',' : text[mark];
   std::vector<std::vector<std::string>> lines;
   bool quoted = false, new_line = true;
   for (std::size_t i = 0; i < text.size(); ++i) {

@@ -26,6 +26,7 @@ struct TableStyle {
   enum class Kind { rfc4180, bids } kind = Kind::rfc4180;
   char separator = ',';
   char decimal = '.';
+  bool byte_order_mark = false;  ///< true if core::kByteOrderMark comes first
 };
 
 /// Builds the text of one table. Missing values and empty texts become `n/a`. Numbers have the shortest form
@@ -51,8 +52,8 @@ class TextTable {
   std::string text_;
 };
 
-/// Reads a table in the RFC 4180 form, line by line. The separator is the first of the characters , ; | and
-/// tab in the first line.
-std::vector<std::vector<std::string>> read_table(const std::string& text);
+/// Reads a table in the RFC 4180 form, line by line; a byte order mark is left out. The separator is the
+/// first of the characters , ; | and tab in the first line.
+std::vector<std::vector<std::string>> read_table(const std::string& bytes);
 
 }  // namespace turnpoint::store

@@ -122,9 +122,10 @@ void create_file(const std::string& path) {
   // An empty log or old shared memory contains no data, so remove them.
   for (const auto* suffix : kLogSuffixes) remove_file(path + suffix);
   publish(path, "", [](const std::string& temporary) {
-    // In rollback mode, all data are in this one file once the transaction has ended.
+    // In rollback mode, all data are in this one file once the transaction has ended; publish() makes it
+    // durable.
     Database database(temporary, Database::Access::read_write);
-    database.execute("PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA");
+    database.execute("PRAGMA journal_mode = DELETE; PRAGMA synchronous = OFF");
     create_schema(database);
     Statement(database, "INSERT INTO meta VALUES ('database_id', ?)").bind(system::new_uuid()).run();
     create_seal(database);
@@ -140,7 +141,7 @@ void copy_to_file(Database& from, const std::string& to, const std::string& orig
     if (copy.text("PRAGMA journal_mode = DELETE") != "delete")
       throw StoreError(ErrorKind::io,
                        "copy " + temporary + ": the copy cannot be taken out of WAL mode; check the disk");
-    copy.execute("PRAGMA synchronous = EXTRA");
+    copy.execute("PRAGMA synchronous = OFF");  // publish() makes the file durable
     if (finish) finish(copy);
   });
 }

@@ -1,8 +1,11 @@
 #include "station/store/withdraw.hpp"
 
+#include <unistd.h>
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <set>
 #include <string>
@@ -45,7 +48,10 @@ namespace {
 
 enum class Holds { no, yes, unreadable };
 
+/// Throws StoreError if the disk fails, because then nobody knows.
 Holds holds(const std::string& path, const std::vector<std::string>& session_ids) {
+  // somebody else's file in a shared folder
+  if (::access(path.c_str(), R_OK) != 0 && errno == EACCES) return Holds::unreadable;
   try {
     for (const auto* suffix : {"-wal", "-journal"})
       // Data in SQLite's log are not yet in the database file, so reading only that file could miss a
@@ -58,8 +64,11 @@ Holds holds(const std::string& path, const std::vector<std::string>& session_ids
                        [&](const auto& id) { return rows.bind(id).step(); })
                ? Holds::yes
                : Holds::no;
-  } catch (const StoreError&) {
-    return Holds::unreadable;
+  } catch (const StoreError& error) {
+    const auto kind = error.kind();
+    if (kind == ErrorKind::corrupt || kind == ErrorKind::not_a_database || kind == ErrorKind::other_schema)
+      return Holds::unreadable;
+    throw;
   }
 }
 
@@ -84,6 +93,9 @@ Copies copies_of(const std::string& path, Database& database, const std::string&
   for (const auto& backup : stored_backups(canonical(backup_folder))) {
     const auto found = holds(backup.path, session_ids);
     if (found == Holds::no) continue;
+    if (found == Holds::yes && !backup.trouble.empty())
+      throw StoreError(ErrorKind::io,
+                       fmt::format("backup {} could not be read: {}", backup.path, backup.trouble));
     (found == Holds::yes && backup.database_id == id ? copies.own : copies.foreign).push_back(backup.path);
   }
   return copies;
@@ -218,8 +230,8 @@ std::vector<Tombstone> new_tombstones(const Withdrawal& withdrawal) {
 }
 
 // A row of `meta` with this key says that sessions were deleted, but not yet from the free pages of the file
-// and from its copies. Its value is the folder of the backups; "" for none. Whoever follows tombstones next, with
-// a folder of backups if that withdrawal had one, completes it.
+// and from its copies. Its value is the folder of the backups; "" for none. Whoever follows tombstones next,
+// with a folder of backups if that withdrawal had one, completes it.
 constexpr const char* kErasing = "erasing";
 
 /// True if a withdrawal was interrupted that can be completed with this folder of backups.
@@ -232,7 +244,8 @@ bool can_complete(Database& database, const std::string& backup_directory) {
 void remove_sessions(Database& database, const std::vector<Tombstone>& tombstones,
                      const std::vector<Bearer>& bearers, const std::string& backup_directory) {
   SealedTransaction transaction(database);
-  Statement(database, "INSERT INTO meta VALUES (?1, ?2) ON CONFLICT (key) DO UPDATE SET value = ?2 WHERE value = ''")
+  Statement(database,
+            "INSERT INTO meta VALUES (?1, ?2) ON CONFLICT (key) DO UPDATE SET value = ?2 WHERE value = ''")
       .bind(kErasing, backup_directory)
       .run();
   for (const auto& stone : tombstones) {
@@ -396,9 +409,9 @@ Withdrawal follow_tombstones(const std::string& name, const std::vector<Tombston
   const auto path = canonical(name);
   {
     auto reader = open_reader(path);
-    if (const auto follow = following(reader, tombstones);
-        follow.tombstones.empty() && follow.withdrawal.bearers.empty() &&
-            !can_complete(reader, backup_directory))
+    if (const auto follow = following(reader, tombstones); follow.tombstones.empty() &&
+                                                           follow.withdrawal.bearers.empty() &&
+                                                           !can_complete(reader, backup_directory))
       return {};
   }
   auto writer = open_writer(path, IfMissing::fail);

@@ -28,7 +28,8 @@ std::string file_system_of(const std::string& folder) {
       {0xef53, "ext4"},      {0x9123683e, "btrfs"}, {0x58465342, "xfs"},     {0xf2f52010, "f2fs"},
       {0x01021994, "tmpfs"}, {0x858458f6, "ramfs"}, {0x794c7630, "overlay"}, {0x6969, "nfs"},
       {0xff534d42, "cifs"},  {0xfe534d42, "cifs"},  {0x517b, "cifs"},        {0x65735546, "fuse"},
-      {0x01021997, "9p"},    {0x4d44, "vfat"},      {0x2011bab0, "exfat"}};
+      {0x01021997, "9p"},    {0x4d44, "vfat"},      {0x2011bab0, "exfat"},   {0x5346544e, "ntfs"},
+      {0x7366746e, "ntfs"},  {0x00c36400, "ceph"},  {0x5346414f, "afs"},     {0x786f4256, "vboxsf"}};
   const auto found = names.find(number);
   return found == names.end() ? fmt::format("{:#x}", number) : found->second;
 }

@@ -58,7 +58,8 @@ bool is_database(const std::string& path) {
 
 /// Throws if the file at this name must be kept.
 void require_replaceable(const std::string& path, Replaces replaces) {
-  for (const std::string_view ending : {"-wal", "-shm", "-journal"})
+  // The lock is kept as a file: another one of its name would let a second station in.
+  for (const std::string_view ending : {"-wal", "-shm", "-journal", ".lock"})
     if (path.ends_with(ending) && is_database(path.substr(0, path.size() - ending.size())))
       refuse(path, "belongs to a database");
   struct stat status {};
@@ -66,6 +67,10 @@ void require_replaceable(const std::string& path, Replaces replaces) {
   if (S_ISDIR(status.st_mode)) refuse(path, "is a folder");
   if (!S_ISREG(status.st_mode)) refuse(path, "is neither a file nor a pipe");
   if (is_database(path)) refuse(path, "is a database");
+  // Even if it is empty or damaged, somebody may want to look at it.
+  struct stat lock {};
+  if (::stat((path + ".lock").c_str(), &lock) == 0)
+    refuse(path, "is a station's database, as its lock file says");
   if (replaces == Replaces::output && core::was_read(status))
     refuse(path, "is one of the files that were read");
 }
@@ -181,7 +186,8 @@ void write_file(const std::string& path, std::string_view bytes, mode_t mode, Re
 }
 
 bool not_offered(int error) {
-  return error == EPERM || error == EACCES || error == ENOTSUP || error == ENOSYS || error == EINVAL;
+  return error == EPERM || error == EACCES || error == ENOTSUP || error == ENOSYS || error == EINVAL ||
+         error == ENOTTY;
 }
 
 void sync_folder(const std::string& path) {

@@ -25,8 +25,8 @@ enum class Replaces { output, input };
 /// directly.
 ///
 /// Every output of the program is written by this class, and it refuses to replace an SQLite database, the
-/// files that SQLite keeps beside one, and a file that this process has read (see core::FileReader) unless
-/// `replaces` allows it. Throws RefusedDestination then, and also for a folder, a disk or a socket.
+/// files beside one, whatever has a lock file beside it, and a file that this process has read (see
+/// core::FileReader) unless `replaces` allows it. Throws RefusedDestination then, and for a folder or a disk.
 ///
 /// It is safe for root to write into another user's folder: a symbolic link that another user has made is
 /// refused, and a draft that a killed process left is replaced and never followed. All functions throw

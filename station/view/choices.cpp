@@ -12,6 +12,7 @@
 
 #include "station/core/number.hpp"
 #include "station/core/texts.hpp"
+#include "station/protocol/interludes.hpp"
 #include "station/store/backup.hpp"
 #include "station/store/read.hpp"
 #include "station/system/clocks.hpp"
@@ -85,6 +86,13 @@ Phrase describe(const rehearsal::CheckedBlock& block) {
   if (!block.instruction.empty() && block.instruction != block.name)
     title.values.push_back(plain(" (" + block.instruction + ")"));
   return {"check.block_trials", "", {title, range(block.trials, 1)}};
+}
+
+/// The parts of the session without trials, in the order in which they come.
+void add_interludes(const std::vector<rehearsal::CheckedInterlude>& parts, CheckWords& words) {
+  for (const auto& [kind, name, pages] : parts)
+    words.facts.emplace_back(Phrase{std::string("design.keys.") + protocol::name(kind), "", {}},
+                             pages > 1 ? phrase("check.pages", {plain(name), plain(pages)}) : plain(name));
 }
 
 void add_remarks(const std::vector<core::Problem>& problems, CheckWords::Remark::Kind kind,
@@ -167,11 +175,15 @@ CheckWords words_of(const rehearsal::Check& check) {
   add_remarks(check.warnings, Kind::warning, words);
   add_remarks(check.notes, Kind::note, words);
   if (!check.problems.empty()) return words;
+  words.languages = check.languages;
   words.facts.emplace_back(phrase("operator.rig"), plain(check.rig_name));
   words.facts.emplace_back(phrase("operator.trials"), range(check.trials, 1));
   words.facts.emplace_back(phrase("check.duration"), phrase("check.minutes", {range(check.duration_s, 60)}));
-  for (const auto& block : check.blocks)
+  for (const auto& block : check.blocks) {
+    add_interludes(block.before, words);
     words.facts.emplace_back(phrase(block.practice ? "practice" : "design.keys.block"), describe(block));
+    add_interludes(block.after, words);
+  }
   add_tones(check, words);
   for (const auto& cue : check.cues.reports) {
     const bool leaks = cue.above_chance();

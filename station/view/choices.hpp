@@ -64,6 +64,7 @@ std::optional<InterruptedNote> interrupted_note(const std::string& database);
 /// away. Problems, warnings and remarks are about places of a file.
 struct CheckWords {
   std::vector<core::Phrase> problems, warnings;
+  std::vector<std::string> languages;  ///< those in which a session can be offered on this machine
   /// what the session consists of, as pairs of a label and a value
   std::vector<std::pair<core::Phrase, core::Phrase>> facts;
   /// An unwanted cue: `says` is the proportion correct of an observer who uses nothing but this cue, and

@@ -251,4 +251,35 @@ std::string Document::with_copy(const Path& path, const std::string& name) const
   return checked(text.insert(tables.back()->value.end, copy));
 }
 
+/// The text of a table with the tables below it and the comments in the lines directly above it.
+Span Document::with_comments(const Path& path) const {
+  const auto* part = find(path);
+  if (part == nullptr || part->kind != Part::Kind::table) no_such(path);
+  const auto tables = tables_of(*part);
+  const auto line_before = [this](std::size_t at) {  // where the line before this one begins
+    return at < 2 ? std::string::npos : text_.rfind('\n', at - 2) + 1;
+  };
+  auto begin = tables.front()->value.begin;
+  for (auto line = line_before(begin); line != std::string::npos && text_[line] == '#';
+       line = line_before(begin))
+    begin = line;
+  return {begin, tables.back()->value.end};
+}
+
+std::string Document::exchanged(const Path& first, const Path& second) const {
+  auto a = with_comments(first), b = with_comments(second);
+  if (b.begin < a.begin) std::swap(a, b);
+  if (a.end > b.begin) no_such(second);
+  const auto piece = [this](std::size_t from, std::size_t to) { return text_.substr(from, to - from); };
+  return checked(piece(0, a.begin) + piece(b.begin, b.end) + piece(a.end, b.begin) + piece(a.begin, a.end) +
+                 text_.substr(b.end));
+}
+
+std::string Document::with_tables(const std::string& tables) const {
+  std::string own;
+  for (const char c : tables) own += c == '\n' ? line_break_ : std::string(1, c);
+  const auto gap = text_.empty() || text_.ends_with("\n") ? line_break_ : line_break_ + line_break_;
+  return checked(text_ + gap + own);
+}
+
 }  // namespace turnpoint::view

@@ -40,12 +40,17 @@ class Document {
   /// Adds a copy of a table directly after it. A table of a list ([[block]]) gets this `name` as its key
   /// "name"; another table ([scene.edge]) gets it as the last part of its header.
   std::string with_copy(const Path& path, const std::string& name) const;
+  /// Lets two tables with headers change places, with the tables below them and the comments directly above them.
+  std::string exchanged(const Path& first, const Path& second) const;
+  /// Adds tables at the end of the text.
+  std::string with_tables(const std::string& tables) const;
 
  private:
   std::string inserted(const Path& path, const std::string& value) const;
   std::string inside_braces(const Part& table, const std::string& entry) const;
   std::string new_line_at(std::size_t at, const std::string& line) const;
   std::string checked(std::string text) const;
+  Span with_comments(const Path& path) const;
 
   std::string text_, file_, line_break_ = "\n";
   Part root_;

@@ -16,7 +16,9 @@ std::string section_of(const std::string& table) {
   static const std::map<std::string, std::string> sections{
       {"protocol", "study"},  {"random", "study"},  {"task", "question"},    {"instructions", "question"},
       {"scene", "scenes"},    {"factor", "levels"}, {"procedure", "levels"}, {"block", "blocks"},
-      {"sequence", "blocks"}, {"timing", "timing"}};
+      {"sequence", "blocks"}, {"timing", "timing"},
+      // the parts of a session, in the order in which they come
+      {"consent", "blocks"},  {"explanation", "blocks"}, {"questionnaire", "blocks"}, {"screening", "blocks"}};
   const auto found = sections.find(table);
   return found == sections.end() ? "other" : found->second;
 }
@@ -60,6 +62,11 @@ bool is_flat(const Part& part) {
                      [](const Part& item) { return item.kind == Part::Kind::scalar; });
 }
 
+bool is_interlude(const std::string& table) {
+  return std::any_of(std::begin(kAddedTables), std::end(kAddedTables),
+                     [&](const char* kind) { return table == kind; });
+}
+
 class Maker {
  public:
   Maker(const Document& document, const Schema& schema) : document_(document), schema_(schema) {}
@@ -79,10 +86,25 @@ class Maker {
       else
         add_tables(key.name, rule, groups);
     }
+    for (auto& section : sections)
+      if (section.name == "blocks") put_in_order(section.groups);
     return sections;
   }
 
  private:
+  /// The parts of a session in the order of the file, which is that of the session.
+  void put_in_order(std::vector<Group>& groups) const {
+    const auto begin = [this](const Group& group) {
+      const auto* part = document_.find(group.path);
+      return part == nullptr ? std::string::npos : part->value.begin;
+    };
+    std::stable_sort(groups.begin(), groups.end(),
+                     [&](const Group& a, const Group& b) { return begin(a) < begin(b); });
+    for (std::size_t i = 1; i < groups.size(); ++i)
+      if (groups[i - 1].copied && groups[i].copied)
+        groups[i].earlier = groups[i - 1].path, groups[i - 1].later = groups[i].path;
+  }
+
   /// Adds a group for each table [[block]], or [scene.NAME], that the file has.
   void add_tables(const std::string& name, const Rule& rule, std::vector<Group>& groups) {
     const auto* list = document_.find({name});
@@ -93,13 +115,17 @@ class Maker {
       auto made = group({name, table.name}, of_list ? rule : schema_.rule(*rule.keys.back().schema), &table);
       made.name = of_list ? name_in(table) : table.name;
       made.copied = table.kind == Part::Kind::table;
-      made.removable = made.copied && list->parts.size() > 1;
+      // a protocol needs a block, a scene, a factor, ..., but no interlude
+      made.removable = made.copied && (list->parts.size() > 1 || is_interlude(name));
+      for (const char* below : {"page", "item"})
+        if (const auto* tables = table.find(below); tables != nullptr && tables->kind == Part::Kind::table_array)
+          made.below = below, made.below_count = tables->parts.size();
       groups.push_back(std::move(made));
     }
   }
 
   Group group(const Path& path, const Rule& rule, const Part* part) {
-    Group group{path, "", part != nullptr, false, false, {}, {}};
+    Group group{path, "", part != nullptr};
     group.removable = part != nullptr && part->kind == Part::Kind::table && path.size() == 1 &&
                       section_of(path[0]) == "other";
     add_fields(path, rule, part, group.fields, 0, part != nullptr);
@@ -267,6 +293,61 @@ std::string toml_lines(const std::string& text) {
 }
 
 }  // namespace
+
+namespace {
+
+/// A text in all languages of the file.
+std::string in_all_languages(const Document& document, const std::string& text) {
+  std::string all;
+  for (const auto& language : languages_of(document))
+    all += (all.empty() ? "" : ", ") + key_of(language) + " = " + toml_string(text);
+  return "{ " + all + " }";
+}
+
+std::string new_item(const Document& document, int number) {
+  const auto text = [&](const char* english) { return in_all_languages(document, english); };
+  return "id = \"question-" + std::to_string(number) + "\"\nquestion = " + text("Question") +
+         "\nchoices = [ { id = \"yes\", label = " + text("Yes") + " }, { id = \"no\", label = " + text("No") +
+         " } ]\n";
+}
+
+}  // namespace
+
+std::string new_table(const Document& document, const std::string& kind) {
+  const auto names = names_of(document, kind);
+  int number = 1;
+  const auto taken = [&] {
+    return std::find(names.begin(), names.end(), kind + "-" + std::to_string(number)) != names.end();
+  };
+  while (taken()) ++number;
+  const auto text = [&](const char* english) { return in_all_languages(document, english); };
+  auto table = "[[" + kind + "]]\nname = \"" + kind + "-" + std::to_string(number) + "\"\n";
+  if (kind == "consent")
+    table += "text = " + text("Do you want to take part?") + "\nagree = " + text("Yes") + "\nrefuse = " + text("No") +
+             "\nfarewell = " + text("Thank you.") + "\n";
+  if (kind == "explanation") table += "\n[[explanation.page]]\ntext = " + text("Explanation") + "\n";
+  if (kind == "questionnaire") table += "\n[[questionnaire.item]]\n" + new_item(document, 1);
+  if (kind == "screening") table += "pass = []\nfarewell = " + text("Thank you. We stop here.") + "\n";
+  return table;
+}
+
+std::string with_one_more(const Document& document, const Group& group) {
+  auto last = group.path;
+  last.push_back(group.below), last.push_back(std::to_string(group.below_count - 1));
+  const auto number = std::to_string(group.below_count + 1);
+  const Document more(document.with_copy(last, ""), document.file());
+  if (group.below != "item") return more.text();
+  last.back() = std::to_string(group.below_count);
+  last.push_back("id");
+  return more.with(last, toml_string("question-" + number));
+}
+
+std::string with_one_less(const Document& document, const Group& group) {
+  if (group.below_count < 2) return document.text();
+  auto last = group.path;
+  last.push_back(group.below), last.push_back(std::to_string(group.below_count - 1));
+  return document.without(last);
+}
 
 std::string referred_table(const std::string& key) {
   static const std::map<std::string, std::string> tables{{"base", "scene"},

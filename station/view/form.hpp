@@ -30,8 +30,13 @@ struct Group {
   bool present = false;
   bool copied = false;  ///< whether it can be copied, because a file can have several of its kind
   bool removable = false;
-  std::vector<Field> fields;
-  std::vector<std::size_t> remarks;  ///< indices of the remarks about the table as a whole
+  /// A part of the session, which can change places with the part before it (`earlier`) and after it (`later`).
+  Path earlier = {}, later = {};
+  /// the list of tables below this one, such as the pages of an explanation; "" if it has none
+  std::string below = {};
+  std::size_t below_count = 0;
+  std::vector<Field> fields = {};
+  std::vector<std::size_t> remarks = {};  ///< indices of the remarks about the table as a whole
 };
 
 struct Section {
@@ -47,6 +52,16 @@ struct Section {
 /// is about.
 std::vector<Section> form_of(const Document& document, const Schema& schema,
                              const std::vector<core::Problem>& remarks);
+
+/// The kinds of tables that a person can add to a session, in the order of the buttons.
+constexpr const char* kAddedTables[] = {"consent", "explanation", "questionnaire", "screening"};
+/// Such a table as TOML, with texts in all languages of the file that are to be changed, and a name that the file does
+/// not have.
+std::string new_table(const Document& document, const std::string& kind);
+/// The file's text with one page of an explanation, or one item of a questionnaire, more or less at the end. A table has
+/// at least one.
+std::string with_one_more(const Document& document, const Group& group);
+std::string with_one_less(const Document& document, const Group& group);
 
 /// The table whose names the values of a key refer to, such as "scene" for "base"; "" if they refer to none.
 std::string referred_table(const std::string& key);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -30,10 +31,6 @@ std::string with(double value, const analysis::Interval& interval) {
 std::string with(const std::optional<Estimate>& estimate, const std::string& unit, const Words& words) {
   if (!estimate) return words("report.not_estimated");
   return with(estimate->value, estimate->interval) + (unit.empty() ? "" : " " + unit);
-}
-
-Drawing drawing(const std::optional<report::Figure>& figure) {
-  return figure ? drawing_of(*figure) : Drawing();
 }
 
 /// The name of a measure of speed and accuracy. Abbreviations are the same in every language.
@@ -190,17 +187,11 @@ ReportPages report_pages(const report::Summary& summary) {
   pages.health = summary.data.health;
   if (summary.bias) add_statements(summary.bias->statements, "", pages);
   add_statements(summary.fatigue.statements, "", pages);
-  pages.compares_instructions = summary.trade.instructions.size() > 1;
-  pages.trade = drawing(report::trade_figure(summary));
-  pages.fits =
-      drawing(report::judges(summary.data.design)                 ? report::judgement_figure(summary)
-              : summary.data.thresholds_differ                    ? report::threshold_curve_figure(summary)
-              : summary.data.design == report::Design::categories ? report::confusion_figure(summary)
-                                                                  : report::psychometric_figure(summary));
-  pages.levels = drawing(report::trace_figure(summary));
-  pages.times = drawing(report::response_time_figure(summary));
-  pages.finger = drawing(report::finger_figure(summary));
-  pages.friction = drawing(report::friction_figure(summary));
+  pages.figures = report::figures_of(summary);
+  // a session with several instructions is about the trade-off between them
+  if (summary.trade.instructions.size() > 1)
+    std::stable_partition(pages.figures.begin(), pages.figures.end(),
+                          [](const auto& figure) { return figure.name == "speed-accuracy"; });
   return pages;
 }
 

@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
+#include "station/report/figure_files.hpp"
 #include "station/report/summary.hpp"
-#include "station/view/scene_figures.hpp"
 
 namespace turnpoint::view {
 
@@ -16,9 +16,7 @@ struct ReportPages {
   std::vector<std::pair<std::string, std::string>> outcomes, fit, speed_accuracy, forces;
   std::vector<std::pair<core::Phrase, core::Phrase>> health;  ///< facts about the station
   std::vector<core::Phrase> statements;                       ///< remarks that must be shown with the numbers
-  bool compares_instructions =
-      false;  ///< whether the session asked for speed in some trials and for accuracy in others
-  Drawing trade, fits, levels, times, finger, friction;  ///< figures; empty if there are no data
+  std::vector<report::NamedFigure> figures;  ///< those of the report, the speed-accuracy trade-off first
 };
 
 /// Makes the report of a stored session with report_data() and report::summarise(), in a language such as

@@ -48,13 +48,20 @@ std::vector<SessionLine> session_lines(const std::string& database) {
     const bool ended = session.status != store::SessionStatus::interrupted &&
                        session.status != store::SessionStatus::running;
     lines.push_back(
-        {session.session_id, session.person, start.participant,
+        {session.session_id, session.person, start.participant, start.protocol_id,
          start.protocol_id + " " + start.protocol_version, start.started_local, store::name(start.run_mode),
          session.status == store::SessionStatus::running ? "not ended" : store::name(session.status),
          reason_of_end(session.status_reason), session.trials, session.annotations,
          !ended && session.trials > 0});
   }
   return lines;
+}
+
+void put_in_order(std::vector<SessionLine>& newest_first, SessionOrder order) {
+  if (order == SessionOrder::newest) return;
+  const auto key = order == SessionOrder::study ? &SessionLine::protocol_id : &SessionLine::person;
+  std::stable_sort(newest_first.begin(), newest_first.end(),
+                   [key](const auto& a, const auto& b) { return a.*key < b.*key; });
 }
 
 bool matches(const SessionLine& session, const std::string& search) {

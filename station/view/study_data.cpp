@@ -109,25 +109,6 @@ std::map<std::string, std::vector<Found>> by_person(std::vector<Found> all) {
   return people;
 }
 
-/// Returns the protocol, changed so that each group of participants is analysed separately.
-protocol::Protocol by_group(protocol::Protocol protocol) {
-  auto& by = protocol.analysis.by;
-  std::vector<std::string> groups;
-  for (const auto& factor : protocol.factors)
-    if (factor.draw == protocol::FactorDraw::per_participant &&
-        std::find(by.begin(), by.end(), factor.name) == by.end())
-      groups.push_back(factor.name);
-  if (groups.empty()) return protocol;
-  // An empty `by` means that the conditions are the instructions. Keep that when groups are added.
-  const auto is_instruction = [](const protocol::Factor& factor) { return factor.name == "instruction"; };
-  if (by.empty() && std::any_of(protocol.factors.begin(), protocol.factors.end(), is_instruction) &&
-      std::find(groups.begin(), groups.end(), "instruction") == groups.end())
-    by.push_back("instruction");
-  by.insert(by.begin(), groups.begin(), groups.end());
-  protocol.meanings = protocol::meanings_of(protocol);
-  return protocol;
-}
-
 /// The trials of all sessions of one participant, and the procedures' own estimates of each session.
 struct PersonData {
   report::SessionData all;
@@ -235,15 +216,12 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
   auto study = head_of(choice, all, copies);
   const auto first = store::read_session(all.front().database, all.front().session.session_id);
   const auto protocol =
-      by_group(protocol::parse(first.session.start.protocol_text, first.session.start.protocol_path));
+      report::by_group(protocol::parse(first.session.start.protocol_text, first.session.start.protocol_path));
   const auto rules = protocol.exclusion.value_or(protocol::Exclusion{});
   study.rules = report::rules_in_words(rules);
   const auto people = by_person(std::move(all));
   int done = 0;
-  for (const auto& factor : protocol.factors)
-    if (factor.draw == protocol::FactorDraw::per_participant)
-      for (const auto& level : factor.levels)
-        study.groups_in_words.push_back(protocol::level_in_words(factor.name, level));
+  study.groups_of_conditions = protocol::groups_of_conditions(protocol);
   study.sessions.incomplete_count = protocol.analysis.count_incomplete;
   for (const auto& [person, sessions] : people) {
     if (!progress(done, static_cast<int>(people.size()))) {
@@ -255,6 +233,7 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
     const auto used = counted(sessions, study.sessions);
     auto [data, estimates, early_ends] = data_of(person, used.sessions, protocol);
     data.run_mode = store::name(sessions.front().session.start.run_mode);
+    data.replicates = report::kStudyReplicates;
     auto result = report::study_person(data, rules, used.incomplete);
     if (used.sessions.empty()) result.excluded.push_back("no session that counts");
     for (const auto& found : used.sessions) result.sessions.push_back(found.session.session_id);

@@ -75,6 +75,39 @@ TEST_CASE("The effect between groups is that of R's Welch test", "[group]") {
   CHECK_FALSE(none[0].difference);
 }
 
+TEST_CASE("p values are those of R's t tests, and Holm's correction is R's p.adjust", "[group]") {
+  // R's t.test(extra ~ group, sleep) gives p = 0.002833 if paired, and 0.07939 if not.
+  CHECK(*effects(sleep(), within)[0].difference->p == Approx(0.002833).epsilon(2e-4));
+  auto measures = sleep();
+  for (auto& entry : measures)
+    if (entry.condition == "two") entry.person += "b";
+  CHECK(*effects(measures, between)[0].difference->p == Approx(0.07939).epsilon(2e-4));
+
+  const auto corrected = [](const std::vector<double>& p) {
+    std::vector<Tested> tests;
+    for (const double one : p) tests.push_back({"", one});
+    std::vector<double> found;
+    for (const auto& one : holm(tests)) found.push_back(*one);
+    return found;
+  };
+  // p.adjust(c(0.01, 0.04, 0.03, 0.005, 0.2), "holm"); then with ties, and with values that reach 1
+  const std::vector<std::pair<std::vector<double>, std::vector<double>>> kByR{
+      {{0.01, 0.04, 0.03, 0.005, 0.2}, {0.04, 0.09, 0.09, 0.025, 0.2}},
+      {{0.02, 0.02, 0.5, 0.9}, {0.08, 0.08, 1, 1}}};
+  for (const auto& [given, wanted] : kByR) {
+    const auto found = corrected(given);
+    for (std::size_t i = 0; i < wanted.size(); ++i) CHECK(found[i] == Approx(wanted[i]));
+  }
+  CHECK(corrected({0.3}) == std::vector<double>{0.3});
+  CHECK(corrected({}).empty());
+  // families are corrected apart, and what has no p value does not count
+  const auto apart = holm({{"a", 0.02}, {"b", 0.04}, {"a", std::nullopt}, {"a", 0.03}});
+  CHECK(*apart[0] == Approx(0.04));
+  CHECK(*apart[1] == Approx(0.04));
+  CHECK_FALSE(apart[2]);
+  CHECK(*apart[3] == Approx(0.04));
+}
+
 TEST_CASE("Two participants have no interval", "[group]") {
   const std::vector<PersonMeasure> two{
       {"A", "x", "m", "", 1}, {"B", "x", "m", "", 2}, {"A", "y", "m", "", 3}};

@@ -55,7 +55,7 @@ TEST_CASE("For equal instructions, the interval of the difference seldom exclude
       ++measured;
       outside += !holds(*difference.estimate, 0);
     }
-  CHECK(measured == 7 * sessions);
+  CHECK(measured == (7 + 5) * sessions);  // five bins of time
   CHECK(outside <= 0.15 * measured);
 }
 
@@ -116,6 +116,10 @@ TEST_CASE("A session of timeouts, or of five trials, gives only statements", "[a
   const auto late = trade(trials, options);
   REQUIRE(late.instructions.size() == 1);
   CHECK(late.instructions[0].timeouts == 5);
+  auto with_void = trials;
+  with_void.resize(7);
+  with_void[5].outcome = Outcome::fault, with_void[6].outcome = Outcome::aborted;
+  CHECK(trade(with_void, options).instructions[0].presented == 5);
   CHECK_FALSE(late.instructions[0].proportion_correct.has_value());
   CHECK_FALSE(late.instructions[0].boundary.has_value());
   CHECK(says(late.instructions[0].statements, "timeouts"));
@@ -147,17 +151,30 @@ TEST_CASE(
   const auto one = measured(false), two = measured(true);
   REQUIRE(one.instructions.size() == 3);
   CHECK(one.instructions[0].instruction == "accuracy");
-  REQUIRE(one.differences.size() == 3 * 7);
+  const std::size_t bins = one.instructions[0].caf.size(), pair = 7 + bins;
+  REQUIRE(bins == 5);
+  REQUIRE(one.differences.size() == 3 * pair);
   REQUIRE(two.differences.size() == one.differences.size());
   for (std::size_t i = 0; i < one.differences.size(); ++i) {
     const auto &a = one.differences[i], &b = two.differences[i];
     CHECK((a.first == b.first && a.second == b.second && a.measure == b.measure));
     CHECK(!a.unit.empty());
     REQUIRE(a.estimate.has_value() == b.estimate.has_value());
-    if (a.estimate) CHECK(a.estimate->value == b.estimate->value);
+    if (!a.estimate) continue;
+    CHECK(a.estimate->value == b.estimate->value);
+    CHECK((*a.estimate->p > 0 && *a.estimate->p <= 1));
+    // the p value of a difference of proportions is that of the interval that ends at 0
+    const auto& interval = a.estimate->interval;
+    if (a.unit == "proportion") CHECK((*a.estimate->p < 0.05) == (interval.low > 0 || interval.high < 0));
   }
-  CHECK(one.differences[14].first == "middle");
-  CHECK(one.differences[14].second == "speed");
+  const auto in_bins = one.differences[7];
+  CHECK(in_bins.measure == "proportion correct in time bin 1 of 5");
+  const auto &first = one.instructions[0].caf[0], &second = one.instructions[1].caf[0];
+  CHECK(in_bins.estimate->value ==
+        Approx(static_cast<double>(second.correct) / second.trials -
+               static_cast<double>(first.correct) / first.trials));
+  CHECK(one.differences[2 * pair].first == "middle");
+  CHECK(one.differences[2 * pair].second == "speed");
   CHECK(one.differences[0].estimate->value == Approx(one.instructions[1].proportion_correct->value -
                                                      one.instructions[0].proportion_correct->value));
 }

@@ -279,9 +279,11 @@ class Outputs(HelpExamples):
     def test_no_output_replaces_a_database_or_an_input(self):
         os.mkdir(os.path.join(self.folder, "folder"))
         os.mkfifo(os.path.join(self.folder, "pipe"))
+        self.write("damaged.sqlite", b"once a database")
+        self.write("damaged.sqlite.lock", b"")
         victims = self.bytes_of("lab.sqlite", "friction.csv")
         for words in self.WRITERS:
-            for target in ("lab.sqlite", "lab.sqlite-wal", "folder", "pipe") + (("friction.csv",) if "friction.csv" in words else ()):
+            for target in ("lab.sqlite", "lab.sqlite-wal", "lab.sqlite.lock", "damaged.sqlite", "folder", "pipe") + (("friction.csv",) if "friction.csv" in words else ()):
                 with self.subTest(words=words, target=target):
                     status, out, err = run([word.replace("@", target) for word in words], self.folder)
                     self.assertIn(status, (1, 2), out + err)
@@ -744,7 +746,7 @@ STUDY = ["power", "boundary-constant", "--observers", "12", "--intervals", "4"]
 
 class LongWork(Folder):
     def example(self, tool):
-        with open(os.path.join(SOURCE, "protocols", "README.md"), encoding="utf-8") as page:
+        with open(os.path.join(SOURCE, "protocols", "check-and-power.md"), encoding="utf-8") as page:
             return next(block for block in re.findall(r"^```sh\n(.*?)^```", page.read(), re.DOTALL | re.MULTILINE)
                         if tool in block)
 
@@ -780,6 +782,25 @@ class LongWork(Folder):
         with open(os.path.join(self.folder, "one/boundary-constant-power.svg"), "rb") as one, \
                 open(os.path.join(self.folder, "two/boundary-constant-power.svg"), "rb") as two:
             self.assertEqual(one.read(), two.read())
+
+    def test_a_divided_study_of_groups_gives_what_one_process_gives(self):
+        words = ["power", "speed-accuracy", "--observers", "6", "--people", "3", "--between", "bound=0.15,residual=0.1"]
+        for number in ("1/2", "2/2"):
+            status, out, err = run([*words, "--part", number], self.folder)
+            self.assertEqual(status, 0, err)
+            self.write(f"group{number[0]}.json", out.encode())
+        joined = run(["power", "--join", "group2.json", "group1.json", "--json"], self.folder)[1]
+        whole = json.loads(joined)
+        self.assertEqual(joined, run([*words, "--json"], self.folder)[1])
+        self.assertEqual(whole["people"], 3)
+        self.assertEqual({one["sessions"] for one in whole["recoveries"]}, {2})
+        drift = next(one for one in whole["recoveries"] if one["parameter"] == "drift" and one["claimed"])
+        self.assertEqual((drift["truth"], drift["claimed"]["of"]), (0, 2))
+        self.assertIn("2 studies of 3 people each", run(words, self.folder)[1])
+        self.refused_in_one_sentence(["power", "speed-accuracy", "--people", "3"], "--people and --between belong together")
+        self.refused_in_one_sentence([*words[:3], "8", *words[4:]], "use 6 or 9")
+        self.refused_in_one_sentence([*words[:7], "threshold=0.1"], "write sim:threshold=")
+        self.refused_in_one_sentence([*words[:7], "bonud=0.1"], "\"bonud=0.1\" is not understood")
 
     def part(self, name, number, *more):
         status, out, err = run([*STUDY, "--part", number, *more], self.folder)

@@ -96,7 +96,7 @@ class Study(unittest.TestCase):
             page = file.read()
         for title in ("Participants", "Psychometric function of the group", "Effects"):
             self.assertIn(f"<h2>{title}</h2>", page)
-        self.assertEqual(page.count("<svg"), 3)
+        self.assertEqual(page.count("<svg"), 4)
         for word in ("<script", "http-equiv", "nan", "inf<"):
             self.assertNotIn(word, page.lower().replace("confidence", ""))
 
@@ -133,16 +133,52 @@ class Study(unittest.TestCase):
         self.assertNotIn("BIS", json.dumps(report))
         self.assertIn("so one session has none", " ".join(statement["text"] for statement in said))
 
+    def test_effects_are_in_a_table_with_p_values_and_holms_correction_on_request(self):
+        rows = self.rows("effects.csv")
+        self.assertEqual(len(rows), len(self.study["effects"]))
+        for row, effect in zip(rows, self.study["effects"]):
+            self.assertEqual((row["measure"], row["first"], row["second"]), (effect["measure"], effect["first"], effect["second"]))
+            self.assertEqual(row["corrected_p"], "")
+            if effect["difference"]:
+                self.assertAlmostEqual(float(row["p"]), effect["p"], 9)
+                low, high = (effect["difference"]["interval"][end] for end in ("low", "high"))
+                self.assertEqual(effect["p"] < 0.05, low > 0 or high < 0, effect)
+        # the same sessions of a protocol that asks for the correction
+        with open(os.path.join(SOURCE, "protocols/speed-accuracy.toml"), encoding="utf-8") as file:
+            text = file.read().replace('id = "speed-accuracy"', 'id = "corrected"')
+        with open(os.path.join(self.folder, "corrected.toml"), "w", encoding="utf-8") as file:
+            file.write(text.replace("[analysis]", '[analysis]\nholm = "all"'))
+        for i, (bias, threshold) in enumerate(OBSERVERS[:4]):
+            self.call(["run", "corrected.toml", "--participant", f"P{i + 1:02}", "--db", "corrected.sqlite", "--headless", "--observer",
+                       f"sim:bias={bias},threshold={threshold}", "--seed", str(i + 1)])
+        self.call(["report", "--study", "--db", "corrected.sqlite", "--out", "corrected.html", "--tables", "corrected"])
+        out = subprocess.run(["Rscript", "-e", 'e <- read.csv("corrected/effects.csv"); e <- e[!is.na(e$p), ]; '
+                              'cat(sprintf("%.12g %.12g %.12g\\n", e$p, e$corrected_p, p.adjust(e$p, "holm")), sep = "")'],
+                             cwd=self.folder, capture_output=True, text=True, check=True).stdout
+        compared = [tuple(map(float, line.split())) for line in out.splitlines()]
+        self.assertGreater(len(compared), 8)
+        for _, ours, theirs in compared:
+            self.assertAlmostEqual(ours, theirs, 9)
+        self.assertTrue(any(ours > p for p, ours, _ in compared))
+        with open(os.path.join(self.folder, "corrected.html"), encoding="utf-8") as file:
+            self.assertIn("Holm\u2019s method for the number of all effects", file.read())
+
+    @classmethod
+    def lme4(cls):
+        if not hasattr(cls, "printed"):
+            cls.printed = subprocess.run(["Rscript", os.path.join(SCRIPTS, "study.R"), "tables"], cwd=cls.folder, capture_output=True,
+                                         text=True, check=True).stdout
+        return list(csv.reader(cls.printed.splitlines()))
+
     def test_lme4_finds_the_same_groups(self):
-        out = subprocess.run(["Rscript", os.path.join(SCRIPTS, "study.R"), "tables"], cwd=self.folder, capture_output=True, text=True,
-                             check=True).stdout
-        found = list(csv.reader(out.splitlines()))
+        found = self.lme4()
+        fitted = [row for row in found if row[0] != "log_response_time"]
         errors = {}
         for row in self.rows("groups.csv"):
             errors["rate", row["condition"]] = float(row["rate_se"])
             errors["threshold", row["condition"]] = float(row["intercept_se"]) / float(row["rate"])
         compared = 0
-        for what, condition, theirs, ours in found:
+        for what, condition, theirs, ours in fitted:
             if what == "log_likelihood":
                 # lme4 must not find a higher maximum of the likelihood than the report
                 self.assertGreater(float(ours), float(theirs) - 0.01)
@@ -151,28 +187,55 @@ class Study(unittest.TestCase):
                 self.assertLess(math.fabs(float(ours) - float(theirs)), 0.1 * errors[what, condition])
                 compared += 1
         self.assertEqual(compared, 4)
+        # the labels and figures are those of the report
+        groups = {group["condition"]: group["fit"] for group in self.study["groups"]}
+        self.assertEqual([condition for what, condition, *_ in found if what == "threshold"], list(groups))
+        for what, condition, _, ours in fitted:
+            fit = groups[condition]
+            reported = {"threshold": -fit["intercept"] / fit["rate"], "rate": fit["rate"], "log_likelihood": fit["log_likelihood"]}
+            self.assertAlmostEqual(float(ours), reported[what], delta=1e-5 * abs(reported[what]))
+
+    def test_lme4_finds_the_differences_of_times_with_the_signs_of_the_report(self):
+        found = [row for row in self.lme4() if row[0] == "log_response_time"]
+        effects = {(e["first"], e["second"]): e for e in self.study["effects"] if e["measure"] == "mean time of right answers"}
+        self.assertEqual([tuple(row[1:3]) for row in found], [pair for pair in effects if pair[0] == list(effects)[0][0]])
+        people = {}
+        for row in self.rows("trials.csv"):
+            if row["excluded"] == "no" and row["outcome"] == "answered" and row["correct"] == "1":
+                people.setdefault(row["participant"], {}).setdefault(row["condition"], []).append(math.log(float(row["response_time_s"])))
+        for _, first, second, value, error in found:
+            # each participant's own difference, weighted as least squares do
+            weights = [1 / (1 / len(own[first]) + 1 / len(own[second])) for own in people.values()]
+            gaps = [statistics.mean(own[second]) - statistics.mean(own[first]) for own in people.values()]
+            mean = sum(w * g for w, g in zip(weights, gaps)) / sum(weights)
+            self.assertAlmostEqual(float(value), mean, delta=0.1 * float(error))
+            self.assertGreater(abs(mean), 5 * float(error))
+            self.assertEqual(float(value) > 0, effects[first, second]["difference"]["value"] > 0)
 
 
 class Groups(unittest.TestCase):
     """Two groups: every second participant, and the differences between them."""
 
-    def setUp(self):
-        self.folder = tempfile.mkdtemp()
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp()
         with open(os.path.join(SOURCE, "protocols/demo.toml"), encoding="utf-8") as file:
             text = file.read()
         factor = '[[factor]]\nname = "team"\nlevels = ["trained", "untrained"]\ndraw = "per-participant"\n\n'
-        with open(os.path.join(self.folder, "teams.toml"), "w", encoding="utf-8") as file:
+        with open(os.path.join(cls.folder, "teams.toml"), "w", encoding="utf-8") as file:
             file.write(text.replace("[task]", factor + "[task]", 1))
         for i in range(8):
             bound = 0.6 if i % 2 == 0 else 1.2
-            self.call(["run", "teams.toml", "--participant", f"P{i}", "--db", "lab.sqlite", "--observer", f"sim:bound={bound}",
+            cls.call(["run", "teams.toml", "--participant", f"P{i}", "--db", "lab.sqlite", "--observer", f"sim:bound={bound}",
                        "--seed", str(i)])
 
-    def tearDown(self):
-        shutil.rmtree(self.folder)
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
 
-    def call(self, arguments):
-        return subprocess.run([PROGRAM, *arguments], cwd=self.folder, check=True, capture_output=True, text=True).stdout
+    @classmethod
+    def call(cls, arguments):
+        return subprocess.run([PROGRAM, *arguments], cwd=cls.folder, check=True, capture_output=True, text=True).stdout
 
     def rows(self, name):
         with open(os.path.join(self.folder, name), encoding="utf-8") as file:
@@ -205,6 +268,31 @@ class Groups(unittest.TestCase):
         half = (found["interval"]["high"] - found["interval"]["low"]) / 2
         self.assertGreater(half / error, 2.4)
         self.assertLess(half / error, 3.3)
+
+
+    def test_a_level_that_groups_and_conditions_share_does_not_make_groups_of_them(self):
+        with open(os.path.join(SOURCE, "protocols/demo.toml"), encoding="utf-8") as file:
+            text = file.read().replace('id = "demo"', 'id = "hands"') + '\n[analysis]\nby = ["side", "mark_mm"]\n'
+        factors = "".join(f'[[factor]]\nname = "{name}"\nlevels = ["left", "right"]\n{draw}\n'
+                          for name, draw in (("hand", 'draw = "per-participant"\n'), ("side", "")))
+        with open(os.path.join(self.folder, "hands.toml"), "w", encoding="utf-8") as file:
+            file.write(text.replace("[task]", factors + "[task]", 1))
+        for i in range(4):
+            self.call(["run", "hands.toml", "--participant", f"H{i}", "--db", "hands.sqlite", "--observer", "sim", "--seed", str(i)])
+        study = json.loads(self.call(["report", "--study", "--mode", "simulated", "--db", "hands.sqlite", "--json", "--tables", "hands"]))
+        for effect in study["effects"]:
+            self.assertEqual(effect["between_groups"], effect["first"].split(", ")[0] != effect["second"].split(", ")[0], effect)
+        self.assertEqual({effect["between_groups"] for effect in study["effects"]}, {True, False})
+        out = subprocess.run([sys.executable, os.path.join(SCRIPTS, "study.py"), "hands"], cwd=self.folder, capture_output=True, text=True,
+                             check=True).stdout
+        found = {tuple(line[:3]): line[3:] for line in csv.reader(out.splitlines())}
+        for effect in study["effects"]:
+            if effect["participants"] == 0:
+                continue
+            value, _, people = found[effect["measure"], effect["first"], effect["second"]]
+            self.assertEqual(int(people), effect["participants"], effect)
+            if effect["difference"]:
+                self.assertAlmostEqual(float(value), effect["difference"]["value"], delta=1e-5 * max(1, abs(float(value))))
 
 
 class Sessions(unittest.TestCase):
@@ -384,12 +472,12 @@ class Measures(unittest.TestCase):
             self.call("run", "two.toml", "--participant", "P" + person, "--db", "two.sqlite", "--headless",
                       "--observer", "sim:threshold=12", "--seed", person)
         self.call("report", "--study", "--db", "two.sqlite", "--out", "two.html", "--tables", "two")
-        for program, script, fields in (("Rscript", "study.R", 4), (sys.executable, "study.py", 6)):
+        for program, script, fields in (("Rscript", "study.R", {4, 5}), (sys.executable, "study.py", {6})):
             out = subprocess.run([program, os.path.join(SCRIPTS, script), "two"], cwd=self.folder, check=True,
                                  capture_output=True, text=True).stdout
             lines = list(csv.reader(out.splitlines()))
             self.assertIn("dry, mark 150 mm", [line[1] for line in lines])
-            self.assertEqual({len(line) for line in lines}, {fields})
+            self.assertEqual({len(line) for line in lines}, fields)
 
     def test_settings_have_the_difference_of_their_sides(self):
         found, report = self.both("boundary-adjustment")

@@ -10,16 +10,16 @@ USER = ["setpriv", "--reuid=postgres", "--regid=postgres", "--clear-groups", "--
 
 class Server:
     """Lies in the folder `work`, and has the database `lab` with the role `s` for the given stations and the role `r` that
-    reads. If it is started by root, it runs as the user postgres."""
+    reads. If it is started by root, it runs as the user postgres. `options` are words of PostgreSQL's command line."""
 
-    def __init__(self, work, turnpoint, stations):
+    def __init__(self, work, turnpoint, stations, options=""):
         self.work, self.data, self.turnpoint = work, os.path.join(work, "data"), turnpoint
         os.chmod(work, 0o755)
         if USER:
             shutil.chown(work, "postgres", "postgres")
-        self.run("initdb", "-A", "trust", "-U", "postgres", "-D", self.data)
+        self.run("initdb", "--no-sync", "-A", "trust", "-U", "postgres", "-D", self.data)
         self.run("pg_ctl", "-w", "-D", self.data, "-l", os.path.join(work, "log"), "-o",
-                 f"-c listen_addresses='' -c unix_socket_directories={work} -c shared_buffers=256MB -c max_wal_size=2GB", "start")
+                 f"-c listen_addresses='' -c unix_socket_directories={work} -c shared_buffers=256MB -c max_wal_size=2GB {options}", "start")
         self.run("createdb", "-h", work, "-U", "postgres", "lab")
         schema = subprocess.run([turnpoint, "collector-schema"], capture_output=True, check=True).stdout
         subprocess.run(["psql", "-Xq", "-h", work, "-U", "postgres", "lab"], input=schema, check=True)
@@ -58,3 +58,42 @@ class Server:
 
     def address(self, role):
         return f"postgresql:///lab?host={self.work}&user={role}"
+
+
+class KeptServer(Server):
+    """A server whose rows can be kept and put back. It is not safe from power cuts."""
+
+    def __init__(self, work, turnpoint, stations):
+        self.psql = None
+        super().__init__(work, turnpoint, stations, "-c fsync=off -c synchronous_commit=off -c full_page_writes=off")
+        self.psql = subprocess.Popen(["psql", "-XqAt", "-v", "ON_ERROR_STOP=1", "-h", self.work, "-U", "postgres", "lab"],
+                                     stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.sql("SET client_min_messages = warning")
+        self.tables = self.sql("SELECT tablename FROM pg_tables WHERE schemaname = 'turnpoint'").split()
+
+    def sql(self, text):
+        if self.psql is None:
+            return super().sql(text)
+        self.psql.stdin.write(text + ";\n\\echo =\n")
+        self.psql.stdin.flush()
+        lines = []
+        while (line := self.psql.stdout.readline()) != "=\n":
+            if not line:
+                raise RuntimeError(f"psql failed: {text}")
+            lines.append(line)
+        return "".join(lines).strip()
+
+    def stop(self):
+        self.psql.communicate()
+        super().stop()
+
+    def keep(self, name):
+        self.sql(f"CREATE SCHEMA kept_{name};" + ";".join(
+            f"CREATE TABLE kept_{name}.{table} AS TABLE turnpoint.{table}" for table in self.tables))
+
+    def restore(self, name):
+        """Puts the rows back, and ends the connections of a program that was killed."""
+        self.sql("SELECT pg_terminate_backend(pid, 10000) FROM pg_stat_activity WHERE usename <> 'postgres';"
+                 "BEGIN; SET LOCAL session_replication_role = replica;" + ";".join(
+                     f"DELETE FROM turnpoint.{table}; INSERT INTO turnpoint.{table} TABLE kept_{name}.{table}"
+                     for table in self.tables) + ";COMMIT")

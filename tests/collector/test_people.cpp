@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <set>
 
 #include "station/collector/fetch.hpp"
@@ -5,6 +6,9 @@
 #include "station/store/merge.hpp"
 #include "station/store/people.hpp"
 #include "station/store/read.hpp"
+#include "station/store/session_log.hpp"
+#include "station/store/station.hpp"
+#include "station/store/withdraw.hpp"
 #include "tests/collector/exported.hpp"
 #include "tests/collector/postgres_server.hpp"
 #include "tests/store/sample.hpp"
@@ -128,4 +132,61 @@ TEST_CASE("what is chosen is read from the server, and nothing else", "[collecto
   postgres.admin().query("UPDATE turnpoint.trial SET level = level + 1 WHERE session_id <> '" + one + "'");
   CHECK_NOTHROW(collector::ReadableDatabase(postgres.address("reader"), {one, "", ""}));
   CHECK_THROWS_AS(collector::ReadableDatabase(postgres.address("reader")), store::StoreError);
+}
+
+TEST_CASE("two stations with one name are told so before anything of the second is sent or withdrawn",
+          "[collector]") {
+  const PostgresServer postgres;
+  const TemporaryFolder folder;
+  const auto a = folder / "a.sqlite", b = folder / "b.sqlite", replaced = folder / "replaced.sqlite";
+  const auto now_on = [](const std::string& path, const std::string& machine) {
+    auto database = sample::raw(path);
+    store::move_station(database, machine);
+  };
+  const auto record = [&](const std::string& path, const std::string& code, const std::string& machine) {
+    if (std::filesystem::exists(path)) now_on(path, machine);
+    auto segment = sample::segment();
+    segment.machine = machine;
+    auto log = store::SessionLog::begin(path, sample::start(code), segment);
+    log.begin_block(sample::block());
+    log.append(sample::answered(0));
+    log.finish(store::SessionStatus::completed, "");
+  };
+  const auto push = [&](const std::string& path, const std::string& role = "station_a") {
+    now_on(
+        path,
+        store::machine_identity());  // the machine of this test, whose push is not refused for its own sake
+    return collector::push({path, postgres.as(role), "", "", {}, {}});
+  };
+  const auto sessions = [&] { return postgres.admin().query("SELECT 1 FROM turnpoint.session").count(); };
+  record(a, "P01", "board-1");
+  record(b, "P01", "board-2");
+  CHECK(push(a).complete());
+  record(b, "P02", "board-2");
+  std::string said;
+  try {
+    push(b);
+  } catch (const collector::ServerError& error) {
+    said = error.what();
+  }
+  CHECK(sample::contains(said, "another machine sends its sessions as station bench-a"));
+  CHECK(sample::contains(said, "station-name --db " + b + " NEW-NAME --stored"));
+  CHECK(sessions() == 1);
+  // not even a withdrawal, which would delete the other station's P01
+  store::withdraw(b, {"P01", "", "", ""});
+  CHECK_THROWS_AS(push(b), collector::ServerError);
+  CHECK(sessions() == 1);
+  // the way out that the message names; bench-b has a role of its own
+  now_on(b, "board-2");
+  store::name_station(b, {"bench-b", store::Whose::found, true}, "board-2");
+  CHECK(push(b, "station_b").complete());
+  CHECK(sessions() == 2);
+  // a new board that goes on with the database of the old one, even if a backup was restored
+  sample::raw(a).execute("PRAGMA wal_checkpoint(TRUNCATE)");
+  std::filesystem::copy_file(a, replaced);
+  record(a, "P03", "board-1");
+  CHECK(push(a).complete());
+  record(replaced, "P01", "board-3");
+  CHECK(push(replaced).complete());
+  CHECK(sessions() == 4);
 }

@@ -71,8 +71,8 @@ class Clock(unittest.TestCase):
             there = (twice + datetime.timedelta(hours=hours)).timestamp()
             self.session("autumn.sqlite", TZ="Europe/Berlin", CLOCK_OFFSET_S=str(round(there - time.time())))
         listed = json.loads(self.call("sessions", "--db", "autumn.sqlite", "--json"))
-        started = sorted(session["started"] for session in listed)
-        self.assertEqual([text[:16] + text[19:] for text in started], ["2026-10-25T02:30+0100", "2026-10-25T02:30+0200"])
+        started = sorted(text[:16] + text[19:] for text in (session["started"] for session in listed))
+        self.assertEqual(started, ["2026-10-25T02:30+0100", "2026-10-25T02:30+0200"])
         self.call("export", "--db", "autumn.sqlite", "--out", "autumn")
         with open(os.path.join(self.folder, "autumn", "demo", "trials.csv"), encoding="utf-8", newline="") as table:
             rows = list(csv.DictReader(table))

@@ -8,11 +8,16 @@
 //                        ENOSPC: this call and all later ones that need space fail, as on a full disk
 //   FAULT_LOG=FILE       gets a line "N CALL r|w|a PATH" for each call: r reads, w needs space, a changes
 //                        something else
+//   NOT_OFFERED=ERRNO    the folder's file system offers neither chmod nor chown nor fsync of a folder nor
+//   flock: such
+//                        calls fail with this number, as on some network and FUSE mounts and on FAT; none
+//                        counts as one of the calls above
 //   CLOCK_OFFSET_S=S     the wall clock is ahead by S seconds (negative: behind)
 //   CLOCK_SET_AFTER=N    this begins after the program has read the wall clock N times, as if it was set then
 #include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/time.h>
@@ -36,7 +41,7 @@ struct Settings {
   std::string under;
   long at = 0;
   bool kills = false, fills = false;
-  int log = -1;
+  int log = -1, not_offered = 0;
   long clock_offset_s = 0, clock_set_after = 0;
 };
 
@@ -51,6 +56,7 @@ Settings read_settings() {
   settings.at = std::atol(variable("FAULT_AT").c_str());
   settings.kills = variable("FAULT_KIND") == "kill";
   settings.fills = variable("FAULT_KIND") == "ENOSPC";
+  settings.not_offered = std::atoi(variable("NOT_OFFERED").c_str());
   settings.clock_offset_s = std::atol(variable("CLOCK_OFFSET_S").c_str());
   settings.clock_set_after = std::atol(variable("CLOCK_SET_AFTER").c_str());
   if (const auto log = variable("FAULT_LOG"); !log.empty())
@@ -86,12 +92,27 @@ enum class Effect {
   arranges,  ///< calls that change files or folders but need no space on the disk
 };
 
+bool is_inside(const std::string& path) {
+  const auto& under = settings().under;
+  return !under.empty() && (path == under || path.rfind(under + "/", 0) == 0);
+}
+
+/// Returns true, with errno set, if the file system of this path does not offer the call.
+bool is_not_offered(const std::string& path) {
+  if (settings().not_offered == 0 || !is_inside(path)) return false;
+  return errno = settings().not_offered, true;
+}
+
+bool is_folder(int descriptor) {
+  struct stat status {};
+  return ::syscall(SYS_fstat, descriptor, &status) == 0 && S_ISDIR(status.st_mode);
+}
+
 /// Returns true, with errno set, if this call must fail. `torn` executes only the first half of the call.
 template <class Torn>
 bool fails(const char* call, Effect effect, const std::string& path, Torn torn) {
   const auto& set = settings();
-  const bool inside = path == set.under || path.rfind(set.under + "/", 0) == 0;
-  if (set.under.empty() || !inside) return false;
+  if (!is_inside(path)) return false;
   const long number = ++calls;
   const bool writes = effect == Effect::writes;
   if (set.log >= 0) {
@@ -231,6 +252,7 @@ ssize_t pwrite64(int descriptor, const void* bytes, size_t size, off64_t at) {
 
 int fsync(int descriptor) {
   REAL(fsync);
+  if (is_folder(descriptor) && is_not_offered(path_of(descriptor))) return -1;
   return fails("fsync", Effect::writes, path_of(descriptor)) ? -1 : the_real(descriptor);
 }
 
@@ -276,12 +298,24 @@ int mkdir(const char* path, mode_t mode) {
 
 int chmod(const char* path, mode_t mode) {
   REAL(chmod);
+  if (is_not_offered(absolute(path))) return -1;
   return fails("chmod", Effect::arranges, absolute(path)) ? -1 : the_real(path, mode);
 }
 
 int fchmod(int descriptor, mode_t mode) {
   REAL(fchmod);
+  if (is_not_offered(path_of(descriptor))) return -1;
   return fails("fchmod", Effect::arranges, path_of(descriptor)) ? -1 : the_real(descriptor, mode);
+}
+
+int fchown(int descriptor, uid_t user, gid_t group) noexcept {
+  static auto* const the_real = real<int(int, uid_t, gid_t)>("fchown");
+  return is_not_offered(path_of(descriptor)) ? -1 : the_real(descriptor, user, group);
+}
+
+int flock(int descriptor, int operation) noexcept {
+  static auto* const the_real = real<int(int, int)>("flock");
+  return is_not_offered(path_of(descriptor)) ? -1 : the_real(descriptor, operation);
 }
 
 int gethostname(char* name, size_t size) noexcept {

@@ -84,17 +84,6 @@ def publish_half_made(folder):
                 os.rename(os.path.join(base, name), os.path.join(base, name[:-len(".new")]))
 
 
-class Collector(server.Server):
-    """A PostgreSQL server whose database can be kept and put back."""
-
-    def keep(self, name):
-        self.run("createdb", "-T", "lab", "-h", self.work, "-U", "postgres", name)
-
-    def restore(self, name):
-        self.run("dropdb", "--force", "-h", self.work, "-U", "postgres", "lab")
-        self.run("createdb", "-T", name, "-h", self.work, "-U", "postgres", "lab")
-
-
 class Operation:
     """One command under test. prepare() makes the files from which each run starts; check() checks them after a run."""
     databases = ["lab.sqlite"]
@@ -406,7 +395,7 @@ class Sweep:
             folder = os.path.join(self.work, "server")
             os.mkdir(folder)
             os.chmod(self.work, 0o711)  # the server may have another user
-            self.server = Collector(folder, self.program, ["a"])
+            self.server = server.KeptServer(folder, self.program, ["a"])
             self.server.keep("empty")
         return self.server
 

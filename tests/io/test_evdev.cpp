@@ -1,10 +1,15 @@
+#include <filesystem>
+#include <fstream>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "station/core/usage_error.hpp"
 #include "station/io/evdev_contact.hpp"
 #include "station/io/touch_times.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/fake_evdev.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint::io;
 using News = EvdevDevice::News;
@@ -114,4 +119,65 @@ TEST_CASE("after dropped events, touches belong to the right finger, and no touc
   CHECK(touches[0].time_ns == 40'000);
   CHECK(touches[0].x == Approx(720.0 / 799));
   CHECK(touches[0].y == Approx(432.0 / 479));
+}
+
+TEST_CASE(
+    "of several nodes with one name the touched one is read, and two touched ones are refused with their "
+    "paths",
+    "[touch][evdev]") {
+  TemporaryFolder folder;
+  std::vector<std::unique_ptr<FakeEvdev>> nodes;
+  const auto add = [&](int slots, std::vector<int> keys,
+                       const std::string& name = "ACME Touch") -> FakeEvdev& {
+    const auto path = folder / ("event" + std::to_string(nodes.size()));
+    nodes.push_back(std::make_unique<FakeEvdev>(slots, path));
+    nodes.back()->keys = std::move(keys);
+    nodes.back()->name = name;
+    return *nodes.back();
+  };
+  const auto find = [&](const std::string& name = "ACME Touch") {
+    return EvdevDevice::find(name, folder.path);
+  };
+  std::ofstream(folder / "mouse0") << "not an event node";
+  CHECK_FALSE(find());
+  SECTION("a mouse that reports positions comes first, as on many touch controllers") {
+    add(0, {BTN_LEFT, BTN_RIGHT});
+    add(10, {BTN_TOUCH});
+    add(10, {BTN_TOUCH}, "another panel");
+    const auto found = find();
+    REQUIRE(found);
+    CHECK(found->slot_count() == 10);
+    CHECK(found->is_touched());
+    CHECK_FALSE(EvdevDevice::find(folder / "event0")->is_touched());
+  }
+  SECTION("a panel that cannot tell fingers apart, and a mouse and a keyboard without axes") {
+    add(0, {BTN_LEFT}).axes.clear();
+    add(0, {BTN_TOUCH});
+    add(0, {KEY_ENTER}).axes.clear();
+    REQUIRE(find());
+    CHECK(find()->is_touched());
+  }
+  SECTION("two panels") {
+    add(10, {BTN_TOUCH});
+    add(0, {BTN_LEFT});
+    add(10, {BTN_TOUCH});
+    CHECK_THROWS_WITH(find(),
+                      "input device 'ACME Touch': 2 devices have this name: " + (folder / "event0") + ", " +
+                          (folder / "event2") +
+                          "; write the path of one of them, best a link below /dev/input/by-path, which "
+                          "stays the same after a restart");
+    // the way out that the message names
+    std::filesystem::create_symlink(folder / "event2", folder / "by-path");
+    CHECK(EvdevDevice::find(folder / "by-path")->slot_count() == 10);
+  }
+  SECTION("two nodes of which none is touched") {
+    add(0, {BTN_LEFT});
+    add(0, {BTN_LEFT});
+    CHECK_THROWS_AS(find(), turnpoint::core::UsageError);
+  }
+  SECTION("one node of the name, whatever it is") {
+    add(0, {BTN_LEFT});
+    CHECK(find());
+    CHECK_FALSE(find("ACME"));
+  }
 }

@@ -78,7 +78,7 @@ TEST_CASE("a USB stick is listed with its model, size and folder, and nothing th
   const Machine machine;
   const auto before = maintenance::removable_disks(machine.sources);
   REQUIRE(before.size() == 1);
-  CHECK(before[0] == maintenance::Disk{"/dev/sda1", "Ultra Fit, 31 GB", ""});
+  CHECK(before[0] == maintenance::Disk{"/dev/sda1", "Ultra Fit, 31 GB", "", "/dev/sda"});
   machine.mounts(kStick);
   const auto after = maintenance::removable_disks(machine.sources);
   REQUIRE(after.size() == 1);
@@ -105,6 +105,11 @@ TEST_CASE("the disk with the station's data is never offered, nor another partit
   CHECK(offered("/srv/lab") == "/dev/sda1 ");
   CHECK(offered("/srv") == "/dev/sda1 ");
   CHECK(offered("/srv/la") == "/dev/sda1 /dev/sdc1 /dev/sdc2 ");
+  // the data's folder is a link to the disk
+  fs::create_directories(machine.folder / "mounted/data");
+  fs::create_directory_symlink(machine.folder / "mounted/data", machine.folder / "data");
+  machine.sources.data = (machine.folder / "data/lab.sqlite").string();
+  CHECK(offered(fs::canonical(machine.folder / "mounted").string()) == "/dev/sda1 ");
 }
 
 TEST_CASE("a disk is mounted through udisks, and its folder is the one that the kernel reports", "[disks]") {
@@ -113,6 +118,12 @@ TEST_CASE("a disk is mounted through udisks, and its folder is the one that the 
   machine.udisks("printf '%s\\n' '" + kStick.substr(0, kStick.size() - 1) + "' >> " + machine.sources.mounts);
   CHECK(maintenance::mount(disk, machine.sources) == "/media/lab/MY STICK");
   CHECK(machine.asked() == "mount --no-user-interaction --block-device /dev/sda1\n");
+  CHECK(maintenance::mount(disk, machine.sources) == "/media/lab/MY STICK");
+  CHECK(machine.asked() == "mount --no-user-interaction --block-device /dev/sda1\n");  // and not once more
+  machine.mounts("");                                                                  // it was pulled out
+  machine.udisks("echo 'Error looking up object for device /dev/sda1' >&2; exit 1");
+  CHECK(error_of([&] { maintenance::mount(disk, machine.sources); }).find("Error looking up") !=
+        std::string::npos);
 }
 
 TEST_CASE("a disk that cannot be mounted is named with what udisks said", "[disks]") {
@@ -139,6 +150,21 @@ TEST_CASE("ejecting unmounts and then switches off, and stops if the disk is in 
           maintenance::eject(disk, machine.sources);
         }).find("do not unplug it: target is busy") != std::string::npos);
   CHECK(machine.asked() == "unmount --no-user-interaction --block-device /dev/sda1\n");
+}
+
+TEST_CASE("all partitions of a disk are unmounted before it is switched off", "[disks]") {
+  const Machine machine;
+  machine.partition("sda", "sda2", "8:2");
+  machine.mounts(kStick + "32 25 8:2 / /media/lab/MORE rw shared:9 - vfat /dev/sda2 rw\n");
+  machine.udisks("case $1$4 in unmount/dev/sda2) echo busy; exit 1;; esac");
+  const auto disk = maintenance::removable_disks(machine.sources).at(0);
+  CHECK(error_of([&] { maintenance::eject(disk, machine.sources); }).find("/dev/sda2") != std::string::npos);
+  CHECK(machine.asked().find("power-off") == std::string::npos);
+  machine.udisks("");
+  maintenance::eject(disk, machine.sources);
+  CHECK(machine.asked().ends_with(
+      "--block-device /dev/sda1\nunmount --no-user-interaction --block-device /dev/sda2\n"
+      "power-off --no-user-interaction --block-device /dev/sda1\n"));
 }
 
 TEST_CASE("without udisks the error names the Debian package", "[disks]") {

@@ -52,6 +52,32 @@ TEST_CASE("each finding of the doctor is said in the language of the screen, and
   CHECK(said("converter", "de") == "Meldung: " + said("converter", "en"));
 }
 
+TEST_CASE("the doctor names the file system of the data folder, and what is wrong with it",
+          "[maintenance][doctor]") {
+  const TemporaryFolder folder;  // in memory, on machines that have such a folder
+  bool named = false;
+  for (const auto& finding :
+       maintenance::examine(rig::load(TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated.toml"), folder.path))
+    if (english(finding.name) == "file system of the data folder") {
+      named = true;
+      if (folder.path.starts_with("/dev/shm")) {
+        CHECK(finding.status == Status::failed);
+        CHECK(english(finding.what) == "tmpfs");
+      }
+    }
+  CHECK(named);
+  const auto mend = [](const char* file_system) {
+    const auto finding = maintenance::check_file_system(file_system);
+    CHECK(finding.status != Status::failed);
+    return finding.status == Status::ok ? "" : english(finding.mend);
+  };
+  for (const auto* good : {"ext4", "btrfs", "xfs", "f2fs"}) CHECK(mend(good).empty());
+  for (const auto* remote : {"nfs", "cifs", "fuse", "9p", "ceph"})
+    CHECK_THAT(mend(remote), Catch::Matchers::ContainsSubstring("on a disk of this machine"));
+  for (const auto* plain : {"vfat", "exfat", "ntfs"})
+    CHECK_THAT(mend(plain), Catch::Matchers::ContainsSubstring("ext4"));
+}
+
 TEST_CASE("the doctor fails if the machine swaps, and says how to switch swapping off",
           "[maintenance][doctor]") {
   const TemporaryFolder folder;

@@ -8,6 +8,7 @@
 #include "physics/dispersion.hpp"
 #include "physics/higher_modes.hpp"
 #include "tests/physics/random_scenes.hpp"
+#include "tests/physics/random_surfaces.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::physics;
@@ -16,7 +17,7 @@ using turnpoint::physics_test::scenes;
 
 namespace {
 
-constexpr double frequency_Hz = 20000;
+using turnpoint::physics_test::frequency_Hz;
 
 Surface random_surface(Draw& draw) {
   Surface s = seed_brass();
@@ -235,4 +236,117 @@ TEST_CASE("if only positions are needed, the planner chooses the closed form, al
         lossy.bound.boundary_bound_m);
   request.tolerance.boundary_m = 1e-12;
   CHECK_FALSE(choose_model(s, request).inside);
+}
+
+namespace {
+
+// A clamped plate with straight sides, on which only the first mode propagates.
+Surface usual_plate(Draw& draw, PlateTheory theory) {
+  Surface s = aluminium_plate();
+  s.theory = theory;
+  s.poisson = draw.between(0.1, 0.45);
+  s.thickness_m = draw.spread(0.5e-3, 6e-3);
+  s.quality_factor = draw.next() % 4 == 0 ? std::numeric_limits<double>::infinity() : draw.spread(5, 500);
+  const double cut = cut_off_half_width_m(s, frequency_Hz), d = draw.spread(0.01, 0.3);
+  const double ratio = draw.between(1.15, 2.2);
+  s.taper = LinearTaper{ratio * cut, d};
+  s.length_m = (ratio - draw.between(0.1, 0.8)) * cut / d;
+  return s;
+}
+
+struct Kind {
+  const char* name;
+  int scenes;
+  Surface (*make)(Draw&);
+};
+const Kind kinds[] = {
+    {"membrane", 40, turnpoint::physics_test::random_membrane},
+    {"thin plate", 20, turnpoint::physics_test::random_thin_plate},
+    {"thick plate", 4, turnpoint::physics_test::random_thick_plate},
+    {"straight thin plate", 20, [](Draw& draw) { return usual_plate(draw, PlateTheory::kirchhoff); }},
+    {"straight thick plate", 6, [](Draw& draw) { return usual_plate(draw, PlateTheory::mindlin); }}};
+
+// The surfaces of a kind whose first mode turns on them, from the number TURNPOINT_FIRST_SCENE on.
+template <class Work>
+void for_scenes(const Kind& kind, std::uint64_t seed, Work work) {
+  const int count = scenes(kind.scenes), first = turnpoint::physics_test::first_scene();
+  for (int i = first; i < first + count; ++i) {
+    Draw draw(seed + static_cast<std::uint64_t>(i));
+    const Surface s = kind.make(draw);
+    const auto x0 = turning_point_m(s, frequency_Hz);
+    if (x0 && *x0 >= 0.02 * s.length_m) work(i, s, draw);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the last maximum and edges from 90 to 1 % of it lie inside the bounds of mode", "[physics]") {
+  for (const Kind& kind : kinds) {
+    int compared = 0, shallow = 0;
+    double worst = 0;
+    for_scenes(kind, 20300000, [&](int i, const Surface& s, Draw&) {
+      const auto truth = make_centre_line(s, frequency_Hz, Model::modes),
+                 mode = make_centre_line(s, frequency_Hz, Model::mode);
+      for (const Edge& edge :
+           {Edge::peak(), Edge::percent(0.9), Edge::percent(0.5), Edge::percent(0.1), Edge::percent(0.01)}) {
+        const auto at = [&](const CentreLine& line) {
+          const auto x = edge.kind == Edge::Kind::peak ? line.last_peak_m() : line.level_m(edge.level);
+          return x && *x < s.length_m * (1 - 1e-9) ? x : std::nullopt;
+        };
+        const auto one = at(*mode), other = at(*truth);
+        if (!one || !other) continue;
+        PlanRequest request;
+        request.tones = {Tone{frequency_Hz, 1, 0}};
+        request.points = 100;
+        request.edge = edge;
+        const auto considered = choose_model(s, request).considered;
+        const auto bound = std::ranges::find(considered, Model::mode, &RungEstimate::model)->boundary_bound_m;
+        const double error = std::abs(*one - *other), own = 2e-5 * cut_off_half_width_m(s, frequency_Hz);
+        CAPTURE(kind.name, i, format(edge), error, bound, s.taper.index(), s.quality_factor);
+        CHECK(error <= bound + own);
+        ++compared, shallow += bound >= s.length_m;
+        worst = std::max(worst, (error - own) / bound);
+      }
+    });
+    if (scenes(kind.scenes) > kind.scenes)
+      WARN(kind.name << ": " << compared << " edges, " << shallow
+                     << " without a bound; largest error / bound " << worst);
+    CHECK(compared > kind.scenes);
+  }
+}
+
+TEST_CASE("the bounds of mode that a choice states hold, and mode is taken on most plates where it suffices",
+          "[physics]") {
+  for (const Kind& kind : kinds) {
+    int compared = 0, suffices = 0, taken = 0;
+    double worst = 0;
+    std::vector<double> ratios;
+    for_scenes(kind, 20310000, [&](int i, const Surface& s, Draw& draw) {
+      const Normalise normalise = draw.next() % 2 == 0 ? Normalise::peak : Normalise::drive;
+      PlanRequest request = request_for(normalise);
+      request.tolerance.level_dB = draw.spread(0.02, 1);
+      const auto choice = choose_model(s, request);
+      const auto truth = make_centre_line(s, frequency_Hz, Model::modes);
+      const auto error = true_error(s, Model::mode, *truth, normalise);
+      if (!error) return;
+      const auto& bound = *std::ranges::find(choice.considered, Model::mode, &RungEstimate::model);
+      ++compared;
+      suffices += error->level_dB <= *request.tolerance.level_dB;
+      taken += choice.model == Model::mode;
+      // the errors of `modes` itself are far below these slacks
+      const double amplitude = std::max(0.0, error->amplitude - 1e-4),
+                   level_dB = std::max(0.0, error->level_dB - 1e-3);
+      ratios.push_back(bound.level_bound_dB / error->level_dB);
+      worst = std::max({worst, amplitude / bound.amplitude_bound, level_dB / bound.level_bound_dB});
+      CAPTURE(kind.name, i, amplitude, bound.amplitude_bound, level_dB, bound.level_bound_dB, choice.reason);
+      CHECK(amplitude <= bound.amplitude_bound);
+      CHECK(level_dB <= bound.level_bound_dB);
+    });
+    if (scenes(kind.scenes) > kind.scenes)
+      WARN(kind.name << ": " << compared << " compared; largest error / bound " << worst
+                     << ", median of bound / error of the level " << turnpoint::physics_test::median(ratios)
+                     << "; mode suffices in " << suffices << " and is taken in " << taken);
+    CHECK(compared > kind.scenes / 2);
+    CHECK(taken <= suffices);  // a bound holds, so no scene is given a model that does not suffice
+  }
 }

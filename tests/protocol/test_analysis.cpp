@@ -72,6 +72,16 @@ TEST_CASE("a value of the key show that would show nothing is an error that says
   CHECK(refused("friction-identification") == Words{"psychometric", "ez", "bis", "dprime"});
   CHECK(refused("boundary-adjustment") ==
         Words{"psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime"});
+  // BIS needs two conditions in a study, of one difficulty or of several; groups of participants are
+  // conditions too
+  const auto demo_with = [](const std::string& factor, const std::string& by) {
+    auto text = with_analysis("demo", by + "show = [\"bis\"]");
+    return problems_of(text.insert(text.find("[task]"), "[[factor]]\nname = \"hand\"\n" + factor + "\n\n"));
+  };
+  CHECK_FALSE(demo_with("levels = [\"left\"]", "by = \"hand\"\n").empty());
+  CHECK(demo_with("levels = [\"left\", \"right\"]", "by = \"hand\"\n").empty());
+  CHECK_FALSE(demo_with("levels = [\"left\", \"right\"]", "").empty());
+  CHECK(demo_with("levels = [\"left\", \"right\"]\ndraw = \"per-participant\"", "").empty());
   auto unscored = source_of("demo");
   const auto at = unscored.find("[task.correct]");
   unscored.erase(at, unscored.find("[timing]") - at);

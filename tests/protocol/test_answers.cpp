@@ -147,6 +147,20 @@ TEST_CASE("one answer near zero and another far from it have a PSE of the size",
   CHECK(above.meanings[0].design == protocol::Design::yes_no);
 }
 
+TEST_CASE("of left, don't know and right, the report says how often each is given", "[protocol]") {
+  auto text = replaced(source_of("demo"), "left = \"offset_mm < 0\"", "");
+  text = replaced(text, "right = \"offset_mm > 0\"", "");
+  text = replaced(text, "[task.correct]", "");
+  text = replaced(text, "feedback = \"trial\"", "");
+  text = replaced(text, "device = \"either\"", "device = \"touch\"");
+  text = replaced(text, "[[task.choices]]\nid = \"right\"",
+                  "[[task.choices]]\nid = \"unsure\"\nlabel = { en = \"Don't know\", de = \"Unsicher\", ja = "
+                  "\"わからない\" }\n\n[[task.choices]]\nid = \"right\"");
+  const auto found = protocol::parse(text, "third.toml");
+  CHECK(found.meanings[0].design == protocol::Design::categories);
+  CHECK(meaning(found) == "how often each of 3 answers is given at each `offset_mm`");
+}
+
 TEST_CASE("two answers of which none is right have a PSE", "[protocol]") {
   const auto found = two_answers("", "[-40.0, 40.0]", "[-30.0, -5.0, 5.0, 15.0, 30.0]");
   CHECK(meaning(found) == "PSE and spread of `level_mm` by the answer \u201chigh\u201d, cumulative normal");

@@ -1,4 +1,6 @@
-// protocols/README.md is the manual of protocol files: its examples must be valid.
+// The pages beside the protocols are the manual of protocol files: their examples must be valid.
+#include <algorithm>
+#include <filesystem>
 #include <sstream>
 
 #include "station/core/read_file.hpp"
@@ -10,10 +12,18 @@ using namespace turnpoint;
 
 namespace {
 
-const std::string readme_path = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/README.md";
+const std::string folder = std::string(TURNPOINT_SOURCE_DIR) + "/protocols";
 
-std::vector<std::string> snippets() {
-  std::istringstream lines(core::read_file(readme_path));
+std::vector<std::string> pages() {
+  std::vector<std::string> all;
+  for (const auto& file : std::filesystem::directory_iterator(folder))
+    if (file.path().extension() == ".md") all.push_back(file.path().string());
+  std::ranges::sort(all);
+  return all;
+}
+
+std::vector<std::string> snippets(const std::string& page) {
+  std::istringstream lines(core::read_file(page));
   std::vector<std::string> all;
   bool inside = false;
   for (std::string line; std::getline(lines, line);) {
@@ -50,18 +60,22 @@ bool lacks_the_rest(const core::Problem& problem) {
 
 }  // namespace
 
-TEST_CASE("the manual's complete example is a valid protocol file", "[protocol]") {
-  const auto all = snippets();
+TEST_CASE("the guide's complete example is a valid protocol file", "[protocol]") {
+  const auto all = snippets(folder + "/README.md");
   REQUIRE(all.size() >= 10);
   CHECK(problems_of(all.front()).empty());
 }
 
-TEST_CASE("every example of the manual is valid, apart from what stands elsewhere in a file", "[protocol]") {
-  for (const auto& snippet : snippets()) {
-    INFO(snippet);
-    for (const auto& problem : problems_of(snippet)) {
-      INFO(format(problem));
-      CHECK(lacks_the_rest(problem));
+TEST_CASE("every example of the pages is valid, apart from what stands elsewhere in a file", "[protocol]") {
+  std::size_t tried = 0;
+  for (const auto& page : pages())
+    for (const auto& snippet : snippets(page)) {
+      INFO(page << ":\n" << snippet);
+      ++tried;
+      for (const auto& problem : problems_of(snippet)) {
+        INFO(format(problem));
+        CHECK(lacks_the_rest(problem));
+      }
     }
-  }
+  CHECK(tried >= 40);
 }

@@ -224,9 +224,11 @@ class Report(unittest.TestCase):
                 same(cell.drift, shown["drift"], "drift")
         self.assertEqual(fit.model_p, report["model_p"])
         shown = [one for one in fit.differences if one.measure != "inverse efficiency"]  # as the protocol decides
-        for one, there in zip(shown, report["differences"], strict=True):
+        told = [one for one in report["differences"] if one["measure"] != "d'"]  # needs to know the task
+        for one, there in zip(shown, told, strict=True):
             self.assertEqual((one.first, one.second, one.measure), (there["first"], there["second"], there["measure"]))
             same(one.estimate, there["estimate"], one.measure)
+            self.assertAlmostEqual(one.p, there["p"], places=12, msg=one.measure)
 
 
 class Others(unittest.TestCase):
@@ -269,6 +271,22 @@ class Others(unittest.TestCase):
         (curve,) = analysis.response_signal(lag_s + 0.25, lag_s, signal, yes)
         for found, truth in ((curve.asymptote, 2.5), (curve.rate_per_s, 4), (curve.intercept_s, 0.3)):
             self.assertTrue(found.low < truth < found.high, found)
+
+    def test_nested_curves_and_holm(self):
+        rng = np.random.default_rng(6)
+        lag_s, signal = np.repeat([0.1, 0.2, 0.35, 0.6, 1.0, 1.6], 800), np.tile([0, 1], 2400)
+        where = np.tile([0, 0, 1, 1], 1200)
+        d = np.where(where, 1.2, 2.5) * (1 - np.exp(-4 * np.maximum(lag_s + 0.25 - 0.3, 0)))
+        yes = rng.standard_normal(4800) + d * (signal - 0.5) > 0
+        (pair,) = analysis.compare_curves(analysis.response_signal(lag_s + 0.25, lag_s, signal, yes, condition=where))
+        self.assertEqual((pair.first, pair.second), ("0", "1"))
+        self.assertLess(pair.asymptote.high, -0.8)
+        self.assertLess(pair.asymptote_p, 0.02)
+        self.assertGreater(min(pair.rate_p, pair.intercept_p), 0.02)
+        np.testing.assert_allclose(analysis.holm([0.01, 0.04, np.nan, 0.03]), [0.03, 0.06, np.nan, 0.06])
+        np.testing.assert_allclose(analysis.holm([0.01, 0.04, 0.03], family=["a", "b", "a"]), [0.02, 0.04, 0.03])
+        with self.assertRaisesRegex(ValueError, "from 0 to 1"):
+            analysis.holm([0.5, 1.5])
 
     def test_wrong_arrays_are_refused(self):
         t, c = [0.5] * 20, [1] * 20

@@ -44,6 +44,14 @@ class Reading(unittest.TestCase):
                             decimal], check=True, stdout=subprocess.DEVNULL)
             self.same(turnpoint.read(self.database), turnpoint.read(out))
 
+    def test_tables_with_a_byte_order_mark(self):
+        out = self.folder / "marked"
+        subprocess.run([TURNPOINT, "export", "--db", self.database, "--out", out, "--byte-order-mark"], check=True,
+                       stdout=subprocess.DEVNULL)
+        tables = list(out.rglob("*.csv"))
+        self.assertTrue(tables and all(table.read_bytes().startswith(b"\xef\xbb\xbf") for table in tables))
+        self.same(turnpoint.read(self.database), turnpoint.read(out))
+
     def test_trials_are_those_of_the_database(self):
         trials = turnpoint.read(self.database).trials
         rows = sqlite3.connect(self.database).execute(

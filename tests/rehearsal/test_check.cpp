@@ -117,13 +117,34 @@ TEST_CASE("check says in which languages the station's own words are, and refuse
   CHECK(core::say(check.notes[0].what, "en").find(note) == 0);
 
   options.drawable = [](char32_t c) { return c < 0x3000; };
-  const auto refused = rehearsal::check(path, rig, options);
-  REQUIRE_FALSE(refused.problems.empty());
-  for (const auto& problem : refused.problems) {
-    CHECK(problem.place.file == path);
-    CHECK(problem.place.line > 0);
-    CHECK(core::format(problem).find("U+6211") != std::string::npos);
-  }
+  const auto warned = rehearsal::check(path, rig, options);
+  CHECK(warned.problems.empty());
+  CHECK(std::find(warned.languages.begin(), warned.languages.end(), language) == warned.languages.end());
+  CHECK_FALSE(warned.languages.empty());
+  int told = 0;
+  for (const auto& warning : warned.warnings)
+    if (warning.place.file == path && core::format(warning).find("U+6211") != std::string::npos) {
+      CHECK(warning.place.line > 0);
+      ++told;
+    }
+  CHECK(told == 1);
+}
+
+TEST_CASE("check lists what comes before and after the blocks, in the order of the session", "[check]") {
+  const std::string root = TURNPOINT_SOURCE_DIR;
+  const auto check =
+      rehearsal::check(root + "/protocols/boundary-visit.toml", root + "/deploy/rigs/simulated.toml", {1});
+  REQUIRE(check.blocks.size() == 2);
+  using Kind = protocol::InterludeKind;
+  const auto& first = check.blocks.front().before;
+  REQUIRE(first.size() > 1);
+  CHECK(first.back().kind == Kind::explanation);
+  CHECK(first.back().pages == 2);
+  REQUIRE(check.blocks.back().before.size() == 1);
+  CHECK(check.blocks.back().before.front().kind == Kind::screening);
+  REQUIRE(check.blocks.back().after.size() == 1);
+  CHECK(check.blocks.back().after.front().name == "afterwards");
+  CHECK(check.blocks.front().after.empty());
 }
 
 TEST_CASE("the duration estimated by check includes time to set a slider", "[check]") {

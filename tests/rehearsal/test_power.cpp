@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <stdexcept>
 #include <string_view>
 
+#include "station/core/usage_error.hpp"
 #include "station/rehearsal/parallel.hpp"
 #include "station/rehearsal/rehearsal.hpp"
 #include "tests/support/catch.hpp"
@@ -88,6 +90,111 @@ TEST_CASE("the true values are the observer's own parameters, never estimates", 
     if (recovery.parameter !=
         "proportion correct")  // this is a proportion of all trials; the other parameters leave out timeouts
       CHECK(recovery.truth == find(power, recovery.source, recovery.parameter).truth);
+}
+
+TEST_CASE("the diffusion's parameters in each condition are recovered, as the report prints them", "[power]") {
+  // TURNPOINT_POWER_SESSIONS=200 for more
+  const char* given = std::getenv("TURNPOINT_POWER_SESSIONS");
+  const int sessions = given == nullptr ? 12 : std::atoi(given);
+  const auto power = rehearsal::power(shipped("speed-accuracy"),
+                                      options("sim:threshold=0.15,lapse=0", sessions, sessions));
+  const double hurried = 0.2 * std::sqrt(0.35 * 0.3);
+  CHECK(*find(power, "diffusion speed", "boundary").truth == Approx(hurried));
+  CHECK(*find(power, "diffusion accuracy", "time outside the decision").truth == 0.5);
+  for (const auto* source : {"diffusion speed", "diffusion accuracy"})
+    for (const auto* parameter : {"boundary", "time outside the decision", "drift"}) {
+      const auto& found = find(power, source, parameter);
+      INFO(source << ", " << parameter << ": " << found.mean << " +- " << found.sd << ", covered "
+                  << found.coverage->value);
+      REQUIRE((found.truth && found.coverage));
+      CHECK(found.coverage->trials == sessions);
+      CHECK(found.coverage->right >= 0.75 * sessions);
+      CHECK_FALSE(found.claimed);  // only differences can be claimed
+    }
+  // the accuracy instruction raises the boundary, which most sessions claim; drift is the same, so a claim would
+  // be a false alarm
+  CHECK(find(power, "accuracy - speed", "boundary").claimed->value > 0.9);
+  REQUIRE(find(power, "accuracy - speed", "drift").claimed);
+  CHECK(find(power, "accuracy - speed", "drift").claimed->value < 0.4);
+  REQUIRE(power.misfits);
+  CHECK(power.misfits->trials == sessions);
+  CHECK(power.misfits->value < 0.4);
+}
+
+TEST_CASE("curves at a response signal are planned: the truth is the best curve through the observer's answers",
+          "[power]") {
+  const auto power = rehearsal::power(shipped("response-signal"), options("sim:lapse=0", 8, 8));
+  for (const auto* parameter : {"asymptote of d'", "rate of d'", "intercept of d'"}) {
+    const auto& found = find(power, "signal", parameter);
+    INFO(parameter << ": truth " << *found.truth << ", median " << found.median);
+    REQUIRE(found.truth);
+    REQUIRE(found.coverage);
+    CHECK(found.coverage->right >= found.coverage->trials - 2);
+  }
+  // ever more trials come to this truth
+  auto longer = shipped("response-signal");
+  for (auto& spec : longer.procedures) spec.repeats *= 40;
+  const auto exact = rehearsal::power(longer, options("sim:lapse=0", 1, 1));
+  CHECK(find(exact, "signal", "asymptote of d'").mean ==
+        Approx(*find(power, "signal", "asymptote of d'").truth).epsilon(0.06));
+  CHECK(find(exact, "signal", "intercept of d'").mean ==
+        Approx(*find(power, "signal", "intercept of d'").truth).margin(0.04));
+}
+
+TEST_CASE("studies of several people are planned with the effects that their report prints", "[power]") {
+  auto wanted = options("sim:threshold=0.15", 12);
+  wanted.people = 4;
+  wanted.between = simulation::parse_spread("threshold=0.03,bound=0.15,residual=0.1");
+  const auto power = rehearsal::power(shipped("speed-accuracy"), wanted);
+  CHECK(power.people == 4);
+  const auto& boundary = find(power, "accuracy - speed", "boundary");
+  CHECK(boundary.estimates.size() == 3);
+  CHECK(boundary.sessions == 3);
+  REQUIRE((boundary.truth && boundary.claimed && boundary.coverage));
+  CHECK(*boundary.truth > 0.03);
+  CHECK(boundary.claimed->trials == 3);
+  for (const auto* measure : {"time outside the decision", "drift"})
+    CHECK(*find(power, "accuracy - speed", measure).truth == 0);
+  CHECK(find(power, "accuracy - speed", "BIS").estimates.size() == 3);  // only a study has it
+  const auto& mean = find(power, "mean speed", "time outside the decision");
+  CHECK(*mean.truth == Approx(0.5).margin(0.08));  // people differ, so it is the mean of those who were drawn
+  CHECK_THROWS(find(power, "diffusion speed", "boundary"));
+  // someone who differs in nothing is the observer; the more people differ, the more uncertain a study is
+  auto alike = wanted;
+  alike.between = simulation::parse_spread("residual=1e-9");
+  CHECK(*find(rehearsal::power(shipped("speed-accuracy"), alike), "mean speed", "time outside the decision").truth ==
+        Approx(0.5));
+  auto uneven = wanted;
+  uneven.observers = 10;
+  CHECK_THROWS_AS(rehearsal::power(shipped("speed-accuracy"), uneven), std::invalid_argument);
+}
+
+TEST_CASE("people are drawn around the observer, each parameter by itself", "[power]") {
+  const auto middle = simulation::parse("sim:threshold=6,bound=0.8");
+  const auto people = [&](const char* text) {
+    std::vector<simulation::Parameters> all;
+    for (int i = 0; i < 400; ++i) {
+      core::Draws draws({1, core::Stream::observer, -1, 0, i});
+      all.push_back(simulation::draw_person(middle, simulation::parse_spread(text), draws));
+    }
+    return all;
+  };
+  const auto some = people("bound=0.2"), more = people("bound=0.2,threshold=3");
+  double squares = 0;
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    const double gap = std::log(some[i].bound / 0.8);
+    squares += gap * gap / 400;
+    CHECK(some[i].bound == more[i].bound);
+    CHECK(some[i].residual_s == middle.residual_s);
+    CHECK(*some[i].threshold == 6);
+    CHECK(*more[i].threshold >= 0.6);
+  }
+  CHECK(std::sqrt(squares) == Approx(0.2).epsilon(0.15));
+  core::Draws draws({});
+  CHECK_THROWS_WITH(simulation::draw_person(simulation::parse("sim"), simulation::parse_spread("threshold=1"), draws),
+                    Catch::Matchers::ContainsSubstring("write sim:threshold="));
+  for (const auto* wrong : {"", "bound", "bound=", "bound=-1", "bound=0", "bounds=1", "bound=0.1;slope=1"})
+    CHECK_THROWS_AS(simulation::parse_spread(wrong), core::UsageError);
 }
 
 TEST_CASE("a fit finds the observer's own threshold and slope", "[power]") {

@@ -1373,6 +1373,9 @@ def measure_of(entry, own, session):
               "scatter of settings": ("settings", "sd"), "settings from below minus from above": ("settings", "side_difference"),
               "asymptote of d'": ("response_signal", "asymptote"), "rate of d'": ("response_signal", "rate_per_s"),
               "intercept of d'": ("response_signal", "intercept_s"), "exponent": ("judgements", "exponent")}
+    if name == "d'" and at < len(own["instructions"]) and not own["detection"]:
+        found = own["instructions"][at]["d_prime"]
+        return found["value"] if found else None
     if name in tables:
         found = own[tables[name][0]][-1]
         for key in tables[name][1:]:

@@ -1,11 +1,17 @@
 #include <cmath>
+#include <map>
 #include <set>
+#include <sstream>
+#include <string>
 #include <utility>
 
 #include "station/report/chart.hpp"
+#include "station/report/figure_files.hpp"
 #include "station/report/palette.hpp"
+#include "station/report/pdf.hpp"
 #include "station/report/svg.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/svg_geometry.hpp"
 
 using namespace turnpoint::report;
 
@@ -184,4 +190,175 @@ TEST_CASE("The estimated width of a text is never too small, and wide characters
   CHECK(text_width("abc", 10) == Approx(18.6));
   CHECK(text_width("\u5de6\u53f3", 10) == Approx(20));
   CHECK(text_width("\u2212", 10) == Approx(6.2));
+}
+
+namespace {
+
+Chart two_conditions(double second_low, double second_high) {
+  Chart chart;
+  chart.x = {"Level", 0, 4};
+  chart.y = {"Proportion", 0, 1};
+  chart.layers = {Points{{1, 2, 3}, {0.3, 0.5, 0.7}, {0.2, 0.4, 0.6}, {0.4, 0.6, 0.8}, {}, {}, 0, "a"},
+                  Points{{1, 2, 3},
+                         {second_low, second_low, second_low},
+                         {second_low, second_low, second_low},
+                         {second_high, second_high, second_high},
+                         {},
+                         {},
+                         1,
+                         "b"}};
+  return chart;
+}
+
+Figure one_chart(Chart chart) {
+  Figure figure;
+  figure.title = "One";
+  figure.charts = {std::move(chart)};
+  return figure;
+}
+
+/// The positions of the vertical lines in the colour of a series.
+std::vector<double> bars_of(const std::string& svg, int series) {
+  std::vector<double> places;
+  for (const auto& line : svg_geometry::elements(svg, "line"))
+    if (svg_geometry::attribute(line, "stroke") == style(series).colour &&
+        svg_geometry::number(line, "x1") == svg_geometry::number(line, "x2"))
+      places.push_back(svg_geometry::number(line, "x1"));
+  return places;
+}
+
+std::size_t arrows(const std::string& svg) { return svg_geometry::elements(svg, "polygon").size(); }
+
+}  // namespace
+
+TEST_CASE("Intervals of two conditions at one level stand beside each other, and only then", "[plot]") {
+  const auto overlapping = render(one_chart(two_conditions(0.3, 0.7)));
+  const auto first = bars_of(overlapping, 0), second = bars_of(overlapping, 1);
+  REQUIRE(first.size() == 3);
+  REQUIRE(second.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(second[i] - first[i] > 5);
+    CHECK(second[i] - first[i] < 12);
+  }
+  const auto apart = render(one_chart(two_conditions(0.85, 0.95)));
+  CHECK(bars_of(apart, 0) == bars_of(apart, 1));
+  auto in_place = two_conditions(0.3, 0.7);
+  in_place.beside = false;
+  const auto kept = render(one_chart(in_place));
+  CHECK(bars_of(kept, 0) == bars_of(kept, 1));
+}
+
+TEST_CASE("A line through the same points moves with them", "[plot]") {
+  auto chart = two_conditions(0.3, 0.7);
+  chart.layers.push_back(Line{{1, 2, 3}, {0.3, 0.5, 0.7}, 0, ""});
+  const auto svg = render(one_chart(chart));
+  const auto lines = svg_geometry::elements(svg, "polyline");
+  REQUIRE(lines.size() == 1);
+  CHECK(std::stod(svg_geometry::attribute(lines[0], "points")) == Approx(bars_of(svg, 0)[0]).margin(0.02));
+}
+
+TEST_CASE("Horizontal intervals at one height stand above each other", "[plot]") {
+  Chart chart;
+  chart.x = {"Level", 0, 4};
+  chart.y = {"Proportion", 0, 1};
+  chart.layers = {Span{1, 2, 0.5, 0}, Span{1.5, 3, 0.5, 1}};
+  const auto height = [&](int series) {
+    for (const auto& line : svg_geometry::elements(render(one_chart(chart)), "line"))
+      if (svg_geometry::attribute(line, "stroke") == style(series).colour &&
+          svg_geometry::number(line, "y1") == svg_geometry::number(line, "y2"))
+        return svg_geometry::number(line, "y1");
+    return 0.0;
+  };
+  CHECK(std::abs(height(0) - height(1)) > 5);
+  chart.layers = {Span{1, 2, 0.5, 0}, Span{2.5, 3, 0.5, 1}};
+  CHECK(height(0) == height(1));
+}
+
+TEST_CASE("Where an axis cuts an interval, an arrow says so", "[plot]") {
+  Chart chart;
+  chart.x = {"Level", 1, 3};
+  chart.y = {"Proportion", 0, 1};
+  const auto drawn = [&](Layer layer) {
+    chart.layers = {std::move(layer)};
+    return arrows(render(one_chart(chart)));
+  };
+  const auto bar = [](double low, double high) { return Points{{2}, {0.5}, {low}, {high}, {}, {}, 0, ""}; };
+  CHECK(drawn(bar(0.2, 0.8)) == 0);
+  CHECK(drawn(bar(0, 1)) == 0);
+  CHECK(drawn(bar(-0.1, 0.8)) == 1);
+  CHECK(drawn(bar(-0.1, 1.1)) == 2);
+  CHECK(drawn(bar(0.2, INFINITY)) == 1);
+  CHECK(drawn(Span{1.5, 2, 0.5, 0}) == 0);
+  CHECK(drawn(Span{0.5, 2, 0.5, 0}) == 1);
+  CHECK(drawn(Span{-INFINITY, INFINITY, 0.5, 0}) == 2);
+  CHECK(drawn(Span{3.5, 4, 0.5, 0}) == 0);  // outside the axis altogether
+  chart.x.scale = AxisScale::log10;
+  CHECK(drawn(Span{-1, 2, 0.5, 0}) == 1);  // a log axis has no place for values below 0
+}
+
+TEST_CASE("A legend appears only where there is something to tell apart", "[plot]") {
+  auto chart = two_conditions(0.3, 0.7);
+  CHECK(render(one_chart(chart)).find(">b</text>") != std::string::npos);
+  chart.layers.pop_back();
+  CHECK(render(one_chart(chart)).find(">a</text>") == std::string::npos);
+}
+
+TEST_CASE("An axis of names shows each of them, turned upright if they are many", "[plot]") {
+  for (const std::size_t count : {3U, 40U}) {
+    Chart chart;
+    chart.y = {"Threshold", 0, 1};
+    for (std::size_t i = 0; i < count; ++i) chart.x.names.push_back("P" + std::to_string(100 + i));
+    chart.x.label = "Participant", chart.x.low = 0.4, chart.x.high = static_cast<double>(count) + 0.6;
+    auto figure = one_chart(chart);
+    figure.chart_width_px = 680;
+    const auto svg = render(figure);
+    for (const auto& name : chart.x.names) CHECK(svg.find(">" + name + "</text>") != std::string::npos);
+    CHECK((svg.find("rotate(-90 ") != svg.rfind("rotate(-90 ")) == (count > 3));  // the vertical axis has one
+  }
+}
+
+TEST_CASE("The files of a figure are as wide as one and two columns, and have its data and caption", "[plot]") {
+  auto figure = example();
+  figure.caption = "Participant P01, 70 trials.";
+  const NamedFigure named{"example", figure};
+  const auto square = [](char32_t, bool) { return Outline{0.5, "0 0 m 0.4 0 l 0.4 0.7 l h "}; };
+  const auto pdf_of = [&](const Figure& drawn) {
+    Pdf pdf(square);
+    draw(pdf, drawn);
+    return pdf.finish();
+  };
+  std::map<std::string, std::string> files;
+  for (const auto& file : figure_files(named, pdf_of)) files[file.name] = file.bytes;
+  CHECK(files.size() == 6);
+  CHECK(files["example-1-column.svg"].find("width=\"85mm\"") != std::string::npos);
+  CHECK(files["example-2-columns.svg"].find("width=\"180mm\"") != std::string::npos);
+  CHECK(files["example-1-column.svg"].find("70 trials") == std::string::npos);
+  CHECK(files["example.txt"] == "Example <1>. Participant P01, 70 trials.\n");
+  const auto& csv = files["example.csv"];
+  CHECK(csv.find("A & B,Level (dB),Proportion,marker,data,-20,,,0.7,0.6,0.8,20,\n") != std::string::npos);
+  CHECK(csv.find("A & B,Level (dB),Proportion,band,,-10,,,,0.9,1,,\n") != std::string::npos);
+  CHECK(csv.find("nan") == std::string::npos);
+  for (const char* name : {"example-1-column.pdf", "example-2-columns.pdf"}) {
+    const auto& pdf = files[name];
+    CHECK(pdf == pdf_of(for_paper(figure, std::string(name) == "example-1-column.pdf" ? 85 : 180)));
+    CHECK(pdf.find("/Font") == std::string::npos);
+    // each entry of the table of objects points to its object
+    const auto table = std::stoul(pdf.substr(pdf.rfind("startxref\n") + 10));
+    REQUIRE(pdf.compare(table, 5, "xref\n") == 0);
+    std::istringstream lines(pdf.substr(pdf.find("0000000000 65535 f \n", table) + 20));
+    std::string line;
+    int objects = 0;
+    while (std::getline(lines, line) && line.ends_with(" n ")) {
+      const auto start = std::to_string(++objects) + " 0 obj\n";
+      CHECK(pdf.compare(std::stoul(line), start.size(), start) == 0);
+    }
+    CHECK(objects > 20);  // one for each letter
+  }
+}
+
+TEST_CASE("A PDF refuses letters that it would draw in a wrong shape", "[plot]") {
+  auto figure = example();
+  figure.charts[0].title = "\u0639\u0631\u0628\u064a";
+  Pdf pdf([](char32_t, bool) { return Outline{0.5, ""}; });
+  CHECK_THROWS_AS(draw(pdf, figure), JoinedLetters);
 }

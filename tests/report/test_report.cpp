@@ -6,7 +6,9 @@
 #include "station/core/number.hpp"
 #include "station/report/chart.hpp"
 #include "station/report/figures.hpp"
+#include "station/report/figure_files.hpp"
 #include "station/report/html.hpp"
+#include "station/report/words.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/diffusion.hpp"
 
@@ -96,7 +98,7 @@ TEST_CASE("A speed-accuracy session gives fits, the trade with intervals, and al
   REQUIRE(summary.fits.size() == 2);
   CHECK(summary.fits[0].fit.parameters.has_value());
   CHECK(summary.fits[0].positive == "\u201cRougher\u201d");
-  REQUIRE(summary.trade.differences.size() == 7);
+  REQUIRE(summary.trade.differences.size() == 7 + 5 + 1);  // five bins of time, and d'
   CHECK(summary.trade.differences[2].estimate->interval.low > 0);
   keep("psychometric.svg", shown(psychometric_figure(summary)));
   keep("trace.svg", shown(trace_figure(summary)));
@@ -116,6 +118,62 @@ TEST_CASE("A speed-accuracy session gives fits, the trade with intervals, and al
   const auto json = nlohmann::json::parse(to_json(summary));
   CHECK(json["instructions"].size() == 2);
   CHECK(json["differences"][2]["estimate"]["value"].get<double>() > 0.03);
+}
+
+TEST_CASE("The macro trade has d' and time of each condition with their intervals, as figure and in the table",
+          "[report]") {
+  const auto data = speed_accuracy(28);
+  const auto summary = summarise(data);
+  const auto figure = macro_figure(summary);
+  keep("macro.svg", shown(figure));
+  const auto detections =
+      analysis::detect(data.trials, {}, analysis::Detecting::sides, 1);  // an independent way to the counts
+  std::size_t points = 0;
+  for (const auto& layer : figure->charts[0].layers)
+    if (const auto* point = std::get_if<report::Points>(&layer)) {
+      const auto& entry = summary.trade.instructions[points++];
+      CHECK(point->x[0] == entry.median_s->value);
+      const auto found = std::find_if(detections.begin(), detections.end(), [&](const auto& one) {
+        return !one.level && one.condition == entry.instruction;
+      });
+      CHECK(point->y[0] == found->d_prime->value);
+      CHECK(point->low[0] == found->d_prime->interval.low);
+      CHECK(point->high[0] == found->d_prime->interval.high);
+    }
+  CHECK(points == 2);
+  const auto& gap = summary.trade.differences.back();
+  CHECK(gap.measure == "d'");
+  CHECK(gap.estimate->value == Approx(summary.trade.instructions[1].d_prime->value -
+                                      summary.trade.instructions[0].d_prime->value));
+  CHECK((*gap.estimate->p < 0.05) == (gap.estimate->interval.low > 0 || gap.estimate->interval.high < 0));
+  CHECK(to_html(summary).find("Sensitivity d\u2032 over all levels") != std::string::npos);
+  auto signalled = data;
+  signalled.signalled = true;  // the lags are the macro trade then
+  CHECK_FALSE(macro_figure(summarise(signalled)));
+}
+
+TEST_CASE("Comparisons are corrected for their number only if the protocol asks for it", "[report]") {
+  auto data = speed_accuracy(28);
+  const auto plain = summarise(data);
+  for (const auto& one : plain.trade.differences) CHECK_FALSE(one.corrected_p);
+  CHECK(to_html(plain).find("Holm") == std::string::npos);
+  data.holm = protocol::Holm::all;
+  const auto all = summarise(data);
+  double smallest = 1;
+  int compared = 0;
+  for (const auto& one : all.trade.differences)
+    if (one.estimate) smallest = std::min(smallest, *one.estimate->p), ++compared;
+  for (const auto& one : all.trade.differences) {
+    REQUIRE(one.corrected_p.has_value() == one.estimate.has_value());
+    if (!one.estimate) continue;
+    CHECK(*one.corrected_p >= *one.estimate->p);
+    if (*one.estimate->p == smallest) CHECK(*one.corrected_p == Approx(std::min(1.0, compared * smallest)));
+  }
+  CHECK(to_html(all).find("corrected by Holm\u2019s method for the number of all differences") !=
+        std::string::npos);
+  data.holm = protocol::Holm::measure;  // one pair of conditions: nothing to correct within a measure
+  for (const auto& one : summarise(data).trade.differences)
+    if (one.estimate) CHECK(*one.corrected_p == *one.estimate->p);
 }
 
 TEST_CASE("Degenerate sessions give statements instead of numbers", "[report]") {
@@ -201,15 +259,18 @@ TEST_CASE("If the answers determined the levels, the report states the posterior
   keep("posterior.svg", shown(figure));
   const auto& layers = figure->charts[0].layers;
   const double threshold = summary.fits[0].fit.parameters->threshold;
+  const auto& fitted = summary.fits[0].fit;
+  const auto height = core::number(std::round(
+      100 * analysis::probability(fitted.options.function, fitted.options.scale, *fitted.parameters, threshold)));
   CHECK(std::any_of(layers.begin(), layers.end(), [&](const auto& layer) {
     const auto* rule = std::get_if<report::Rule>(&layer);
     return rule != nullptr && rule->direction == report::Rule::Direction::vertical && rule->at == threshold &&
-           rule->label == "threshold " + core::number(threshold, 3) + " dB";
+           rule->label == "threshold " + in_digits(threshold, &found.threshold->interval) + " dB (" + height + " %)";
   }));
   CHECK(std::any_of(layers.begin(), layers.end(), [&](const auto& layer) {
-    const auto* line = std::get_if<report::Line>(&layer);
-    return line != nullptr && line->x.size() == 2 && line->x[0] == found.threshold->interval.low &&
-           line->x[1] == found.threshold->interval.high && line->y[0] == line->y[1];
+    const auto* span = std::get_if<report::Span>(&layer);
+    return span != nullptr && span->low == found.threshold->interval.low &&
+           span->high == found.threshold->interval.high;
   }));
   data.trials.resize(20);
   const auto cut = summarise(data);
@@ -306,4 +367,45 @@ TEST_CASE("The report has the finger's force, speed and friction only if force c
   const auto unfelt = to_html(summarise(few));
   CHECK(unfelt.find("In no trial did the finger cross a clear step") != std::string::npos);
   CHECK(unfelt.find("Friction along the strip") == std::string::npos);
+}
+
+TEST_CASE("The label of a threshold has the digits of the table and the height of the curve there", "[report]") {
+  const auto summary = summarise(speed_accuracy(28));
+  const auto svg = render(*psychometric_figure(summary));
+  const auto html = to_html(summary);
+  for (const auto& named : summary.fits) {
+    REQUIRE(named.intervals.threshold);
+    const double at = named.fit.parameters->threshold;
+    const auto digits = in_digits(at, &named.intervals.threshold->interval);
+    CHECK(html.find(digits + " <span class=\"soft\">[") != std::string::npos);
+    const auto height = core::number(std::round(100 * analysis::probability(
+                            named.fit.options.function, named.fit.options.scale, *named.fit.parameters, at)));
+    CHECK(svg.find(named.name + " " + digits) != std::string::npos);
+    CHECK(svg.find("(" + height + " %)") != std::string::npos);
+  }
+}
+
+TEST_CASE("Every figure of a report has a caption that says whose trials it shows and how many", "[report]") {
+  const auto summary = summarise(speed_accuracy(28));
+  const auto figures = figures_of(summary);
+  REQUIRE(figures.size() >= 4);
+  for (const auto& [name, figure] : figures) {
+    INFO(name << ": " << figure.caption);
+    CHECK(figure.caption.find("Participant " + summary.data.participant + ", ") == 0);
+    CHECK(figure.caption.find(" trials.") != std::string::npos);
+  }
+  CHECK(psychometric_figure(summary)->caption.find("95 %") != std::string::npos);
+}
+
+TEST_CASE("A curve ends where its band ends", "[report]") {
+  const auto summary = summarise(speed_accuracy(28));
+  const auto figure = *psychometric_figure(summary);
+  for (const auto& chart : figure.charts)
+    for (const auto& layer : chart.layers)
+      if (const auto* line = std::get_if<Line>(&layer))
+        for (const auto& other : chart.layers)
+          if (const auto* band = std::get_if<Band>(&other); band != nullptr && band->series == line->series) {
+            CHECK(line->x.front() == Approx(band->x.front()));
+            CHECK(line->x.back() == Approx(band->x.back()));
+          }
 }

@@ -1,5 +1,6 @@
 // Tests answers that are numbers, and ratings of confidence: a person gives them on the screen, and the
 // trial's row stores them.
+#include "station/io/watched_lines.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -81,4 +82,56 @@ TEST_CASE("confidence is stored with its answer; a stop before it leaves no tria
   CHECK(trials[0].confidence_time_s.value_or(-1) >= 0);
   CHECK(trials[1].outcome == core::Outcome::aborted);
   CHECK_FALSE(trials[1].confidence);
+}
+
+TEST_CASE("a second press within the guard time is never stored as the confidence, by finger or by button",
+          "[session]") {
+  const TemporaryFolder folder;
+  const auto setup = setup_with(std::string(kChoices) +
+                                    "[task.confidence]\nquestion = { en = \"Sure?\" }\n"
+                                    "labels = [{ en = \"no\" }, { en = \"perhaps\" }, { en = \"yes\" }]\n",
+                                folder, "either");
+  Room room;
+  // The buttons are real but for their lines: a person presses the left one twice within 150 ms.
+  const auto lines = std::make_shared<io::SimulatedLines>(2);
+  auto handlers = session::handlers_for(room.inputs);
+  std::vector<std::int64_t> presses;  // of the thread of the buttons
+  const auto touch = [&](std::int64_t time_ns, int degree) {
+    session::Input input;
+    input.time_ns = time_ns;
+    input.kind = InputKind::answer;
+    input.value = degree;
+    room.inputs.push(input);
+  };
+  handlers.press = [&, pass = handlers.press](const io::Press& press) {
+    pass(press);
+    presses.push_back(press.time_ns);
+    if (presses.size() % 2 == 1) return;
+    const auto answered_ns = presses[presses.size() - 2];
+    CHECK(press.time_ns - answered_ns == 150'000'000);
+    touch(answered_ns + core::kConfidenceGuard_ns - 1, 1);
+    touch(answered_ns + core::kConfidenceGuard_ns, 2);
+  };
+  auto devices = room.devices();
+  devices.buttons = io::open_buttons(io::ButtonsConfig{"gpio:left=A,right=B"}, std::nullopt, handlers,
+                                     [&](const auto&) { return std::make_unique<SharedLines>(lines); });
+  room.reacts = [&](const session::Page& page) {
+    if (page.kind == PageKind::confidence) return;
+    if (page.kind != PageKind::stimulus) return room.cooperate(page);
+    const auto now = system::monotonic_ns();
+    for (const std::int64_t press_ns : {now, now + 150'000'000}) {
+      lines->set(0, true, press_ns);
+      lines->set(0, false, press_ns + 60'000'000);
+    }
+  };
+  const auto summary = session::run(setup, &room, room.inputs, std::move(devices));
+  CHECK(summary.status == core::SessionStatus::completed);
+  const auto trials = trials_of(setup.database, summary);
+  REQUIRE(trials.size() == 2);
+  for (const auto& trial : trials) {
+    CHECK(trial.response == "left");
+    CHECK(trial.confidence == 3);
+    CHECK(trial.confidence_time_s.value_or(-1) == Approx(core::kConfidenceGuard_s).epsilon(1e-9));
+    CHECK(trial.extra_touches == 2);
+  }
 }

@@ -5,6 +5,8 @@
 #include "station/core/usage_error.hpp"
 #include "station/store/read.hpp"
 #include "station/store/text_table.hpp"
+#include "station/store/verify.hpp"
+#include "station/store/withdraw.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
 
@@ -229,6 +231,13 @@ TEST_CASE("an export can select sessions, participants and protocols, and each p
   const auto [fault, message] = sample::failure([&] { export_data(db, folder / "none", options); });
   CHECK(fault == ErrorKind::missing);
   CHECK_FALSE(std::filesystem::exists(folder / "none"));
+  // a name that differs only in what a folder cannot keep apart; FAT ignores case
+  other.protocol_id = GENERATE("Two-boundaries", "two-BOUNDARIES");
+  sample::session(db, 1, other);
+  const auto [refusal, why] = sample::failure([&] { export_data(db, folder / "shared", {}); });
+  CHECK(refusal == ErrorKind::conflict);
+  CHECK(sample::contains(why, "export one at a time with --protocol"));
+  CHECK_FALSE(std::filesystem::exists(folder / "shared"));
 }
 
 TEST_CASE("separator and decimal mark can be chosen, but must differ", "[store]") {
@@ -245,6 +254,57 @@ TEST_CASE("separator and decimal mark can be chosen, but must differ", "[store]"
   CHECK_THROWS_AS(export_data(db, folder / "out", options), turnpoint::core::UsageError);
   options.decimal = 'x';
   CHECK_THROWS_AS(export_data(db, folder / "out", options), turnpoint::core::UsageError);
+}
+
+TEST_CASE("each CSV table begins with a byte order mark if that is asked for, and only CSV tables can",
+          "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  sample::session(db, 2);
+  for (const char separator : {',', ';', '\t'}) {
+    ExportOptions options;
+    options.separator = separator;
+    const auto style = std::to_string(separator);
+    const auto plain = export_data(db, folder / ("plain" + style), options);
+    options.byte_order_mark = true;
+    const auto marked = export_data(db, folder / ("marked" + style), options);
+    REQUIRE(plain.size() == marked.size());
+    int tables = 0;
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+      const auto without = sample::bytes_of(plain[i].path), with = sample::bytes_of(marked[i].path);
+      if (plain[i].path.ends_with(".json")) {
+        CHECK(with == without);
+        continue;
+      }
+      ++tables;
+      CHECK(with == "\xEF\xBB\xBF" + without);
+      CHECK(read_table(with) == read_table(without));
+    }
+    CHECK(tables == 9);
+    CHECK(verify(db, {"", folder / ("marked" + style) + "/two-boundaries/sessions.csv"}).good());
+  }
+  for (const auto format : {ExportFormat::bids, ExportFormat::signals}) {
+    ExportOptions options;
+    options.byte_order_mark = true, options.format = format;
+    CHECK_THROWS_AS(export_data(db, folder / "other", options), turnpoint::core::UsageError);
+  }
+}
+
+TEST_CASE("an export never replaces sessions that it does not have, unless they were withdrawn", "[store]") {
+  TemporaryFolder folder;
+  const auto one = folder / "one.sqlite", other = folder / "other.sqlite";
+  sample::session(one, 2);
+  const auto second = sample::session(one, 2, sample::start("P02"));
+  sample::session(other, 3, sample::start("P03"));
+  const auto trials = export_data(one, folder / "out", {})[0].path;
+  const auto before = sample::bytes_of(trials);
+  const auto [fault, message] = sample::failure([&] { export_data(other, folder / "out", {}); });
+  CHECK(fault == ErrorKind::conflict);
+  CHECK(sample::contains(message, "2 sessions that are not part of this export"));
+  CHECK(sample::bytes_of(trials) == before);
+  withdraw(one, {"P02", "", second, ""});
+  export_data(one, folder / "out", {});
+  CHECK_FALSE(sample::contains(sample::bytes_of(trials), second));
 }
 
 TEST_CASE("texts are quoted according to RFC 4180, and no text can act as a formula in a spreadsheet",

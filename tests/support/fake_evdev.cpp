@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstdarg>
@@ -18,7 +19,18 @@
 
 namespace {
 
-std::atomic<FakeEvdev*> the_device = nullptr;
+std::array<std::atomic<FakeEvdev*>, 4> devices{};
+
+void add(FakeEvdev* device) {
+  for (auto& place : devices)
+    if (FakeEvdev* none = nullptr; place.compare_exchange_strong(none, device)) return;
+  throw std::runtime_error("too many simulated devices");
+}
+
+void remove(const FakeEvdev* device) {
+  for (auto& place : devices)
+    if (place.load() == device) place = nullptr;
+}
 
 using Bits = std::vector<int>;
 
@@ -36,7 +48,7 @@ FakeEvdev::FakeEvdev(int slot_count) {
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends_) != 0)
     throw std::runtime_error("socketpair");
   set_axes(slot_count);
-  the_device = this;
+  add(this);
 }
 
 FakeEvdev::FakeEvdev(int slot_count, const std::string& path) : path_(path) {
@@ -44,10 +56,11 @@ FakeEvdev::FakeEvdev(int slot_count, const std::string& path) : path_(path) {
   ends_[1] = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   if (ends_[1] < 0) throw std::runtime_error("open " + path);
   set_axes(slot_count);
-  the_device = this;
+  add(this);
 }
 
 void FakeEvdev::set_axes(int slot_count) {
+  keys = {BTN_TOUCH};
   axes = {{ABS_X, 0}, {ABS_Y, 0}};
   if (slot_count > 0)
     for (const int axis : {ABS_MT_SLOT, ABS_MT_TRACKING_ID, ABS_MT_POSITION_X, ABS_MT_POSITION_Y})
@@ -58,7 +71,7 @@ void FakeEvdev::set_axes(int slot_count) {
 
 FakeEvdev::~FakeEvdev() {
   unplug();
-  the_device = nullptr;
+  remove(this);
   if (ends_[1] >= 0) ::close(ends_[1]);
 }
 
@@ -101,11 +114,11 @@ int FakeEvdev::answer(unsigned long request, void* argument) const {
   const unsigned number = _IOC_NR(request);
   const std::size_t size = _IOC_SIZE(request);
   if (number == _IOC_NR(EVIOCGNAME(0)))
-    return std::strncpy(static_cast<char*>(argument), "fake panel", size), 11;
+    return std::strncpy(static_cast<char*>(argument), name.c_str(), size), static_cast<int>(name.size()) + 1;
   if (number == _IOC_NR(EVIOCGPHYS(0)) || number == _IOC_NR(EVIOCGUNIQ(0))) return errno = ENOENT, -1;
   if (number == _IOC_NR(EVIOCGKEY(0))) return put_bits(touched ? Bits{BTN_TOUCH} : Bits{}, argument, size);
   if (number == _IOC_NR(EVIOCGBIT(0, 0))) return put_bits({EV_SYN, EV_KEY, EV_ABS}, argument, size);
-  if (number == _IOC_NR(EVIOCGBIT(EV_KEY, 0))) return put_bits({BTN_TOUCH}, argument, size);
+  if (number == _IOC_NR(EVIOCGBIT(EV_KEY, 0))) return put_bits(keys, argument, size);
   if (number == _IOC_NR(EVIOCGBIT(EV_ABS, 0))) {
     Bits all;
     for (const auto& [axis, value] : axes) all.push_back(axis);
@@ -139,8 +152,9 @@ extern "C" int ioctl(int descriptor, unsigned long request, ...) {
   va_start(arguments, request);
   void* argument = va_arg(arguments, void*);
   va_end(arguments);
-  const auto* device = the_device.load();
-  if (device != nullptr && _IOC_TYPE(request) == 'E' && device->is(descriptor))
-    return device->answer(request, argument);
+  if (_IOC_TYPE(request) == 'E')
+    for (const auto& place : devices)
+      if (const auto* device = place.load(); device != nullptr && device->is(descriptor))
+        return device->answer(request, argument);
   return static_cast<int>(::syscall(SYS_ioctl, descriptor, request, argument));
 }

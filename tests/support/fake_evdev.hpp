@@ -7,7 +7,7 @@
 
 /// Simulates an input device. libevdev queries its properties and state by ioctl(), as with a real device,
 /// and reads the events that the test sends. The test program defines its own ioctl(), which replaces that of
-/// the C library.
+/// the C library. Up to four devices may exist at a time.
 class FakeEvdev {
  public:
   /// Makes a panel of 800 x 480 with this many slots for fingers; with 0 slots it cannot tell fingers apart.
@@ -28,6 +28,8 @@ class FakeEvdev {
 
   /// Whether the simulated kernel considers the panel touched now, even if no event has said so.
   bool touched = false;
+  std::string name = "fake panel";
+  std::vector<int> keys;                        ///< the buttons that the device has; BTN_TOUCH at first
   std::map<int, int> axes;                      ///< current value of each axis
   std::vector<std::map<int, int>> slot_values;  ///< current ABS_MT_... values of each slot
 

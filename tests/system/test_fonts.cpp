@@ -1,5 +1,7 @@
 #include "station/system/fonts.hpp"
 
+#include <stdexcept>
+
 #include "tests/support/catch.hpp"
 
 using turnpoint::system::drawable;
@@ -13,4 +15,17 @@ TEST_CASE("a character can be drawn if a font has it", "[system]") {
     CAPTURE(static_cast<unsigned>(c));
     if (c != 0) CHECK(drawable(c));
   }
+}
+
+TEST_CASE("the outline of a character has a width and a closed path, and a space has only a width", "[system]") {
+  const auto [width, path] = turnpoint::system::outline(U'O', false);
+  CHECK(width > 0.4);
+  CHECK(width < 1.1);
+  CHECK(path.ends_with("h "));
+  CHECK(path.find(" c ") != std::string::npos);
+  CHECK(turnpoint::system::outline(U' ', false).second.empty());
+  CHECK(turnpoint::system::outline(U' ', false).first > 0);
+  CHECK(turnpoint::system::outline(U'O', true).second != path);
+  CHECK_FALSE(turnpoint::system::outline(U'\u2212', false).second.empty());
+  CHECK_THROWS_AS(turnpoint::system::outline(U'\U0010FF00', false), std::runtime_error);
 }

@@ -2,13 +2,15 @@
 """Limits of runs, seen from outside: random protocols, run by simulated observers who leave some trials unanswered; this
 program sees only the order of the exported trials and what `check` says.
 
-    tests/trial/orders.py TURNPOINT [NUMBER [FIRST]]
+    tests/trial/orders.py TURNPOINT CHECKED_RUNS [NUMBER [FIRST]]
 
 Each protocol must keep its limits of runs, or `check` must have said that it cannot. Check simulates 200 sessions, and this
 session is one more of their kind, so its run is longer than that of all the others in at most one of 201 limits: more such
 surprises than chance explains (one time in a thousand) are a failure. Procedures in passes come once in each pass. NUMBER
-protocols (default 4) are made from the seeds FIRST (default 14), FIRST + 1, ... As a negative control, the same protocols
-without limits must break them.
+protocols (default 4) are made from the seeds FIRST (default 14), FIRST + 1, ... CHECKED_RUNS is the program that prints
+this part of `check`, without the cues, tones and sound that take most of its time; of the first protocol with a longer run,
+and of every 50th, `check` itself must print the same. As a negative control, the same protocols without limits must break
+them.
 """
 import collections
 import csv
@@ -145,7 +147,7 @@ def passes_hold(rows, procedures):
 
 
 def call(turnpoint, *arguments):
-    return subprocess.run([turnpoint, *map(str, arguments)], capture_output=True, text=True, timeout=300)
+    return subprocess.run([turnpoint, *map(str, arguments)], capture_output=True, text=True, timeout=3600)
 
 
 def exported(turnpoint, folder, path, seed):
@@ -171,7 +173,8 @@ def most_by_chance(mean):
 
 
 def main():
-    turnpoint, number, first = sys.argv[1], int((sys.argv[2:] or [4])[0]), int((sys.argv[3:] or [14])[0])
+    turnpoint, checked_runs = sys.argv[1:3]
+    number, first = int((sys.argv[3:] or [4])[0]), int((sys.argv[4:] or [14])[0])
     failures, surprises, counts = [], [], collections.Counter()
     for seed in range(first, first + number):
         protocol = Protocol(seed)
@@ -188,7 +191,13 @@ def main():
                 if runs <= limit:
                     continue
                 if said is None:
-                    said = {of["of"]: of for of in json.loads(call(turnpoint, "check", path, "--rig", RIG, "--sessions", SESSIONS, "--json").stdout)["runs"]}
+                    said = {of["of"]: of for of in json.loads(call(checked_runs, path, SESSIONS).stdout)}
+                    if counts["protocols with a longer run"] % 50 == 0:
+                        counts["compared with check"] += 1
+                        checked = json.loads(call(turnpoint, "check", path, "--rig", RIG, "--sessions", SESSIONS, "--json").stdout)["runs"]
+                        if {of["of"]: {key: of[key] for key in said[of["of"]]} for of in checked} != said:
+                            failures.append(f"seed {seed}: check prints other runs: {checked}, {said}")
+                    counts["protocols with a longer run"] += 1
                 counts["longer runs"] += 1
                 if said[key]["limit"] != limit or said[key]["sessions"] != SESSIONS:
                     failures.append(f"seed {seed}: check simulated other limits: {said[key]}")

@@ -15,6 +15,7 @@
 #include "station/store/station.hpp"
 #include "station/system/clocks.hpp"
 #include "station/ui/operator/operator_controller.hpp"
+#include "station/ui/shared/operator_screen.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/ui/event_loop.hpp"
@@ -302,4 +303,22 @@ TEST_CASE("the operator begins a session that comes too early only with a reason
   REQUIRE(start.comes([&] { return !chosen.empty(); }));
   CHECK(chosen[0].setup.early == "leaves the country");
   CHECK(start.page->too_early().isEmpty());
+}
+
+TEST_CASE("the operator's pages are offered only in languages that a font can draw", "[start]") {
+  const auto codes = [](const turnpoint::ui::OperatorScreen& screen) {
+    QStringList list;
+    for (const auto& language : screen.languages()) list += language.toMap()["code"].toString();
+    return list;
+  };
+  turnpoint::ui::OperatorScreen latin([](char32_t) { return false; });
+  CHECK(codes(latin) == QStringList{"de", "en", "es"});
+  latin.set_language("ja");
+  CHECK(latin.language() == "en");
+  latin.set_language("de");
+  CHECK(latin.language() == "de");
+  turnpoint::ui::OperatorScreen all([](char32_t) { return true; });
+  CHECK(codes(all).size() == 6);
+  all.set_language("ja");
+  CHECK(all.language() == "ja");
 }

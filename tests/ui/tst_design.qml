@@ -356,6 +356,45 @@ Item {
             verify(designPage().design.feeling.tones > 0 && designPage().design.feeling.peakPercent > 0)
         }
 
+        function test_a_study_with_pages_and_a_questionnaire_in_two_languages_in_at_most_90_taps() {
+            begin("response-signal", "rs")
+            taps = 0                                   // keys of the keyboard do not count
+            const groups = () => designPage().design.groups
+            const place = kind => groups().findIndex(group => group.kind === kind)
+            const write = (key, table, text) => {
+                tapField(key, table)
+                const before = taps
+                erase(find(room.screen, "entry").text.length)
+                keys(text)
+                taps = before
+                tap("keepEntry")
+            }
+            const languages = ["en", "de"]
+            tap("section-blocks")
+            tap("add-explanation")
+            tap("lengthen" + place("explanation"))
+            tap("lengthen" + place("explanation"))
+            while (place("explanation") > 0) tap("earlier" + place("explanation"))
+            compare(groups()[0].belowCount, 3)
+            for (let page = 0; page < 3; ++page)
+                for (const language of languages) write("page." + page + ".text." + language, 0, "ab" + page)
+            tap("add-questionnaire")
+            const asked = place("questionnaire")
+            compare(asked, groups().length - 1)        // at the end of the session
+            for (const language of languages) write("item.0.question." + language, asked, "q?")
+            tap("save")
+            tryVerify(() => ["good", "warned"].includes(designPage().design.verdict), 60000)
+            console.log("taps besides keys: " + taps)
+            verify(taps <= 90, taps)
+            const text = saved("rs")
+            verify(text.indexOf("[[explanation]]") < text.indexOf("[[block]]"))
+            verify(text.indexOf("[[questionnaire]]") > text.lastIndexOf("[[block]]"))
+            for (let page = 0; page < 3; ++page) verify(text.includes("ab" + page), page)
+            // a part can be taken out again
+            tap("remove" + place("questionnaire"))
+            tryVerify(() => place("questionnaire") === -1, 5000)
+        }
+
         function test_a_screen_reader_finds_every_control_with_a_name() {
             begin("contrast", "a")
             for (const section of ["study", "question", "scenes", "levels", "blocks", "timing", "other"]) {

@@ -74,5 +74,30 @@ Item {
             const times = session.column("response_time").split(" ")
             for (let i = 0; i < times.length; ++i) verify(Number(times[i]) > 0.1 && Number(times[i]) < 2, times[i])
         }
+
+        // Both pages have a second answer at the same place. A finger that taps there all the time must not say with the
+        // next tap how sure the answer was.
+        function test_confidence_is_never_a_tap_that_followed_the_answer_at_once() {
+            session.bridge.watch(stage.Window.window)
+            session.start("sure.toml")
+            tryCompare(page, "kind", PageModel.Instructions, 30000)
+            proceed()
+            for (let trial = 0; trial < 2; ++trial) {
+                tryCompare(page, "answersOpen", true, 20000)
+                wait(150)
+                // the answers of the second page open as soon as the first is answered
+                while (page.answersOpen) {
+                    const touch = touchEvent(stage)
+                    touch.press(1, findChild(view, "answer1")).commit()
+                    touch.release(1, findChild(view, "answer1")).commit()
+                    wait(60)
+                }
+            }
+            tryCompare(session, "over", true, 20000)
+            compare(session.failure, "")
+            compare(session.column("response"), "right right")
+            compare(session.column("confidence"), "2 2")
+            for (const time of session.column("confidence_time").split(" ")) verify(Number(time) >= 0.35, time)
+        }
     }
 }

@@ -70,6 +70,15 @@ TestCase {
         verify(found >= 7, row.tag + ": " + found.toFixed(2))
     }
 
+    function test_a_larger_screen_shows_the_operator_more_and_not_larger_letters() {
+        const shown = (w, h, mm) => made.createObject(null, { width: w, height: h, pixelsPerMm: mm, dense: true })
+        const ten = shown(1280, 800, 5.9)
+        for (const large of [shown(1920, 1080, 5.6), shown(1920, 1080, 3.6)]) {
+            verify(large.height / large.controlHeight > 1.2 * ten.height / ten.controlHeight)
+            verify(large.textBody / large.pixelsPerMm <= 1.3 * ten.textBody / ten.pixelsPerMm)
+            verify(large.textSmall >= 2.2 * large.pixelsPerMm)
+        }
+    }
     function test_targets_have_their_size_in_millimetres_data() {
         return [{ tag: "7 inch", w: 800, h: 480, mm: 5.2 }, { tag: "10 inch", w: 1280, h: 800, mm: 5.9 },
                 { tag: "15 inch", w: 1920, h: 1080, mm: 5.6 }, { tag: "dense 5 inch", w: 1280, h: 720, mm: 11.6 }]

@@ -311,3 +311,17 @@ TEST_CASE("the innermost key at a place is found", "[document]") {
   CHECK(Document("k = { \"ü\" = 1, b = 2 }", "").at(1, 17) == Path{"k", "b"});
   CHECK(document.at(12) == Path{"b", "0", "s", "v"});
 }
+
+TEST_CASE("two tables change places with their comments and the tables below them, and nothing else changes",
+          "[document]") {
+  const std::string text = "# head\n\n# about x\n[[b]]\nname = \"x\"\n[b.s]\nw = 2\n\n[z]\n\n[[e]]\nname = \"y\" # why\n\n[[b]]\nname = \"c\"\n";
+  const Document document(text, "f.toml");
+  const auto moved = document.exchanged({"b", "0"}, {"e", "0"});
+  CHECK(moved == "# head\n\n[[e]]\nname = \"y\" # why\n\n[z]\n\n# about x\n[[b]]\nname = \"x\"\n[b.s]\nw = 2\n\n[[b]]\nname = \"c\"\n");
+  CHECK(Document(moved, "f.toml").exchanged({"b", "0"}, {"e", "0"}) == text);
+  CHECK(document.exchanged({"e", "0"}, {"b", "0"}) == moved);
+  CHECK_THROWS_AS(document.exchanged({"b", "0"}, {"b", "7"}), std::logic_error);
+  CHECK_THROWS_AS(document.exchanged({"b", "0"}, {"b", "0", "s"}), std::logic_error);
+  CHECK(document.with_tables("[[n]]\nv = 1\n") == text + "\n[[n]]\nv = 1\n");
+  CHECK(Document("a = 1", "").with_tables("[n]\n") == "a = 1\n\n[n]\n");
+}

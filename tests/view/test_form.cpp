@@ -211,3 +211,47 @@ TEST_CASE("every goal leads to a shipped protocol, which becomes a study of its 
   CHECK(view::find_goal("contrast") != nullptr);
   CHECK(view::find_goal("nothing") == nullptr);
 }
+
+TEST_CASE("each kind of interlude can be added to each shipped protocol, filled, moved and removed", "[form]") {
+  for (const auto& file : shipped()) {
+    const Document document(core::read_file(file), file);
+    const auto parts_of = [](const Document& of) {
+      for (auto& section : form_of(of, schema(), {}))
+        if (section.name == "blocks") return section.groups;
+      return std::vector<view::Group>();
+    };
+    const auto before = parts_of(document);
+    for (const std::string kind : view::kAddedTables) {
+      INFO(file << ", " << kind);
+      Document added(document.with_tables(view::new_table(document, kind)), file);
+      auto parts = parts_of(added);
+      REQUIRE(parts.size() == before.size() + 1);
+      // it is the last part of the session, and the protocol can be read
+      CHECK(parts.back().path.front() == kind);
+      CHECK(parts.back().later.empty());
+      const auto name = parts.back().name;
+      CHECK(parts.back().removable);
+      if (kind != "screening") CHECK_NOTHROW(protocol::parse(added.text(), file));
+      if (!parts.back().below.empty()) {
+        const Document longer(view::with_one_more(added, parts.back()), file);
+        CHECK(parts_of(longer).back().below_count == 2);
+        CHECK_NOTHROW(protocol::parse(longer.text(), file));
+        CHECK(parts_of(Document(view::with_one_less(longer, parts_of(longer).back()), file)).back().below_count == 1);
+      }
+      // to the beginning of the session, and out of it
+      for (bool moves = true; moves;) {
+        const auto own = std::find_if(parts.begin(), parts.end(), [&](const view::Group& part) {
+          return part.path.front() == kind && part.name == name;
+        });
+        REQUIRE(own != parts.end());
+        moves = !own->earlier.empty();
+        if (!moves) break;
+        added = Document(added.exchanged(own->path, own->earlier), file);
+        parts = parts_of(added);
+      }
+      CHECK(parts.front().path.front() == kind);
+      CHECK(parts.front().earlier.empty());
+      CHECK(parts_of(Document(added.without(parts.front().path), file)).size() == before.size());
+    }
+  }
+}

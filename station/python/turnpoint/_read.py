@@ -105,10 +105,10 @@ def _folders(source, file):
 
 def _read_csv(path):
     """Reads a table with any separator and decimal mark that `turnpoint export` writes."""
-    with (gzip.open if path.suffix == ".gz" else open)(path, "rt", encoding="utf-8") as file:
+    with (gzip.open if path.suffix == ".gz" else open)(path, "rt", encoding="utf-8-sig") as file:
         header = file.readline()
     separator = next(mark for mark in header if mark in ",;|\t")
-    cells = pd.read_csv(path, sep=separator, dtype=str, na_values=["n/a"], keep_default_na=False)
+    cells = pd.read_csv(path, sep=separator, encoding="utf-8-sig", dtype=str, na_values=["n/a"], keep_default_na=False)
     for name in cells.columns:
         cells[name] = _texts(cells[name]) if name in TEXTS else _numbers(cells[name], commas=separator != ",")
     return cells

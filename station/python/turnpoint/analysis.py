@@ -11,12 +11,12 @@ each other, or numbers outside their range, raise ValueError."""
 import numpy as np
 
 from . import _analysis
-from ._analysis import (Cell, Condition, Curve, Detection, Difference, Diffusion, Estimate, Lag, Psychometric, Ratings,
+from ._analysis import (Cell, Condition, Curve, CurveDifference, Detection, Difference, Diffusion, Estimate, Lag, Psychometric, Ratings,
                         SpeedAccuracy)
 
-__all__ = ["Cell", "Condition", "Curve", "Detection", "Difference", "Diffusion", "Estimate", "Lag", "NotDetermined",
-           "Psychometric", "Ratings", "SpeedAccuracy", "area", "detection", "diffusion", "first_passage",
-           "psychometric", "ratings", "response_signal", "speed_accuracy"]
+__all__ = ["Cell", "Condition", "Curve", "CurveDifference", "Detection", "Difference", "Diffusion", "Estimate", "Lag", "NotDetermined",
+           "Psychometric", "Ratings", "SpeedAccuracy", "area", "compare_curves", "detection", "diffusion", "first_passage",
+           "holm", "psychometric", "ratings", "response_signal", "speed_accuracy"]
 
 
 class NotDetermined(ValueError):
@@ -188,6 +188,26 @@ def response_signal(times_s, lag_s, signal, yes, *, condition=None, order=(), ta
     return _analysis.response_signal(times_s, lag_s, _flags("signal", signal, times_s), _flags("yes", yes, times_s),
                                      _texts("condition", condition, times_s), [str(name) for name in order],
                                      getattr(_analysis.Detecting, task))
+
+
+def compare_curves(curves) -> list[CurveDifference]:
+    """Compares the curves of response_signal(), each with each: differences with intervals (MOVER; Donner & Zou 2002), and the
+    p values of nested models, in which two conditions share one parameter and everything else is free (chi squared, one
+    degree of freedom).
+
+    curves: what response_signal() returned for several conditions."""
+    return _analysis.compare_curves(list(curves))
+
+
+def holm(p, *, family=None) -> np.ndarray:
+    """Corrects p values for the number of tests (Holm 1979, Scand. J. Stat. 6:65-70), as R's p.adjust(p, "holm") does.
+
+    p: p values from 0 to 1; NaN is a test that was not made.
+    family: a name for each test; only tests of one family are corrected together. Without it, all are."""
+    p = _column("p", p)
+    if (p < 0).any() or (p > 1).any():
+        raise ValueError("p: values from 0 to 1 are needed, or NaN")
+    return _analysis.holm(p, _texts("family", family, p))
 
 
 def _one_of(name, value, allowed):

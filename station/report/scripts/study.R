@@ -2,6 +2,8 @@
 #   turnpoint report --study --db lab.sqlite --tables tables
 #   Rscript study.R tables
 # The model is that of the report: a psychometric function whose intercept and slope differ between participants.
+# Prints what, condition, value of lme4, value of the report; and for times of right answers: what, first
+# condition, second condition, difference of their logarithms (second minus first, as in the report), standard error.
 suppressMessages(library(lme4))
 
 folder <- commandArgs(trailingOnly = TRUE)[1]
@@ -59,9 +61,14 @@ trials <- subset(table_of("trials.csv"), excluded == "no" & outcome == "answered
 order <- unique(label(table_of("measures.csv")$condition))
 trials$condition <- label(trials$condition)
 trials$condition <- factor(trials$condition, levels = order[order %in% trials$condition])
-if (length(unique(trials$condition)) > 1) {
+order <- levels(trials$condition)
+# the random effects need participants with several trials, and the differences participants with several conditions
+compared <- rowSums(table(trials$participant, trials$condition) > 0) > 1
+if (length(order) > 1 && sum(compared) > 1) {
   model <- suppressMessages(lmer(log(response_time_s) ~ condition + (1 | participant), trials))
-  for (name in names(fixef(model))[-1])
-    cat(sprintf("log_response_time,%s,%.6g,%.6g\n", quoted(sub("^condition", "", name)), fixef(model)[[name]],
+  for (second in order[-1]) {
+    name <- paste0("condition", second)
+    cat(sprintf("log_response_time,%s,%s,%.6g,%.6g\n", quoted(order[1]), quoted(second), fixef(model)[[name]],
                 sqrt(vcov(model)[name, name])))
+  }
 }

@@ -258,6 +258,7 @@ Item {
         title: root.name(root.guide.chosen) + (phase ? " (°)" : root.unit !== "" ? " (" + root.unit.trim() + ")" : "")
         keepText: root.texts.text("design.use")
         cancelText: root.texts.text("operator.cancel")
+        numbers: true
         emptyAllowed: !phase
         function ask(forPhase: bool) {
             phase = forPhase

@@ -121,6 +121,20 @@ Rectangle {
                             id: tools
                             anchors { right: parent.right; verticalCenter: parent.verticalCenter }
                             spacing: Math.round(0.5 * root.theme.unit)
+                            Repeater {
+                                model: [{ name: "earlier", word: "design.earlier" }, { name: "later", word: "design.later" }]
+                                ActionButton {
+                                    required property var modelData
+                                    objectName: modelData.name + table.index
+                                    visible: table.modelData.earlier || table.modelData.later
+                                    enabled: table.modelData[modelData.name]
+                                    theme: root.theme
+                                    primary: false
+                                    quiet: true
+                                    text: root.texts.text(modelData.word)
+                                    onActivated: root.design.move(table.index, modelData.name === "earlier")
+                                }
+                            }
                             ActionButton {
                                 objectName: "copy" + table.index
                                 visible: table.modelData.copied
@@ -193,6 +207,28 @@ Rectangle {
                             onPicked: word => root.design.change(table.index, modelData.index, word)
                         }
                     }
+                    Row {
+                        visible: table.modelData.below !== ""
+                        spacing: Math.round(0.5 * root.theme.unit)
+                        ActionButton {
+                            objectName: "lengthen" + table.index
+                            theme: root.theme
+                            primary: false
+                            glyph: "plus"
+                            text: root.texts.text(table.modelData.below === "page" ? "design.add_page" : "design.add_item")
+                            onActivated: root.design.lengthen(table.index)
+                        }
+                        ActionButton {
+                            objectName: "shorten" + table.index
+                            theme: root.theme
+                            primary: false
+                            quiet: true
+                            enabled: table.modelData.belowCount > 1
+                            glyph: "minus"
+                            text: root.texts.text(table.modelData.below === "page" ? "design.remove_page" : "design.remove_item")
+                            onActivated: root.design.shorten(table.index)
+                        }
+                    }
                     ActionButton {
                         objectName: "more" + table.index
                         visible: table.absent > 0
@@ -202,6 +238,23 @@ Rectangle {
                         glyph: table.all ? "minus" : "plus"
                         text: root.texts.text(table.all ? "design.fewer" : "design.more")
                         onActivated: root.toggle(table.key)
+                    }
+                }
+            }
+            Flow {
+                visible: root.design.sections[root.design.section]?.name === "blocks"
+                width: sheet.width
+                spacing: Math.round(0.5 * root.theme.unit)
+                Repeater {
+                    model: ["consent", "explanation", "questionnaire", "screening"]
+                    ActionButton {
+                        required property string modelData
+                        objectName: "add-" + modelData
+                        theme: root.theme
+                        primary: false
+                        glyph: "plus"
+                        text: root.design.label([modelData], root.texts.language)
+                        onActivated: root.design.add(modelData)
                     }
                 }
             }

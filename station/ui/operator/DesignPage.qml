@@ -240,7 +240,8 @@ Rectangle {
         suggestions: root.edited?.field?.allowed ?? []
         pick: suggestions.length > 0 && !list && root.edited.field.kind !== "expression"
         list: root.edited?.field?.list ?? false
-        sentences: root.edited?.field ? root.edited.field.kind !== "number" : false
+        numbers: ["number", "integer"].includes(root.edited?.field?.kind)
+        sentences: !numbers
         emptyAllowed: root.edited?.field ? !root.edited.field.required : false
         keepText: texts.text("design.use")
         cancelText: texts.text("operator.cancel")

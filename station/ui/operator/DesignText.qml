@@ -7,6 +7,8 @@ Rectangle {
     required property Theme theme
     required property Texts texts
     required property DesignController design
+    /// Whether the keyboard of the screen is shown.
+    property bool typing: false
 
     radius: theme.radius
     color: theme.raised
@@ -38,7 +40,8 @@ Rectangle {
     }
     Flickable {
         id: scroll
-        anchors { left: parent.left; right: parent.right; top: parent.top; bottom: parent.bottom; margins: root.theme.unit }
+        anchors { left: parent.left; right: parent.right; top: parent.top; bottom: keyboard.top; margins: root.theme.unit }
+        onHeightChanged: reveal(edit.cursorRectangle)
         contentWidth: edit.width
         contentHeight: edit.height
         boundsBehavior: Flickable.StopAtBounds
@@ -66,4 +69,31 @@ Rectangle {
         }
     }
     ScrollCue { theme: root.theme; place: scroll }
+    ActionButton {
+        objectName: "keyboard"
+        anchors { right: parent.right; bottom: keyboard.top; margins: Math.round(0.5 * root.theme.unit) }
+        theme: root.theme
+        primary: root.typing
+        quiet: !root.typing
+        text: root.texts.text("design.keyboard")
+        onActivated: {
+            root.typing = !root.typing
+            edit.forceActiveFocus()
+        }
+    }
+    Loader {
+        id: keyboard
+        anchors { left: parent.left; right: parent.right; bottom: parent.bottom; margins: root.theme.unit }
+        active: root.typing
+        visible: active
+        height: active ? implicitHeight : 0
+        sourceComponent: ScreenKeyboard {
+            theme: root.theme
+            full: true
+            lines: true
+            onTyped: character => edit.insert(edit.cursorPosition, character)
+            onErased: if (edit.cursorPosition > 0) edit.remove(edit.cursorPosition - 1, edit.cursorPosition)
+            onMoved: by => edit.cursorPosition = Math.max(0, Math.min(edit.length, edit.cursorPosition + by))
+        }
+    }
 }

@@ -15,10 +15,15 @@ Rectangle {
     property bool list: false
     /// True if sentences are typed. The keyboard then has capitals and more signs.
     property bool sentences: false
+    /// True if a number is typed, or several. The keyboard then has nothing else.
+    property bool numbers: false
     /// An explanation of what to type, and the reason why the last text was refused.
     property string help
     property string refused
     signal accepted(text: string)
+    /// Emitted with each change of the text.
+    signal typed(text: string)
+    signal cancelled()
 
     function open(text: string) {
         entry.text = text
@@ -46,53 +51,99 @@ Rectangle {
     visible: false
     color: theme.paper
     Shield {}
-    Keys.onEscapePressed: visible = false
-    // With large text on a small screen, the dialog scrolls.
+    Keys.onEscapePressed: cancel()
+    function cancel() {
+        visible = false
+        cancelled()
+    }
+    // The line that is typed and its buttons stay in view; on a small screen, what is below them scrolls.
+    Column {
+        id: head
+        anchors { left: parent.left; right: parent.right; top: parent.top; margins: 2 * root.theme.unit }
+        spacing: root.theme.unit
+        PlainText {
+            width: parent.width
+            text: root.title
+            color: root.theme.ink
+            font { pixelSize: root.theme.textTitle; weight: Font.Bold }
+            wrapMode: Text.Wrap
+        }
+        PlainText {
+            visible: text !== ""
+            width: parent.width
+            text: root.refused !== "" ? root.refused : root.help
+            color: root.refused !== "" ? root.theme.wrong : root.theme.quiet
+            font.pixelSize: root.theme.textSmall
+            wrapMode: Text.Wrap
+        }
+        Rectangle {
+            width: parent.width
+            height: root.theme.controlHeight
+            radius: root.theme.radius
+            color: root.theme.raised
+            border { color: root.theme.action; width: root.theme.stroke }
+            visible: !root.pick
+            TextInput {
+                id: entry
+                objectName: "entry"
+                anchors { fill: parent; leftMargin: root.theme.unit; rightMargin: root.theme.unit }
+                verticalAlignment: TextInput.AlignVCenter
+                color: root.theme.ink
+                font { pixelSize: root.theme.textBody; family: Catalogue.family }
+                clip: true
+                onAccepted: root.keep()
+                onTextEdited: root.typed(text)
+                Accessible.role: Accessible.EditableText
+                Accessible.name: root.title
+            }
+        }
+        Flow {
+            width: parent.width
+            spacing: root.theme.unit
+            ActionButton {
+                objectName: "keepEntry"
+                visible: !root.pick
+                theme: root.theme
+                enabled: entry.text !== "" || root.emptyAllowed
+                text: root.keepText
+                onActivated: root.keep()
+            }
+            ActionButton {
+                objectName: "cancelEntry"
+                theme: root.theme
+                primary: false
+                text: root.cancelText
+                onActivated: root.cancel()
+            }
+        }
+    }
     Flickable {
         id: scroll
         objectName: "entryScroll"
-        anchors { fill: parent; margins: 2 * root.theme.unit }
+        anchors { left: parent.left; right: parent.right; top: head.bottom; bottom: parent.bottom; margins: 2 * root.theme.unit; topMargin: root.theme.unit; bottomMargin: root.theme.unit }
         contentHeight: sheet.height
         interactive: contentHeight > height
         boundsBehavior: Flickable.StopAtBounds
+        clip: true
         Column {
             id: sheet
             width: scroll.width
             spacing: root.theme.unit
-            PlainText {
+            ScreenKeyboard {
+                visible: !root.pick && !(root.list && root.suggestions.length > 0)
+                full: root.sentences
+                numbers: root.numbers
                 width: parent.width
-                text: root.title
-                color: root.theme.ink
-                font { pixelSize: root.theme.textTitle; weight: Font.Bold }
-                wrapMode: Text.Wrap
-            }
-            PlainText {
-                visible: text !== ""
-                width: parent.width
-                text: root.refused !== "" ? root.refused : root.help
-                color: root.refused !== "" ? root.theme.wrong : root.theme.quiet
-                font.pixelSize: root.theme.textSmall
-                wrapMode: Text.Wrap
-            }
-            Rectangle {
-                width: parent.width
-                height: root.theme.controlHeight
-                radius: root.theme.radius
-                color: root.theme.raised
-                border { color: root.theme.action; width: root.theme.stroke }
-                visible: !root.pick
-                TextInput {
-                    id: entry
-                    objectName: "entry"
-                    anchors { fill: parent; leftMargin: root.theme.unit; rightMargin: root.theme.unit }
-                    verticalAlignment: TextInput.AlignVCenter
-                    color: root.theme.ink
-                    font { pixelSize: root.theme.textBody; family: Catalogue.family }
-                    clip: true
-                    onAccepted: root.keep()
-                    Accessible.role: Accessible.EditableText
-                    Accessible.name: root.title
+                theme: root.theme
+                onTyped: character => {
+                    entry.insert(entry.cursorPosition, character)
+                    root.typed(entry.text)
                 }
+                onErased: {
+                    if (entry.cursorPosition > 0) entry.remove(entry.cursorPosition - 1, entry.cursorPosition)
+                    root.typed(entry.text)
+                }
+                onMoved: by => entry.cursorPosition = Math.max(0, Math.min(entry.length, entry.cursorPosition + by))
             }
             Flow {
                 visible: root.suggestions.length > 0
@@ -111,34 +162,6 @@ Rectangle {
                         text: modelData
                         onActivated: root.choose(modelData)
                     }
-                }
-            }
-            ScreenKeyboard {
-                visible: !root.pick && !(root.list && root.suggestions.length > 0)
-                full: root.sentences
-                width: parent.width
-                theme: root.theme
-                onTyped: character => entry.insert(entry.cursorPosition, character)
-                onErased: if (entry.cursorPosition > 0) entry.remove(entry.cursorPosition - 1, entry.cursorPosition)
-                onMoved: by => entry.cursorPosition = Math.max(0, Math.min(entry.length, entry.cursorPosition + by))
-            }
-            Flow {
-                width: parent.width
-                spacing: root.theme.unit
-                ActionButton {
-                    objectName: "keepEntry"
-                    visible: !root.pick
-                    theme: root.theme
-                    enabled: entry.text !== "" || root.emptyAllowed
-                    text: root.keepText
-                    onActivated: root.keep()
-                }
-                ActionButton {
-                    objectName: "cancelEntry"
-                    theme: root.theme
-                    primary: false
-                    text: root.cancelText
-                    onActivated: root.visible = false
                 }
             }
         }

@@ -10,7 +10,8 @@ Rectangle {
     property string title
     /// True if the page also asks what to export, and in which format.
     property bool exporting: false
-    property bool all: false
+    /// session, study or all
+    property string what: "session"
     property string format: "csv"
     signal chosen(place: int)
 
@@ -40,8 +41,9 @@ Rectangle {
             visible: root.exporting
             width: card.inner
             spacing: root.theme.unit
-            ChoiceButton { objectName: "exportOne"; theme: root.theme; chosen: !root.all; text: root.texts.text("operator.this_session"); onActivated: root.all = false }
-            ChoiceButton { objectName: "exportAll"; theme: root.theme; chosen: root.all; text: root.texts.text("operator.all_sessions"); onActivated: root.all = true }
+            ChoiceButton { objectName: "exportOne"; theme: root.theme; chosen: root.what === "session"; text: root.texts.text("operator.this_session"); onActivated: root.what = "session" }
+            ChoiceButton { objectName: "exportStudy"; theme: root.theme; chosen: root.what === "study"; text: root.texts.text("operator.this_study"); onActivated: root.what = "study" }
+            ChoiceButton { objectName: "exportAll"; theme: root.theme; chosen: root.what === "all"; text: root.texts.text("operator.all_sessions"); onActivated: root.what = "all" }
             Item { width: 2 * root.theme.unit; height: 1 }
             ChoiceButton { objectName: "csv"; theme: root.theme; chosen: root.format === "csv"; text: "CSV"; onActivated: root.format = "csv" }
             ChoiceButton { objectName: "bids"; theme: root.theme; chosen: root.format === "bids"; text: "BIDS"; onActivated: root.format = "bids" }

@@ -12,8 +12,6 @@ Rectangle {
     readonly property bool testing: tab === "selfTest"
     readonly property bool weighing: tab === "weights"
     readonly property bool guiding: tab === "guide"
-    readonly property var languages: [{ code: "en", name: "English" }, { code: "de", name: "Deutsch" }, { code: "es", name: "Español" },
-                                      { code: "ja", name: "日本語" }, { code: "zh", name: "中文" }, { code: "ar", name: "العربية" }]
 
     color: look.paper
     LayoutMirroring.enabled: texts.mirrored
@@ -83,7 +81,7 @@ Rectangle {
             width: state.inner
             spacing: Math.round(0.6 * look.unit)
             Repeater {
-                model: root.languages
+                model: OperatorScreen.languages
                 ChoiceButton {
                     required property var modelData
                     objectName: "screen-" + modelData.code

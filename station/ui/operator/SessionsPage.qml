@@ -53,8 +53,16 @@ Rectangle {
             label: texts.text("operator.show_all")
             onActivated: root.sessions.search = ""
         }
+        Flow {
+            id: orders
+            anchors { left: parent.left; right: parent.right; top: find.bottom; topMargin: look.unit }
+            spacing: Math.round(0.6 * look.unit)
+            ChoiceButton { objectName: "byDate"; theme: look; chosen: root.sessions.order === "newest"; text: texts.text("operator.by_date"); onActivated: root.sessions.order = "newest" }
+            ChoiceButton { objectName: "byStudy"; theme: look; chosen: root.sessions.order === "study"; text: texts.text("operator.by_study"); onActivated: root.sessions.order = "study" }
+            ChoiceButton { objectName: "byParticipant"; theme: look; chosen: root.sessions.order === "participant"; text: texts.text("operator.by_participant"); onActivated: root.sessions.order = "participant" }
+        }
         Rectangle {
-            anchors { left: parent.left; right: parent.right; top: find.bottom; bottom: parent.bottom; topMargin: look.unit }
+            anchors { left: parent.left; right: parent.right; top: orders.bottom; bottom: parent.bottom; topMargin: look.unit }
             radius: look.radius
             color: look.raised
             border { color: look.line; width: 1 }
@@ -75,45 +83,61 @@ Rectangle {
                 boundsBehavior: Flickable.StopAtBounds
                 spacing: Math.round(0.3 * look.unit)
                 model: root.sessions.sessions
-                delegate: Rectangle {
-                    id: row
+                delegate: Column {
+                    id: line
                     required property var modelData
                     required property int index
-                    readonly property bool chosen: index === root.sessions.selected
-                    objectName: "session" + index
                     width: list.width
-                    height: Math.max(look.controlHeight, words.implicitHeight + look.unit)
-                    radius: look.radius
-                    color: chosen ? look.action : look.raised
-                    Accessible.role: Accessible.ListItem
-                    Accessible.name: modelData.person + ", " + modelData.protocol + ", " + modelData.started
-                    Accessible.selected: chosen
-                    Accessible.onPressAction: root.sessions.select(index)
-                    activeFocusOnTab: true
-                    Keys.onSpacePressed: root.sessions.select(index)
-                    Keys.onReturnPressed: root.sessions.select(index)
-                    border { color: look.ink; width: activeFocus ? look.stroke : 0 }
-                    Column {
-                        id: words
-                        anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: Math.round(0.9 * look.unit) }
-                        PlainText {
-                            readAloud: false
-                            width: parent.width
-                            text: row.modelData.person + "   ·   " + row.modelData.protocol
-                            color: row.chosen ? look.actionText : look.ink
-                            font { pixelSize: look.textBody; weight: Font.DemiBold }
-                            elide: Text.ElideRight
-                        }
-                        PlainText {
-                            readAloud: false
-                            width: parent.width
-                            text: row.modelData.started + "   ·   " + texts.named(row.modelData.mode) + "   ·   " + texts.named(row.modelData.status)
-                            color: row.chosen ? look.actionText : look.quiet
-                            font.pixelSize: look.textSmall
-                            elide: Text.ElideRight
-                        }
+                    PlainText {
+                        visible: line.modelData.heading !== ""
+                        width: parent.width
+                        topPadding: line.index > 0 ? look.unit : 0
+                        leftPadding: Math.round(0.9 * look.unit)
+                        text: line.modelData.heading
+                        color: look.action
+                        font { pixelSize: look.textSmall; weight: Font.Bold }
+                        elide: Text.ElideRight
                     }
-                    TapHandler { onTapped: root.sessions.select(row.index) }
+                    Rectangle {
+                        id: row
+                        readonly property var modelData: line.modelData
+                        readonly property int index: line.index
+                        readonly property bool chosen: index === root.sessions.selected
+                        objectName: "session" + index
+                        width: parent.width
+                        height: Math.max(look.controlHeight, words.implicitHeight + look.unit)
+                        radius: look.radius
+                        color: chosen ? look.action : look.raised
+                        Accessible.role: Accessible.ListItem
+                        Accessible.name: modelData.person + ", " + modelData.protocol + ", " + modelData.started
+                        Accessible.selected: chosen
+                        Accessible.onPressAction: root.sessions.select(index)
+                        activeFocusOnTab: true
+                        Keys.onSpacePressed: root.sessions.select(index)
+                        Keys.onReturnPressed: root.sessions.select(index)
+                        border { color: look.ink; width: activeFocus ? look.stroke : 0 }
+                        Column {
+                            id: words
+                            anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: Math.round(0.9 * look.unit) }
+                            PlainText {
+                                readAloud: false
+                                width: parent.width
+                                text: row.modelData.person + "   ·   " + row.modelData.protocol
+                                color: row.chosen ? look.actionText : look.ink
+                                font { pixelSize: look.textBody; weight: Font.DemiBold }
+                                elide: Text.ElideRight
+                            }
+                            PlainText {
+                                readAloud: false
+                                width: parent.width
+                                text: row.modelData.started + "   ·   " + texts.named(row.modelData.mode) + "   ·   " + texts.named(row.modelData.status)
+                                color: row.chosen ? look.actionText : look.quiet
+                                font.pixelSize: look.textSmall
+                                elide: Text.ElideRight
+                            }
+                        }
+                        TapHandler { onTapped: root.sessions.select(row.index) }
+                    }
                 }
             }
             ScrollCue { theme: look; place: list }
@@ -247,7 +271,10 @@ Rectangle {
         emptyAllowed: true
         title: texts.text("operator.search_title")
         keepText: texts.text("operator.search")
-        cancelText: texts.text("operator.cancel")
+        cancelText: texts.text("operator.show_all")
+        help: texts.fill("operator.found", list.count, root.sessions.total)
+        onTyped: text => root.sessions.search = text
+        onCancelled: root.sessions.search = ""
         onAccepted: text => root.sessions.search = text
     }
     EntryDialog {
@@ -269,7 +296,7 @@ Rectangle {
         sessions: root.sessions
         exporting: true
         title: texts.text("operator.export_where")
-        onChosen: place => root.sessions.exportTo(place, all, format)
+        onChosen: place => root.sessions.exportTo(place, what, format)
     }
     PlaceDialog {
         id: backing

@@ -279,6 +279,28 @@ void DesignController::remove(int index) {
   if (const auto* gone = group(index); gone != nullptr) take_change(draft_->document()->without(gone->path));
 }
 
+void DesignController::add(const QString& kind) {
+  if (draft_ && draft_->document() != nullptr)
+    take_change(draft_->document()->with_tables(view::new_table(*draft_->document(), kind.toStdString())));
+}
+
+void DesignController::move(int index, bool earlier) {
+  const auto* moved = group(index);
+  if (moved == nullptr) return;
+  const auto& other = earlier ? moved->earlier : moved->later;
+  if (!other.empty()) take_change(draft_->document()->exchanged(moved->path, other));
+}
+
+void DesignController::lengthen(int index) {
+  if (const auto* longer = group(index); longer != nullptr && !longer->below.empty())
+    take_change(view::with_one_more(*draft_->document(), *longer));
+}
+
+void DesignController::shorten(int index) {
+  if (const auto* shorter = group(index); shorter != nullptr && !shorter->below.empty())
+    take_change(view::with_one_less(*draft_->document(), *shorter));
+}
+
 void DesignController::undo() {
   if (!can_undo()) return;
   draft_->undo();

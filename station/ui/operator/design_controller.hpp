@@ -131,6 +131,13 @@ class DesignController : public QObject {
   Q_INVOKABLE bool change(int group, int field, const QString& typed);
   Q_INVOKABLE bool copy(int group, const QString& name);
   Q_INVOKABLE void remove(int group);
+  /// Adds a consent, an explanation, a questionnaire or a screening at the end of the session.
+  Q_INVOKABLE void add(const QString& kind);
+  /// Lets a part of the session change places with the one before it, or after it.
+  Q_INVOKABLE void move(int group, bool earlier);
+  /// Adds a page or an item at the end of an explanation or a questionnaire, or removes the last one.
+  Q_INVOKABLE void lengthen(int group);
+  Q_INVOKABLE void shorten(int group);
   Q_INVOKABLE void undo();
   Q_INVOKABLE void redo();
   Q_INVOKABLE void setText(const QString& text);

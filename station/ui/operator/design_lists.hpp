@@ -19,8 +19,8 @@ QVariantMap to_map(view::CheckWords::Remark::Kind kind, const core::Problem& pro
 /// Converts the parts of a trial for QML, to a list of {kind, from, to}.
 QVariantList to_list(const std::vector<view::TrialPart>& parts);
 
-/// Converts one table of a form for QML, to {kind, name, present, copied, removable, remarks, fields,
-/// boundary, zone}. A field is {index, path (within its table), kind, value, allowed, list, present,
+/// Converts one table of a form for QML, to {kind, name, present, copied, removable, earlier, later (whether it can move
+/// there), below (page or item), belowCount, remarks, fields, boundary, zone}. A field is {index, path (within its table), kind, value, allowed, list, present,
 /// required, help, remarks}. `boundary` and `zone` are the indices of the fields that a mark on the drawn
 /// surface can set; -1 if there is none. The argument `remarks` holds the remarks on the whole form.
 QVariantMap group_of(const view::Group& group, const QVariantList& remarks);

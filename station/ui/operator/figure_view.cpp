@@ -1,12 +1,11 @@
 #include "station/ui/operator/figure_view.hpp"
 
-#include <QDir>
+#include <QBuffer>
 #include <QPainter>
 #include <QPdfWriter>
 #include <stdexcept>
+#include <string>
 
-#include "station/core/texts.hpp"
-#include "station/report/svg.hpp"
 #include "station/system/write_file.hpp"
 #include "station/ui/operator/painter_canvas.hpp"
 
@@ -18,32 +17,34 @@ constexpr double kMargin = 6;
 // text size that figures are laid out for; they are then scaled to the item's text size
 constexpr double kDrawnText_px = 12;
 
-// size of a saved figure; at 96 px per inch it is 180 mm wide, as two columns of a journal
-constexpr double kSavedWidth_px = 680, kSavedHeight_px = 450;
 constexpr double kFigureInch_mm = 25.4, kPixelsPerInch = 96;
 
-void save_pdf(const view::Drawing& drawing, const QString& path) {
-  QPdfWriter writer(path);
+std::string pdf_of(const report::Figure& figure) {
+  const auto [width_px, height_px] = report::size_px(figure);
+  const QSizeF size_px(width_px, height_px);
+  QByteArray bytes;
+  QBuffer buffer(&bytes);
+  buffer.open(QIODevice::WriteOnly);
+  QPdfWriter writer(&buffer);
   writer.setPageMargins(QMarginsF());
-  writer.setPageSize(QPageSize(QSizeF(kSavedWidth_px, kSavedHeight_px) * kFigureInch_mm / kPixelsPerInch,
-                               QPageSize::Millimeter, {}, QPageSize::ExactMatch));
+  writer.setPageSize(
+      QPageSize(size_px * kFigureInch_mm / kPixelsPerInch, QPageSize::Millimeter, {}, QPageSize::ExactMatch));
   QPainter painter;
-  if (!painter.begin(&writer))
-    throw core::Failure(core::phrase("operator.not_written", {core::plain(path.toStdString())}));
-  PainterCanvas canvas(painter, QRectF(0, 0, writer.width(), writer.height()));
-  drawing(canvas, kSavedWidth_px, kSavedHeight_px);
+  if (!painter.begin(&writer)) throw std::logic_error("Qt cannot make a PDF");
+  {
+    PainterCanvas canvas(painter, QRectF(0, 0, writer.width(), writer.height()));
+    report::draw(canvas, figure);
+  }
+  painter.end();
+  return bytes.toStdString();
 }
 
 }  // namespace
 
-void save_drawing(const view::Drawing& drawing, const QString& folder, const QString& name) {
-  if (!QDir().mkpath(folder))
-    throw core::Failure(core::phrase("operator.not_made", {core::plain(folder.toStdString())}));
-  const QString path = folder + "/" + name;
-  report::Svg svg;
-  drawing(svg, kSavedWidth_px, kSavedHeight_px);
-  system::write_file((path + ".svg").toStdString(), svg.finish());
-  save_pdf(drawing, path + ".pdf");
+void save_figure(const report::NamedFigure& figure, const QString& folder) {
+  system::make_folder(folder.toStdString());
+  for (const auto& file : report::figure_files(figure, pdf_of))
+    system::write_file((folder + "/").toStdString() + file.name, file.bytes);
 }
 
 QVariant to_variant(const view::Drawing& drawing) { return QVariant::fromValue(Picture{drawing}); }

@@ -2,6 +2,7 @@
 #include <QColor>
 #include <QQuickPaintedItem>
 
+#include "station/report/figure_files.hpp"
 #include "station/view/scene_figures.hpp"
 
 namespace turnpoint::ui {
@@ -17,10 +18,10 @@ struct Picture {
 /// Converts a drawing to the value of a QML property.
 QVariant to_variant(const view::Drawing& drawing);
 
-/// Writes a drawing to FOLDER/NAME.svg and FOLDER/NAME.pdf, at the size of a figure that fills the width of a
-/// page. Makes the folder if there is none. Throws std::runtime_error or std::system_error if a file cannot
-/// be written.
-void save_drawing(const view::Drawing& drawing, const QString& folder, const QString& name);
+/// Writes the files of a figure (see report::figure_files) to a folder, which it makes if there is none. The PDF is made
+/// by Qt, which joins the letters of all scripts. Throws std::runtime_error or std::system_error if a file cannot be
+/// written.
+void save_figure(const report::NamedFigure& figure, const QString& folder);
 
 /// Shows one figure, laid out for the size of this item with text of `textPixels`. Each new picture is drawn
 /// only once.

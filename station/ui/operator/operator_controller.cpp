@@ -121,7 +121,7 @@ const view::ProtocolEntry* OperatorController::entry() const {
 void OperatorController::select(int index) {
   if (index < 0 || index >= static_cast<int>(protocols_.size()) || preparing_) return;
   selected_ = index;
-  language_ = -1;
+  language_.clear();
   words_ = {};
   forget_refusal();
   not_live_.clear();
@@ -182,7 +182,7 @@ void OperatorController::refuse_live(std::vector<core::Phrase> reasons) {
 
 void OperatorController::chooseLanguage(int index) {
   if (index < -1 || index >= languages().size()) return;
-  language_ = index;
+  language_ = index < 0 ? QString() : languages()[index];
   forget_refusal();
   Q_EMIT changed();
 }
@@ -228,10 +228,13 @@ void OperatorController::prepare(const std::string& early) {
   if (!may_begin()) return;
   auto request = request_for(live_ ? "live" : "pilot");
   const bool ask_code = participant_.isEmpty();
-  const bool ask_language = language_ < 0 && languages().size() > 1;
+  const bool ask_language = language() < 0 && languages().size() > 1;
   if (!ask_code) request.participant = participant_.toStdString();
   request.early = early;
-  if (language_ >= 0) request.language = languages()[language_].toStdString();
+  if (language() >= 0)
+    request.language = language_.toStdString();
+  else if (languages().size() == 1)
+    request.language = languages().front().toStdString();
   preparing_ = true;
   forget_refusal();
   Q_EMIT changed();
@@ -335,7 +338,8 @@ QVariantList OperatorController::cues() const {
 }
 
 QStringList OperatorController::languages() const {
-  return entry() != nullptr ? to_list(entry()->languages) : QStringList();
+  if (entry() == nullptr) return {};
+  return to_list(words_.languages.empty() ? entry()->languages : words_.languages);
 }
 
 QVariantMap OperatorController::backup() const {

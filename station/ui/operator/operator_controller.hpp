@@ -95,7 +95,7 @@ class OperatorController : public QObject {
   QVariantMap too_early() const;
   QVariantList warnings() const;
   QStringList languages() const;
-  int language() const { return language_; }
+  int language() const { return static_cast<int>(languages().indexOf(language_)); }
   QString participant() const { return participant_; }
   bool participant_known() const { return participants().contains(participant_); }
   QStringList participants() const { return participants_; }
@@ -168,7 +168,8 @@ class OperatorController : public QObject {
   std::vector<core::Phrase> refused_;  ///< why the last chosen session did not begin
   std::optional<session::EarlySession> too_early_;
   std::vector<core::Phrase> not_live_;  ///< why the chosen protocol cannot run live
-  int selected_ = -1, language_ = -1;
+  QString language_;  ///< "" if the participant chooses it
+  int selected_ = -1;
   QString participant_;
   bool live_ = false, armed_ = false, checking_ = false, preparing_ = false;
   bool may_check_;

@@ -2,6 +2,7 @@
 
 #include <QRegularExpression>
 #include <exception>
+#include <map>
 #include <utility>
 
 #include "station/core/texts.hpp"
@@ -29,19 +30,15 @@ void ReportModel::clear() {
 }
 
 void ReportModel::save(int picture) {
-  const auto pictures = all_pictures();
-  if (folder_.isEmpty() || picture < 0 || picture >= static_cast<int>(pictures.size())) return;
-  const auto& [name, drawing] = pictures[static_cast<std::size_t>(picture)];
-  const auto file_name = [](QString text) {
-    return text.replace(QRegularExpression("[^A-Za-z0-9]+"), "-").toLower();
-  };
+  const auto& figures = pages_.figures;
+  if (folder_.isEmpty() || picture < 0 || picture >= static_cast<int>(figures.size())) return;
+  const auto& figure = figures[static_cast<std::size_t>(picture)];
+  auto name = title() + " (" + run_mode() + ", " + status() + ")";
   const QString folder =
-      folder_ + "/" + file_name(title() + " (" + run_mode() + ", " + status() + ")").left(80);
-  // Files have the same names in every language.
-  const QString file = file_name(QString::fromStdString(core::text(name.toStdString(), "en")));
+      folder_ + "/" + name.replace(QRegularExpression("[^A-Za-z0-9]+"), "-").toLower().left(80);
   try {
-    save_drawing(drawing, folder, file);
-    saved_ = core::plain((folder + "/" + file + ".svg, .pdf").toStdString());
+    save_figure(figure, folder);
+    saved_ = core::plain((folder + "/").toStdString() + figure.name + "-*");
   } catch (const std::exception& error) {
     saved_ = core::phrase_of(error);
   }
@@ -55,30 +52,29 @@ QVariantList ReportModel::forces() const { return to_list(pages_.forces); }
 QVariantList ReportModel::health() const { return to_list(pages_.health); }
 QVariantList ReportModel::statements() const { return to_list(pages_.statements); }
 
-std::vector<std::pair<QString, view::Drawing>> ReportModel::all_pictures() const {
-  std::vector<std::pair<QString, view::Drawing>> list;
-  const auto add = [&list](const char* name, const view::Drawing& drawing) {
-    if (drawing) list.emplace_back(name, drawing);
-  };
-  if (pages_.compares_instructions) add("report.speed_accuracy", pages_.trade);
-  add("report.fit", pages_.fits);
-  if (!pages_.compares_instructions) add("report.speed_accuracy", pages_.trade);
-  add("live.levels", pages_.levels);
-  add("live.times", pages_.times);
-  add("report.finger", pages_.finger);
-  add("live.friction", pages_.friction);
-  return list;
-}
-
 QStringList ReportModel::picture_names() const {
+  static const std::map<std::string, const char*> keys{{"judgements", "report.fit"},
+                                                       {"settings", "report.fit"},
+                                                       {"psychometric-function", "report.fit"},
+                                                       {"threshold-curve", "report.curve"},
+                                                       {"answers-to-each-stimulus", "report.answers"},
+                                                       {"roc", "report.roc"},
+                                                       {"response-signal", "report.signal"},
+                                                       {"speed-accuracy", "report.speed_accuracy"},
+                                                       {"response-times", "live.times"},
+                                                       {"quantiles", "report.quantiles"},
+                                                       {"levels", "live.levels"},
+                                                       {"finger", "report.finger"},
+                                                       {"friction", "live.friction"},
+                                                       {"vibration", "report.vibration"}};
   QStringList names;
-  for (const auto& [name, drawing] : all_pictures()) names += name;
+  for (const auto& figure : pages_.figures) names += QString(keys.at(figure.name));
   return names;
 }
 
 QVariantList ReportModel::pictures() const {
   QVariantList list;
-  for (const auto& [name, drawing] : all_pictures()) list += to_variant(drawing);
+  for (const auto& figure : pages_.figures) list += to_variant(view::drawing_of(figure.figure));
   return list;
 }
 

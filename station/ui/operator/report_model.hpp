@@ -23,7 +23,7 @@ class ReportModel : public QObject {
   Q_PROPERTY(QVariantList forces READ forces NOTIFY changed)
   Q_PROPERTY(QVariantList health READ health NOTIFY changed)
   Q_PROPERTY(QVariantList statements READ statements NOTIFY changed)
-  /// Keys of the names and drawings of the existing figures, beginning with the speed-accuracy trade-off.
+  /// Keys of the names and drawings of the existing figures.
   Q_PROPERTY(QStringList pictureNames READ picture_names NOTIFY changed)
   Q_PROPERTY(QVariantList pictures READ pictures NOTIFY changed)
   /// where the last figure was saved, or why that failed; "" if no figure was saved yet
@@ -39,7 +39,7 @@ class ReportModel : public QObject {
   /// Sets the folder in which figures are saved. Each report gets its own folder in it.
   void save_in(const std::string& folder) { folder_ = QString::fromStdString(folder); }
 
-  /// Saves a figure as SVG and as PDF.
+  /// Saves a figure for a paper: SVG and PDF in two sizes, its data, and its caption.
   Q_INVOKABLE void save(int picture);
   QVariant saved() const { return to_variant(saved_); }
   bool may_save() const { return !folder_.isEmpty(); }
@@ -61,7 +61,6 @@ class ReportModel : public QObject {
   void changed();
 
  private:
-  std::vector<std::pair<QString, view::Drawing>> all_pictures() const;
   view::ReportPages pages_;
   bool ready_ = false;
   QString folder_;

@@ -90,12 +90,21 @@ void SessionsController::open() {
 
 void SessionsController::read_list() {
   all_ = view::session_lines(database_);
+  view::put_in_order(all_, order_ == "study"         ? view::SessionOrder::study
+                           : order_ == "participant" ? view::SessionOrder::participant
+                                                     : view::SessionOrder::newest);
   if (line() == nullptr) chosen_ = all_.empty() ? "" : all_.front().session_id;
 }
 
 void SessionsController::setSearch(const QString& search) {
   search_ = search;
   Q_EMIT changed();
+}
+
+void SessionsController::setOrder(const QString& order) {
+  if (order == order_) return;
+  order_ = order;
+  open();
 }
 
 void SessionsController::lookForDisks() {
@@ -172,17 +181,19 @@ std::string SessionsController::folder_of(int place) const {
   return disks_[static_cast<std::size_t>(place) - 1].folder;
 }
 
-/// Returns the folder of a place. If the place is a disk that is not mounted, mounts it first.
+/// Returns the folder of a place. If the place is a disk, mounts it first unless it still is; the folder of a
+/// disk that was pulled out lies on the system's own disk.
 static std::string mounted(std::string folder, const std::vector<maintenance::Disk>& disks, int place,
                            const maintenance::DiskSources& sources) {
-  return place > 0 && folder.empty() ? maintenance::mount(disks[static_cast<std::size_t>(place) - 1], sources)
-                                     : std::move(folder);
+  return place > 0 ? maintenance::mount(disks[static_cast<std::size_t>(place) - 1], sources)
+                   : std::move(folder);
 }
 
-void SessionsController::exportTo(int place, bool all, const QString& format) {
-  if (!is_place(place) || (!all && line() == nullptr)) return;
+void SessionsController::exportTo(int place, const QString& what, const QString& format) {
+  if (!is_place(place) || (what != "all" && line() == nullptr)) return;
   store::ExportOptions options;
-  if (!all) options.session_id = chosen_;
+  if (what == "session") options.session_id = chosen_;
+  if (what == "study") options.protocol_id = line()->protocol_id;
   if (format == "bids") options.format = store::ExportFormat::bids;
   // Each export gets a new folder, so that files of an earlier export never stand beside newer ones.
   const auto name =
@@ -250,8 +261,15 @@ void SessionsController::withdraw() {
 
 QVariantList SessionsController::sessions() const {
   QVariantList list;
-  for (const auto& session : all_)
-    if (view::matches(session, search_.toStdString())) list += to_map(session);
+  std::string group;
+  for (const auto& session : all_) {
+    if (!view::matches(session, search_.toStdString())) continue;
+    auto map = to_map(session);
+    const auto& own = order_ == "study" ? session.protocol_id : session.person;
+    map["heading"] = order_ == "newest" || own == group ? QString() : QString::fromStdString(own);
+    group = own;
+    list += map;
+  }
   return list;
 }
 

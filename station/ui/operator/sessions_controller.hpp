@@ -24,7 +24,10 @@ class SessionsController : public QObject {
   QML_ELEMENT
   QML_UNCREATABLE("made by the program")
   Q_PROPERTY(QString search READ search WRITE setSearch NOTIFY changed)
-  /// sessions that match the search, as {id, person, protocol, started, mode, status, trials, resumable}
+  /// how the list is ordered: newest, study or participant
+  Q_PROPERTY(QString order READ order WRITE setOrder NOTIFY changed)
+  /// sessions that match the search, as {id, person, protocol, started, mode, status, trials, resumable, heading};
+  /// `heading` is the study or the participant where the next ones begin, otherwise ""
   Q_PROPERTY(QVariantList sessions READ sessions NOTIFY changed)
   Q_PROPERTY(int total READ total NOTIFY changed)  ///< number of all sessions
   Q_PROPERTY(int selected READ selected NOTIFY changed)
@@ -49,6 +52,8 @@ class SessionsController : public QObject {
   QString search() const { return search_; }
   // Qt calls this function by its name, as the setter of the property `search`.
   void setSearch(const QString& search);  // NOLINT(readability-identifier-naming)
+  QString order() const { return order_; }
+  void setOrder(const QString& order);  // NOLINT(readability-identifier-naming)
   QVariantList sessions() const;
   int total() const { return static_cast<int>(all_.size()); }
   int selected() const;
@@ -69,8 +74,9 @@ class SessionsController : public QObject {
   Q_INVOKABLE void annotate(const QString& note);
   /// Updates the list of disks that are plugged in.
   Q_INVOKABLE void lookForDisks();
-  /// Exports the chosen session, or all of them, to a new folder at a place. `format` is csv or bids.
-  Q_INVOKABLE void exportTo(int place, bool all, const QString& format);
+  /// Exports the chosen session, all sessions of its study, or all sessions (`what` is session, study or all) to a new
+  /// folder at a place. `format` is csv or bids.
+  Q_INVOKABLE void exportTo(int place, const QString& what, const QString& format);
   Q_INVOKABLE void backUpTo(int place);
   Q_INVOKABLE void eject(int place);
   /// Finds out what a withdrawal of the chosen participant would delete. withdraw() then deletes it.
@@ -96,7 +102,7 @@ class SessionsController : public QObject {
   maintenance::DiskSources sources_;
   std::vector<view::SessionLine> all_;
   std::vector<maintenance::Disk> disks_;
-  QString search_;
+  QString search_, order_ = "newest";
   std::string chosen_;  ///< id of the chosen session
   core::Phrase said_;
   bool busy_ = false, failed_ = false, unreadable_ = false;

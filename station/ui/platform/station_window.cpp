@@ -8,7 +8,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "station/protocol/glyphs.hpp"
 #include "station/session/places.hpp"
+#include "station/system/fonts.hpp"
 #include "station/ui/platform/first_page.hpp"
 #include "station/ui/platform/load_page.hpp"
 #include "station/ui/platform/screen.hpp"
@@ -78,8 +80,9 @@ void StationWindow::ask(const ChosenSession& chosen) {
   StartController::Questions questions;
   questions.run_mode = store::name(setup_.run_mode);
   if (!chosen.ask_language) questions.language = QString::fromStdString(setup_.language);
-  for (const auto& language : setup_.protocol.languages)
-    if (chosen.ask_language) questions.languages += QString::fromStdString(language);
+  if (chosen.ask_language)
+    for (const auto& language : protocol::drawn_with(setup_.protocol, system::drawable).languages)
+      questions.languages += QString::fromStdString(language);
   if (!chosen.ask_code) questions.participant = QString::fromStdString(setup_.participant);
   // The participant of a resumed session has already given consent.
   if (setup_.resume_session.empty())

@@ -1,9 +1,10 @@
 import QtQuick
 import Turnpoint
 
-// Letters and digits on the screen, for a station without a keyboard: with capitals, letters with accents and keys that move
-// the cursor. `full` adds more signs, for sentences. The keys have the same order in languages that are read from right to
-// left, like those of a keyboard.
+// A keyboard on the screen, for a station without one. It has the letters of the operator's language, or of another one
+// that the key with a language's code chooses, with capitals (katakana in Japanese), letters with accents or other marks,
+// and keys that move the cursor. Kanji and Chinese characters need a real keyboard with an input method. The keys have the
+// same order in languages that are read from right to left, like those of a keyboard.
 Column {
     id: root
     required property Theme theme
@@ -11,13 +12,30 @@ Column {
     signal erased()
     /// The cursor is to move by so many characters.
     signal moved(by: int)
+    /// More signs, for sentences and expressions.
     property bool full: false
+    /// Only what a number consists of, or several numbers.
+    property bool numbers: false
+    /// A key that begins a new line.
+    property bool lines: false
     property bool capitals: false
     property bool accents: false
-    readonly property var rows: accents ? ["1234567890", "äöüßåæøœçñ", "áéíóúàèìòù", "âêîôûëïãõý", "„“”«»‘’¿¡°"]
-        : full ? ["1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm,._", "?!'():/+*="] : ["1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm,._"]
+    property string layout: OperatorScreen.language
+    readonly property var layouts: ({
+        en: { letters: ["qwertyuiop", "asdfghjkl-", "zxcvbnm,._"], marks: ["äöüßåæøœçñ", "áéíóúàèìòù", "âêîôûëïãõý", "„“”«»‘’¿¡°"] },
+        de: { letters: ["qwertzuiopü", "asdfghjklöä", "yxcvbnmß,.-"], marks: ["áéíóúàèìòù_", "âêîôûëïçñå", "„“”«»‘’–…°"] },
+        es: { letters: ["qwertyuiop-", "asdfghjklñ_", "zxcvbnmç,."], marks: ["áéíóúüàèìò", "âêîôûëïäöß", "¿¡„“”«»‘’°"] },
+        ja: { letters: ["あいうえおかきくけこー", "さしすせそたちつてと、", "なにぬねのはひふへほ。", "まみむめもやゆよらり・", "るれろわをん"],
+              marks: ["がぎぐげござじずぜぞ", "だぢづでどばびぶべぼ", "ぱぴぷぺぽぁぃぅぇぉ", "ゃゅょっ「」？！〜…"] },
+        zh: { letters: ["qwertyuiop", "asdfghjkl-", "zxcvbnm,._"], marks: ["，。、？！：；…—·", "“”‘’《》（）【】", "āáǎàēéěèīí", "ǐìōóǒòūúǔù"] },
+        ar: { letters: ["ضصثقفغعهخحج", "شسيبلاتنمكط", "ئءؤرىةوزظدذ"], marks: ["أإآ؟،؛«»ـ-", "ًٌٍَُِّْ_.", "٠١٢٣٤٥٦٧٨٩"] }
+    })
+    readonly property var keys: layouts[layout] ?? layouts.en
+    readonly property var signs: ["?!'():/+*="]
+    readonly property var rows: numbers ? ["789", "456", "123", "0.-", ",e+"]
+        : ["1234567890"].concat(accents ? keys.marks : keys.letters, full && !accents ? signs : [])
     readonly property real gap: Math.round(0.4 * theme.unit)
-    readonly property real keyWidth: Math.floor((width - 11 * gap) / 11.5)
+    readonly property real keyWidth: numbers ? Math.min(2 * theme.controlHeight, Math.floor((width - 4 * gap) / 4.5)) : Math.floor((width - 12 * gap) / 12)
     readonly property real keyHeight: Math.min(theme.controlHeight, keyWidth)
     spacing: gap
     LayoutMirroring.enabled: false
@@ -35,9 +53,19 @@ Column {
     component WideKey: Key {
         width: Math.round(1.5 * root.keyWidth)
     }
+    function large(character: string) : string {
+        const code = character.charCodeAt(0)
+        return code >= 0x3041 && code <= 0x3096 ? String.fromCharCode(code + 0x60) : character === "ß" ? character : character.toUpperCase()
+    }
     function type(character: string) {
-        typed(capitals ? character.toUpperCase() : character)
+        typed(capitals ? large(character) : character)
+        if (layout !== "ja") capitals = false
+    }
+    function nextLayout() {
+        const all = OperatorScreen.languages.map(language => language.code)
+        layout = all[(all.indexOf(layout) + 1) % all.length]
         capitals = false
+        accents = false
     }
 
     Repeater {
@@ -52,7 +80,7 @@ Column {
                 Key {
                     required property string modelData
                     objectName: "letter" + modelData
-                    text: root.capitals ? modelData.toUpperCase() : modelData
+                    text: root.capitals ? root.large(modelData) : modelData
                     onActivated: root.type(modelData)
                 }
             }
@@ -63,15 +91,30 @@ Column {
                 label: texts.text("erase")
                 onActivated: root.erased()
             }
+            Key {
+                visible: root.numbers && line.index === 1
+                objectName: visible ? "cursorLeft" : ""
+                glyph: "previous"
+                label: texts.text("cursor_left")
+                onActivated: root.moved(-1)
+            }
+            Key {
+                visible: root.numbers && line.index === 2
+                objectName: visible ? "cursorRight" : ""
+                glyph: "next"
+                label: texts.text("cursor_right")
+                onActivated: root.moved(1)
+            }
         }
     }
     Row {
+        visible: !root.numbers
         spacing: root.gap
         WideKey {
             objectName: "capitals"
             primary: root.capitals
             quiet: !root.capitals
-            text: "Aa"
+            text: root.layout === "ja" ? "ア" : "Aa"
             label: texts.text("capitals")
             onActivated: root.capitals = !root.capitals
         }
@@ -79,9 +122,16 @@ Column {
             objectName: "accents"
             primary: root.accents
             quiet: !root.accents
-            text: "äé"
+            text: root.layout === "ja" ? "゛" : root.layout === "zh" ? "，。" : root.layout === "ar" ? "أ؟" : "äé"
             label: texts.text("accents")
             onActivated: root.accents = !root.accents
+        }
+        Key {
+            objectName: "layout"
+            visible: OperatorScreen.languages.length > 1
+            text: root.layout.toUpperCase()
+            label: texts.text("operator.language")
+            onActivated: root.nextLayout()
         }
         Key {
             objectName: "letter "
@@ -90,14 +140,21 @@ Column {
             label: texts.text("space")
             onActivated: root.typed(" ")
         }
-        WideKey {
-            objectName: "cursorLeft"
+        Key {
+            objectName: "newLine"
+            visible: root.lines
+            text: "↵"
+            label: texts.text("new_line")
+            onActivated: root.typed("\n")
+        }
+        Key {
+            objectName: root.numbers ? "" : "cursorLeft"
             glyph: "previous"
             label: texts.text("cursor_left")
             onActivated: root.moved(-1)
         }
-        WideKey {
-            objectName: "cursorRight"
+        Key {
+            objectName: root.numbers ? "" : "cursorRight"
             glyph: "next"
             label: texts.text("cursor_right")
             onActivated: root.moved(1)

@@ -2,6 +2,8 @@
 #include <QtQml/qqmlregistration.h>
 #include <QObject>
 #include <QString>
+#include <QVariantList>
+#include <functional>
 
 namespace turnpoint::ui {
 
@@ -13,13 +15,18 @@ class OperatorScreen : public QObject {
   QML_SINGLETON
   /// language of everything except what the system and devices report
   Q_PROPERTY(QString language READ language WRITE set_language NOTIFY changed)
+  /// The languages that the fonts of this machine can draw, as {code, name}; each is called by its own name.
+  Q_PROPERTY(QVariantList languages READ languages CONSTANT)
   Q_PROPERTY(bool dark READ dark WRITE set_dark NOTIFY changed)
   Q_PROPERTY(int textPercent READ text_percent WRITE set_text_percent NOTIFY changed)  ///< 100 to 200
 
  public:
+  /// `drawable` says whether a character can be drawn.
+  explicit OperatorScreen(std::function<bool(char32_t)> drawable, QObject* parent = nullptr);
   explicit OperatorScreen(QObject* parent = nullptr);
 
   QString language() const { return language_; }
+  QVariantList languages() const;
   bool dark() const { return dark_; }
   int text_percent() const { return text_percent_; }
   void set_language(const QString& language);
@@ -35,6 +42,9 @@ class OperatorScreen : public QObject {
 
  private:
   void keep() const;
+  bool is_drawable(const QString& language) const;
+
+  std::function<bool(char32_t)> drawable_;
 
   QString file_, language_ = "en";
   bool dark_ = false;

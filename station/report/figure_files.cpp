@@ -1,0 +1,156 @@
+#include "station/report/figure_files.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "station/report/figures.hpp"
+#include "station/report/svg.hpp"
+
+namespace turnpoint::report {
+
+namespace {
+
+constexpr double kPixelsPerMm = 96 / 25.4;
+
+void keep(std::vector<NamedFigure>& list, const char* name, std::optional<Figure> figure) {
+  if (figure) list.push_back({name, std::move(*figure)});
+}
+
+/// Writes the rows of one chart.
+struct Rows {
+  std::string start;  ///< the columns that all rows of the chart share
+  std::string& csv;
+
+  void row(const char* kind, const std::string& series, std::initializer_list<std::string> cells) const {
+    csv += start + kind + "," + csv_field(series);
+    for (const auto& text : cells) csv += "," + text;
+    csv += "\n";
+  }
+  void operator()(const Line& line) const {
+    for (std::size_t i = 0; i < line.x.size(); ++i)
+      row("curve", line.name, {csv_number(line.x[i]), "", "", csv_number(line.y[i]), "", "", "", ""});
+  }
+  void operator()(const Points& dots) const {
+    const auto at = [](const std::vector<double>& list, std::size_t i) {
+      return i < list.size() ? csv_number(list[i]) : "";
+    };
+    for (std::size_t i = 0; i < dots.x.size(); ++i)
+      row("marker", dots.name,
+          {csv_number(dots.x[i]), "", "", csv_number(dots.y[i]), at(dots.low, i), at(dots.high, i), at(dots.weight, i),
+           i >= dots.open.size() ? ""
+           : dots.open[i]        ? "1"
+                                 : "0"});
+  }
+  void operator()(const Band& band) const {
+    for (std::size_t i = 0; i < band.x.size(); ++i)
+      row("band", band.name, {csv_number(band.x[i]), "", "", "", csv_number(band.low[i]), csv_number(band.high[i]), "", ""});
+  }
+  void operator()(const Histogram& bars) const {
+    for (std::size_t i = 0; i < bars.heights.size(); ++i)
+      row("bar", bars.name,
+          {"", csv_number(bars.edges[i]), csv_number(bars.edges[i + 1]), csv_number(bars.heights[i]), "", "", "", ""});
+  }
+  void operator()(const HeatMap& map) const {
+    const std::size_t columns = map.x_edges.size() - 1;
+    for (std::size_t i = 0; i < map.values.size(); ++i)
+      row("cell", map.name,
+          {"", csv_number(map.x_edges[i % columns]), csv_number(map.x_edges[i % columns + 1]), "",
+           csv_number(map.y_edges[i / columns]), csv_number(map.y_edges[i / columns + 1]), csv_number(map.values[i]), ""});
+  }
+  void operator()(const Rule& rule) const {
+    if (rule.direction == Rule::Direction::horizontal)
+      row("rule", rule.label, {"", "", "", csv_number(rule.at), "", "", "", ""});
+    else
+      row("rule", rule.label, {csv_number(rule.at), "", "", "", "", "", "", ""});
+  }
+  void operator()(const Span& span) const {
+    row("interval", "", {"", csv_number(span.low), csv_number(span.high), csv_number(span.at), "", "", "", ""});
+  }
+};
+
+}  // namespace
+
+std::vector<NamedFigure> figures_of(const Summary& summary) {
+  const auto& data = summary.data;
+  std::vector<NamedFigure> list;
+  if (judges(data.design)) {
+    keep(list, "judgements", judgement_figure(summary));
+    keep(list, "roc", roc_figure(summary));
+  } else if (data.design == Design::adjustment) {
+    keep(list, "settings", settings_figure(summary));
+  } else {
+    if (!summary.fits.empty()) keep(list, "psychometric-function", psychometric_figure(summary));
+    keep(list, "threshold-curve", threshold_curve_figure(summary));
+    if (!summary.confusions.empty()) keep(list, "answers-to-each-stimulus", confusion_figure(summary));
+    keep(list, "roc", roc_figure(summary));
+    if (!summary.curves.empty()) keep(list, "response-signal", signal_figure(summary));
+    if (!summary.trade.instructions.empty() && data.scored) {
+      keep(list, "speed-accuracy", trade_figure(summary));
+      keep(list, "response-times", response_time_figure(summary));
+      if (summary.trade.model_p) keep(list, "quantiles", quantile_probability_figure(summary));
+    }
+  }
+  keep(list, "levels", trace_figure(summary));
+  keep(list, "finger", finger_figure(summary));
+  keep(list, "friction", friction_figure(summary));
+  keep(list, "vibration", vibration_figure(summary));
+  return list;
+}
+
+std::vector<NamedFigure> figures_of(const Study& study) {
+  std::vector<NamedFigure> list;
+  keep(list, "group", group_curve_figure(study));
+  keep(list, "participants", shrinkage_figure(study));
+  keep(list, "speed-accuracy", group_trade_figure(study));
+  return list;
+}
+
+std::string data_csv(const Figure& figure) {
+  std::string csv = "chart,x_axis,y_axis,kind,series,x,x_low,x_high,y,y_low,y_high,value,open\n";
+  int number = 0;
+  for (const auto& chart : figure.charts) {
+    ++number;
+    const auto title = chart.title.empty() ? std::to_string(number) : chart.title;
+    const auto start = csv_field(title) + "," + csv_field(chart.x.label) + "," + csv_field(chart.y.label) + ",";
+    for (const auto& layer : chart.layers) std::visit(Rows{start, csv}, layer);
+    for (std::size_t i = 0; i < chart.x.names.size(); ++i)
+      Rows{start, csv}.row("name", chart.x.names[i], {std::to_string(i + 1), "", "", "", "", "", "", ""});
+    for (std::size_t i = 0; i < chart.y.names.size(); ++i)
+      Rows{start, csv}.row("name", chart.y.names[i], {"", "", "", std::to_string(i + 1), "", "", "", ""});
+  }
+  return csv;
+}
+
+Figure for_paper(Figure figure, double width_mm) {
+  figure.caption.clear();
+  const double width_px = width_mm * kPixelsPerMm;
+  const int columns = width_mm < 120 ? 1 : std::min(2, static_cast<int>(figure.charts.size()));
+  const int charts = static_cast<int>(figure.charts.size());
+  const int rows = (charts + columns - 1) / columns;
+  const double chart_px = width_px / columns;
+  const double shape = std::clamp(figure.chart_height_px / figure.chart_width_px, 0.35, 1.0);
+  figure.columns = columns;
+  figure.chart_width_px = chart_px;
+  // titles, legends and axes take as much height in a narrow chart as in a wide one
+  figure.chart_height_px = chart_px * std::max(shape, rows > 2 ? 0.5 : 0.62) + (chart_px < 400 ? 50 : 0);
+  return figure;
+}
+
+std::vector<FigureFile> figure_files(const NamedFigure& named, const PdfOf& pdf_of) {
+  std::vector<FigureFile> files;
+  for (const auto& [width_mm, suffix] :
+       {std::pair(kOneColumn_mm, "-1-column"), {kTwoColumns_mm, "-2-columns"}}) {
+    const auto figure = for_paper(named.figure, width_mm);
+    Svg svg(Svg::Unit::mm);
+    draw(svg, figure);
+    files.push_back({named.name + suffix + ".svg", svg.finish()});
+    if (auto pdf = pdf_of(figure); !pdf.empty())
+      files.push_back({named.name + suffix + ".pdf", std::move(pdf)});
+  }
+  files.push_back({named.name + ".csv", data_csv(named.figure)});
+  files.push_back({named.name + ".txt", named.figure.title + ". " + named.figure.caption + "\n"});
+  return files;
+}
+
+}  // namespace turnpoint::report
