@@ -62,7 +62,7 @@ Column {
         if (layout !== "ja") capitals = false
     }
     function nextLayout() {
-        const all = OperatorScreen.languages.map(language => language.code)
+        const all = Array.from(OperatorScreen.languages, language => language.code)
         layout = all[(all.indexOf(layout) + 1) % all.length]
         capitals = false
         accents = false
