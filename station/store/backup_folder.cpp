@@ -43,13 +43,16 @@ StoredBackup read_backup(const std::string& path, const std::smatch& name) {
   backup.number = std::stoll(name[2]);
   backup.made_realtime_s = seconds_of(name[3]);
   try {
-    Database database(path, Database::Access::immutable);
-    require_schema(database);
-    if (const auto noted = meta(database, "backup_of"); !noted.empty()) backup.stem = noted;
-    if (const auto noted = meta(database, "backup_number"); !noted.empty()) backup.number = std::stoll(noted);
-    backup.station = database.text("SELECT station_id FROM session LIMIT 1");
-    backup.machine = meta(database, "backup_machine");
-    backup.database_id = meta(database, "database_id");
+    looked_at(path, [&] {
+      Database database(path, Database::Access::immutable);
+      require_schema(database);
+      if (const auto noted = meta(database, "backup_of"); !noted.empty()) backup.stem = noted;
+      if (const auto noted = meta(database, "backup_number"); !noted.empty())
+        backup.number = std::stoll(noted);
+      backup.station = database.text("SELECT station_id FROM session LIMIT 1");
+      backup.machine = meta(database, "backup_machine");
+      backup.database_id = meta(database, "database_id");
+    });
   } catch (const StoreError& error) {
     if (error.kind() == ErrorKind::other_schema)
       backup.stem.clear();  // nobody can restore it with this program

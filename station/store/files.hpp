@@ -53,6 +53,19 @@ void permit_as(const std::string& original, const std::string& path);
 /// Syncs the contents of a file or folder to disk.
 void sync_path(const std::string& path);
 
+/// Returns look(). If that finds the file damaged or not a database, reads the file through and looks once
+/// more: SQLite says so, too, when the disk fails to read. Throws StoreError.
+template <class Look>
+auto looked_at(const std::string& path, const Look& look) {
+  try {
+    return look();
+  } catch (const StoreError& error) {
+    if (error.kind() != ErrorKind::corrupt && error.kind() != ErrorKind::not_a_database) throw;
+  }
+  sha256_of_file(path);
+  return look();
+}
+
 void rename_file(const std::string& from, const std::string& to);
 /// Removes a file if it exists.
 void remove_file(const std::string& path);

@@ -57,13 +57,15 @@ Holds holds(const std::string& path, const std::vector<std::string>& session_ids
       // Data in SQLite's log are not yet in the database file, so reading only that file could miss a
       // session.
       if (file_size(path + suffix) > 0) return Holds::unreadable;
-    Database copy(path, Database::Access::immutable);
-    require_schema(copy);
-    Statement rows(copy, "SELECT 1 FROM session WHERE session_id = ?");
-    return std::any_of(session_ids.begin(), session_ids.end(),
-                       [&](const auto& id) { return rows.bind(id).step(); })
-               ? Holds::yes
-               : Holds::no;
+    return looked_at(path, [&] {
+      Database copy(path, Database::Access::immutable);
+      require_schema(copy);
+      Statement rows(copy, "SELECT 1 FROM session WHERE session_id = ?");
+      return std::any_of(session_ids.begin(), session_ids.end(),
+                         [&](const auto& id) { return rows.bind(id).step(); })
+                 ? Holds::yes
+                 : Holds::no;
+    });
   } catch (const StoreError& error) {
     const auto kind = error.kind();
     if (kind == ErrorKind::corrupt || kind == ErrorKind::not_a_database || kind == ErrorKind::other_schema)

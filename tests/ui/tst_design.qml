@@ -71,6 +71,11 @@ Item {
         function begin(goal, name) {
             tap("bar-studies")
             tap("newStudy")
+            const goals = appears("goals")
+            tryVerify(() => {
+                goals.positionViewAtIndex(goals.model.findIndex(one => one.word === goal), GridView.Contain)
+                return ready("goal-" + goal)
+            }, 20000, goal)
             tap("goal-" + goal)
             type(name)
             appears("section-timing")

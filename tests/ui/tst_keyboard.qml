@@ -104,11 +104,13 @@ Item {
         }
         function test_capitals_are_those_of_the_language() {
             keyboard.layout = "de"
+            wait(50)                                   // the keys get their places
             tap(keyboard, "capitals")
             tap(keyboard, "letterö")
             tap(keyboard, "letterö")
             compare(stage.typed, "Öö")
             keyboard.layout = "ja"
+            wait(50)
             tap(keyboard, "capitals")
             tap(keyboard, "letterか")
             tap(keyboard, "letterな")

@@ -90,7 +90,7 @@ Item {
             tap("keepEntry")
             tryVerify(() => says(room.screen, "No session matches the search."), 1000)
             tap("clearSearch")
-            for (const [order, heading] of [["byStudy", "demo"], ["byParticipant", "T1"]]) {
+            for (const [order, heading] of [["byStudy", "short"], ["byParticipant", "T1"]]) {
                 tap(order)
                 tryVerify(() => says(room.screen, heading), 1000)
                 verify(shown("session0"))

@@ -20,6 +20,8 @@ def effects(measures: pd.DataFrame, groups: pd.Series) -> pd.DataFrame:
     # the groups of the participants who have a condition
     groups_of = {name: set(groups[part["participant"]]) for name, part in measures.groupby("condition")}
     for measure, part in measures.groupby("measure", sort=False):
+        if measure.startswith(("mean time in time bin ", "response time at the signal after ")):
+            continue  # where a figure has its points: nothing to compare
         # the rows are in the order of the protocol's conditions, as in the report; pivot would sort them by name
         wide = part.pivot(index="participant", columns="condition", values="value")[part["condition"].unique()]
         for first, second in itertools.combinations(wide.columns, 2):

@@ -38,7 +38,7 @@ Rectangle {
     }
 
     function trouble() : string {
-        return design.trouble === "taken" ? texts.fill("design.taken", naming.typed) : design.trouble === "name" ? texts.text("design.name_of_study")
+        return design.trouble === "taken" ? texts.fill("design.taken", naming.wanted) : design.trouble === "name" ? texts.text("design.name_of_study")
             : design.trouble === "on_disk" ? texts.text("design.on_disk_title") : texts.say(design.trouble)
     }
     function nameIt(wish: string, title: string, text: string) {
@@ -254,14 +254,14 @@ Rectangle {
     EntryDialog {
         id: naming
         property string wish
-        property string typed
+        property string wanted
         objectName: "naming"
         anchors.fill: parent
         theme: look
         keepText: texts.text("design.use")
         cancelText: texts.text("operator.cancel")
         onAccepted: text => {
-            typed = text
+            wanted = text
             if (wish === "make" ? root.design.make(root.goal, text) : wish === "save" ? root.design.save(text) : root.design.copy(root.edited.group, text)) return
             refused = root.trouble()
             open(text)

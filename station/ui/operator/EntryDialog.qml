@@ -24,12 +24,19 @@ Rectangle {
     /// Emitted with each change of the text.
     signal typed(text: string)
     signal cancelled()
+    property string told
 
     function open(text: string) {
+        told = text
         entry.text = text
         visible = true
         entry.forceActiveFocus()
         entry.cursorPosition = entry.length
+    }
+    function tell() {
+        if (entry.text === told) return
+        told = entry.text
+        typed(told)
     }
     function choose(word: string) {
         if (pick) {
@@ -92,7 +99,7 @@ Rectangle {
                 font { pixelSize: root.theme.textBody; family: Catalogue.family }
                 clip: true
                 onAccepted: root.keep()
-                onTextEdited: root.typed(text)
+                onTextEdited: root.tell()
                 Accessible.role: Accessible.EditableText
                 Accessible.name: root.title
             }
@@ -137,11 +144,11 @@ Rectangle {
                 theme: root.theme
                 onTyped: character => {
                     entry.insert(entry.cursorPosition, character)
-                    root.typed(entry.text)
+                    root.tell()
                 }
                 onErased: {
                     if (entry.cursorPosition > 0) entry.remove(entry.cursorPosition - 1, entry.cursorPosition)
-                    root.typed(entry.text)
+                    root.tell()
                 }
                 onMoved: by => entry.cursorPosition = Math.max(0, Math.min(entry.length, entry.cursorPosition + by))
             }

@@ -12,7 +12,7 @@ Column {
     signal erased()
     /// The cursor is to move by so many characters.
     signal moved(by: int)
-    /// More signs, for sentences and expressions.
+    /// More signs, for sentences and expressions. Japanese letters take their place; other layouts have them.
     property bool full: false
     /// Only what a number consists of, or several numbers.
     property bool numbers: false
@@ -25,15 +25,15 @@ Column {
         en: { letters: ["qwertyuiop", "asdfghjkl-", "zxcvbnm,._"], marks: ["äöüßåæøœçñ", "áéíóúàèìòù", "âêîôûëïãõý", "„“”«»‘’¿¡°"] },
         de: { letters: ["qwertzuiopü", "asdfghjklöä", "yxcvbnmß,.-"], marks: ["áéíóúàèìòù_", "âêîôûëïçñå", "„“”«»‘’–…°"] },
         es: { letters: ["qwertyuiop-", "asdfghjklñ_", "zxcvbnmç,."], marks: ["áéíóúüàèìò", "âêîôûëïäöß", "¿¡„“”«»‘’°"] },
-        ja: { letters: ["あいうえおかきくけこー", "さしすせそたちつてと、", "なにぬねのはひふへほ。", "まみむめもやゆよらり・", "るれろわをん"],
-              marks: ["がぎぐげござじずぜぞ", "だぢづでどばびぶべぼ", "ぱぴぷぺぽぁぃぅぇぉ", "ゃゅょっ「」？！〜…"] },
+        ja: { letters: ["あいうえおかきくけこさし", "すせそたちつてとなにぬね", "のはひふへほまみむめもや", "ゆよらりるれろわをんー、"],
+              marks: ["がぎぐげござじずぜぞ", "だぢづでどばびぶべぼ", "ぱぴぷぺぽぁぃぅぇぉ", "ゃゅょっ「」？！〜…。・"] },
         zh: { letters: ["qwertyuiop", "asdfghjkl-", "zxcvbnm,._"], marks: ["，。、？！：；…—·", "“”‘’《》（）【】", "āáǎàēéěèīí", "ǐìōóǒòūúǔù"] },
         ar: { letters: ["ضصثقفغعهخحج", "شسيبلاتنمكط", "ئءؤرىةوزظدذ"], marks: ["أإآ؟،؛«»ـ-", "ًٌٍَُِّْ_.", "٠١٢٣٤٥٦٧٨٩"] }
     })
     readonly property var keys: layouts[layout] ?? layouts.en
     readonly property var signs: ["?!'():/+*="]
     readonly property var rows: numbers ? ["789", "456", "123", "0.-", ",e+"]
-        : ["1234567890"].concat(accents ? keys.marks : keys.letters, full && !accents ? signs : [])
+        : ["1234567890"].concat(accents ? keys.marks : keys.letters, full && !accents && layout !== "ja" ? signs : [])
     readonly property real gap: Math.round(0.4 * theme.unit)
     readonly property real keyWidth: numbers ? Math.min(2 * theme.controlHeight, Math.floor((width - 4 * gap) / 4.5)) : Math.floor((width - 12 * gap) / 12)
     readonly property real keyHeight: Math.min(theme.controlHeight, keyWidth)
@@ -62,7 +62,7 @@ Column {
         if (layout !== "ja") capitals = false
     }
     function nextLayout() {
-        const all = OperatorScreen.languages.map(language => language.code)
+        const all = Array.from(OperatorScreen.languages, language => language.code)
         layout = all[(all.indexOf(layout) + 1) % all.length]
         capitals = false
         accents = false
