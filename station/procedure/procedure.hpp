@@ -34,7 +34,8 @@ enum class Answer {
   one,   ///< the answer was right; or, if the procedure measures how often one answer is given, it was that
          ///< one
   zero,  ///< any other answer
-  none   ///< no valid answer (timeout, anticipation), from which the procedure learns nothing
+  none,  ///< no valid answer (timeout, anticipation), from which the procedure learns nothing
+  unsure  ///< the participant did not want to guess
 };
 
 /// An unanswered trial is repeated at the same level, up to kRepeatsInARow times. If the last repeat is

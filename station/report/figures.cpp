@@ -24,9 +24,9 @@ Points observed(const NamedFit& named, int series, const std::string& name) {
   points.name = name;
   for (const auto& point : named.fit.data) {
     if (point.level == analysis::kNoise) continue;
-    const auto interval = analysis::wilson(point.positive, point.trials);
+    const auto interval = analysis::wilson(point.sum(), point.trials);
     points.x.push_back(point.level);
-    points.y.push_back(static_cast<double>(point.positive) / point.trials);
+    points.y.push_back(point.sum() / point.trials);
     points.low.push_back(interval.low);
     points.high.push_back(interval.high);
     points.weight.push_back(point.trials);
@@ -55,7 +55,7 @@ Line curve(const NamedFit& named, int series, const Axis& axis, const std::strin
 /// Returns the proportion of "yes" answers in trials without a signal.
 std::optional<double> false_alarms(const NamedFit& named) {
   for (const auto& point : named.fit.data)
-    if (point.level == analysis::kNoise) return static_cast<double>(point.positive) / point.trials;
+    if (point.level == analysis::kNoise) return point.sum() / point.trials;
   return std::nullopt;
 }
 
@@ -146,7 +146,7 @@ std::optional<Chart> psychometric_chart(const std::vector<const NamedFit*>& fits
   if (forced)
     for (const auto* named : fits)
       for (const auto& point : named->fit.data)
-        panel.y.low = std::min(panel.y.low, analysis::wilson(point.positive, point.trials).low - 0.03);
+        panel.y.low = std::min(panel.y.low, analysis::wilson(point.sum(), point.trials).low - 0.03);
   for (std::size_t i = 0; i < fits.size(); ++i)
     if (const auto& band = fits[i]->intervals; !band.band_level.empty())
       panel.layers.push_back(Band{band.band_level, band.band_low, band.band_high, static_cast<int>(i), ""});

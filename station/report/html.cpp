@@ -141,7 +141,7 @@ std::string judgement_section(const Summary& summary) {
 }
 
 /// A row of the table of speed and accuracy. The row appears only if the protocol shows the part of the
-/// report that `part` names.
+/// report that `part` names, and that of points only if the protocol gives points.
 struct MeasureRow {
   const char *title, *measure, *part;
   std::optional<Estimate> analysis::InstructionResult::*value;
@@ -157,6 +157,9 @@ constexpr MeasureRow kRows[] = {
     {"Share of trials that were no decision (0 to 1)", "", "ez", &Result::contaminants},
     {"LISAS (s)", "LISAS", "lisas", &Result::lisas_s},
     {"Inverse efficiency (s)", "inverse efficiency", "ies", &Result::inverse_efficiency_s},
+    {"Points a trial", "points a trial", "points", &Result::points},
+    {"Points a minute, of trials with their pauses", "points a minute", "points",
+     &Result::points_per_minute},
     {"Slower after an error than before it (s)", "", "", &Result::post_error_s},
     {"Answers that repeat the last answer, more than right ones would (share)", "", "", &Result::repetition},
     {"Boundary, second half of the blocks \u2212 first half (s = 0.1)", "", "ez", &Result::late_boundary}};
@@ -165,6 +168,7 @@ bool has(const MeasureRow& row, const Summary& summary) {
   const auto& conditions = summary.trade.instructions;
   if (row.value == &Result::d_prime)
     return std::any_of(conditions.begin(), conditions.end(), [](const auto& one) { return one.d_prime; });
+  if (row.part == std::string("points")) return summary.data.payoff;
   return *row.part == '\0' || shows(summary.data, row.part);
 }
 
@@ -445,6 +449,11 @@ std::string course_section(const Summary& summary) {
                      std::to_string(counts.anticipations) + " anticipations, " +
                      std::to_string(counts.aborted) + " aborted, " + std::to_string(counts.faults) +
                      " faults (practice left out)");
+  if (summary.data.unsure)
+    line("Unsure", std::to_string(counts.unsure) + " of " + std::to_string(counts.answered) +
+                       " answers; they are left out of proportions correct and response times, and count as " +
+                       number(1.0 / summary.data.alternatives, 3) +
+                       " of a right answer in the psychometric function");
   for (const auto& [degree, right] : summary.confidence)
     line("Right with confidence " + std::to_string(degree),
          std::to_string(right.right) + " of " + std::to_string(right.trials) + ", proportion " +

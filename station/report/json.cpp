@@ -56,7 +56,7 @@ Json fit_json(const NamedFit& named, const SessionData& data) {
   json["levels"] = Json::array();  // a noise trial has no level, so its level is null
   for (const auto& point : named.fit.data)
     json["levels"].push_back(
-        {{"level", value(point.level)}, {"trials", point.trials}, {"positive", point.positive}});
+        {{"level", value(point.level)}, {"trials", point.trials}, {"positive", value(point.sum())}});
   auto statements = named.fit.statements;
   statements.insert(statements.end(), named.intervals.statements.begin(), named.intervals.statements.end());
   json["statements"] = value(statements);
@@ -88,6 +88,8 @@ Json instruction_json(const analysis::InstructionResult& entry) {
   json["drift"] = value(entry.drift);
   json["lisas_s"] = value(entry.lisas_s);
   json["inverse_efficiency_s"] = value(entry.inverse_efficiency_s);
+  json["points"] = value(entry.points);
+  json["points_per_minute"] = value(entry.points_per_minute);
   json["post_error_slowing_s"] = value(entry.post_error_s);
   json["repetition"] = value(entry.repetition);
   json["late_boundary"] = value(entry.late_boundary);
@@ -276,7 +278,7 @@ std::string to_json(const Summary& summary) {
   json["facts"] = facts_json(data.facts);
   json["station"] = facts_json(in_english(data.health));
   const auto& n = summary.outcomes;
-  json["trials"] = {{"presented", n.presented},         {"answered", n.answered}, {"timeouts", n.timeouts},
+  json["trials"] = {{"presented", n.presented},         {"answered", n.answered}, {"unsure", n.unsure}, {"timeouts", n.timeouts},
                     {"anticipations", n.anticipations}, {"aborted", n.aborted},   {"faults", n.faults}};
   json["fits"] = Json::array();
   for (const auto& named : summary.fits) json["fits"].push_back(fit_json(named, data));

@@ -123,6 +123,8 @@ struct SessionData : LevelAnalysis {
   /// false for a single-interval task without right answers, such as ratings; the report then leaves out
   /// accuracy
   bool scored = true;
+  bool unsure = false;     ///< true if the participant may be unsure instead of guessing
+  bool payoff = false;     ///< true if the protocol gives points for answers
   bool signalled = false;  ///< true if a response signal asks for the answers, and so decides when they come
   /// parts of the report that the protocol chooses; if empty, the report has all parts that suit the design
   std::optional<std::vector<std::string>> show;

@@ -61,7 +61,7 @@ NamedFit fit_of(const SessionData& data, const std::string& name, const std::vec
   result.name = name;
   std::vector<analysis::LevelCount> counts;
   if (data.design == Design::forced_choice) {
-    counts = analysis::count_correct(trials);
+    counts = analysis::count_correct(trials, data.alternatives);
     result.positive = "correct";
   } else {
     const bool noise = has_noise(data.design);
@@ -300,7 +300,7 @@ core::Phrase describe_intervals(const NamedFit& named, const SessionData& data) 
 bool shows(const SessionData& data, const std::string& part) {
   if (data.show) return std::find(data.show->begin(), data.show->end(), part) != data.show->end();
   if (part == "response-signal") return true;
-  if (part == "ez") return data.choices.size() <= 2 && !data.signalled;
+  if (part == "ez") return data.choices.size() <= 2 && !data.signalled && !data.unsure;
   return part != "dprime" || data.design == Design::yes_no || data.design == Design::ratings ||
          !data.deciding.empty();
 }

@@ -71,8 +71,9 @@ void ProgramProcedure::ask_for_level() const {
     talk_->with->tell({{"type", "answer"},
                        {"trial", i},
                        {"level", trial.level},
-                       {"answer", trial.answer == Answer::none ? Json(nullptr)
-                                                               : Json(trial.answer == Answer::one ? 1 : 0)}});
+                       {"answer", trial.answer == Answer::none     ? Json(nullptr)
+                                  : trial.answer == Answer::unsure ? Json("unsure")
+                                                                   : Json(trial.answer == Answer::one ? 1 : 0)}});
   }
   talk_->with->ask({{"type", "next"}, {"trial", i + 1}});
 }

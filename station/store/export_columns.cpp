@@ -223,6 +223,7 @@ ExportColumns trial_columns(const std::vector<std::string>& factors) {
        "onset_error_us",
        "confidence",
        "confidence_time",
+       "points",
        "sensing",
        "contact_s",
        "strokes",

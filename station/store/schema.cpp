@@ -180,6 +180,8 @@ CREATE TABLE trial (
   confidence INTEGER CHECK (confidence IS NULL OR (confidence >= 1 AND outcome = 'answered')),
   confidence_time_s REAL
     CHECK ((confidence_time_s IS NULL) = (confidence IS NULL) AND coalesce(confidence_time_s, 0) >= 0),
+  -- what the result was worth to the participant
+  points REAL CHECK (points IS NULL OR outcome NOT IN ('aborted', 'fault')),
   -- what force sensors measured
   sensing TEXT NOT NULL
     CHECK (sensing IN ('', 'ok', 'strokes', 'light', 'hard', 'slow', 'fast', 'lost', 'wire', 'tare')),

@@ -47,6 +47,47 @@ TEST_CASE("The maximum-likelihood fit of the reference data gives the known para
   CHECK(fit.statements.empty());
 }
 
+TEST_CASE("An unsure answer counts as the share of a right one that a guess would be", "[analysis]") {
+  std::vector<TrialRecord> trials(6);
+  for (auto& trial : trials) trial.level = -10;
+  trials[0].correct = true, trials[1].correct = false;
+  trials[2].unsure = trials[3].unsure = true;
+  trials[4].outcome = Outcome::timeout;
+  trials[5].unsure = true, trials[5].type = TrialType::practice;
+  const auto two = count_correct(trials), three = count_correct(trials, 3);
+  REQUIRE(two.size() == 1);
+  CHECK(two[0].trials == 4);
+  CHECK(two[0].sum() == 2);
+  CHECK(two[0].positive == 1);
+  CHECK(three[0].sum() == Approx(1 + 2.0 / 3));
+
+  // An observer who admits all guesses gives the same fit as one who makes them, with less scatter.
+  const Psychometric truth{-18, 2, 0.5, 0};
+  double guessed = 0, admitted = 0;
+  const int runs = 40;
+  for (int run = 0; run < runs; ++run) {
+    rnd::Draws draws({7, rnd::Stream::observer, run, 0, 0});
+    std::vector<LevelCount> forced, unforced;
+    for (const double level : {-30.0, -25.0, -21.0, -18.0, -15.0, -11.0}) {
+      const double knows = 2 * probability(Function::weibull, Scale::linear, truth, level) - 1;
+      LevelCount a{level, 30, 0}, b{level, 30, 0};
+      for (int i = 0; i < 30; ++i) {
+        const bool known = draws.uniform() < knows, lucky = draws.uniform() < 0.5;
+        a.positive += known || lucky ? 1 : 0;
+        b.positive += known ? 1 : 0;
+        b.admitted += known ? 0 : 0.5;
+      }
+      forced.push_back(a), unforced.push_back(b);
+    }
+    const auto one = fit_psychometric(forced, {}), other = fit_psychometric(unforced, {});
+    REQUIRE((one.parameters && other.parameters));
+    guessed += one.parameters->threshold / runs;
+    admitted += other.parameters->threshold / runs;
+  }
+  CHECK(guessed == Approx(truth.threshold).margin(0.7));
+  CHECK(admitted == Approx(truth.threshold).margin(0.4));
+}
+
 TEST_CASE("Degenerate data give a statement instead of a number", "[analysis]") {
   const auto refused = [](std::vector<LevelCount> data, const std::string& code) {
     const auto fit = fit_psychometric(data, {});
