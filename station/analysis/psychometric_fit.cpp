@@ -220,7 +220,8 @@ PsychometricFit fit_psychometric(const std::vector<LevelCount>& data, const FitO
 
 namespace {
 
-/// `positive` says whether an answer was positive; empty if it does not count. Unsure answers count as `admitted`.
+/// `positive` says whether an answer was positive; empty if it does not count. Unsure answers count as
+/// `admitted`.
 template <class Positive>
 std::vector<LevelCount> count(const std::vector<TrialRecord>& trials, double admitted, Positive positive) {
   std::vector<LevelCount> result;
@@ -251,8 +252,7 @@ std::vector<LevelCount> count_choice(const std::vector<TrialRecord>& trials, int
 
 bool falls(const std::vector<LevelCount>& counts) {
   double n = 0, k = 0, level = 0;
-  for (const auto& point : counts)
-    n += point.trials, k += point.sum(), level += point.trials * point.level;
+  for (const auto& point : counts) n += point.trials, k += point.sum(), level += point.trials * point.level;
   double covariance = 0;
   for (const auto& point : counts)
     if (n > 0) covariance += (point.sum() - point.trials * k / n) * (point.level - level / n);

@@ -31,10 +31,10 @@ struct Candidate {
 
 /// How the participant answered at the level that the procedure proposed.
 enum class Answer {
-  one,   ///< the answer was right; or, if the procedure measures how often one answer is given, it was that
-         ///< one
-  zero,  ///< any other answer
-  none,  ///< no valid answer (timeout, anticipation), from which the procedure learns nothing
+  one,    ///< the answer was right; or, if the procedure measures how often one answer is given, it was that
+          ///< one
+  zero,   ///< any other answer
+  none,   ///< no valid answer (timeout, anticipation), from which the procedure learns nothing
   unsure  ///< the participant did not want to guess
 };
 

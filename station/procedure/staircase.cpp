@@ -32,8 +32,8 @@ std::pair<std::vector<double>, std::vector<double>> step_sizes(const Spec& spec)
   return {down, up};
 }
 
-/// The sizes of the steps upwards after an answer of those who do not want to guess: the mean step after a guess
-/// (Kaernbach 2001). With it, the steps balance at the same level as if they had guessed.
+/// The sizes of the steps upwards after an answer of those who do not want to guess: the mean step after a
+/// guess (Kaernbach 2001). With it, the steps balance at the same level as if they had guessed.
 std::vector<double> unsure_steps(const Spec& spec) {
   const auto [down, up] = step_sizes(spec);
   std::vector<double> steps;

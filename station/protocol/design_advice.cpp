@@ -197,11 +197,12 @@ void check_payoff(AdviceList& advice) {
                phrase("more than %1 points", {plain(number(wrong.first))}));
   const double p = chance(protocol);
   if (const double guess = p * right.second + (1 - p) * wrong.second; late.first > guess)
-    advice.add(advice.places.has("payoff.late") ? "payoff.late" : "payoff.wrong",
-               phrase("a missed deadline is worth %1 points, more than a guess (%2 on average): it pays not to "
-                      "answer",
-                      {plain(number(late.first)), plain(number(guess, 3))}),
-               phrase("fewer points for \"late\" than for a guess"));
+    advice.add(
+        advice.places.has("payoff.late") ? "payoff.late" : "payoff.wrong",
+        phrase("a missed deadline is worth %1 points, more than a guess (%2 on average): it pays not to "
+               "answer",
+               {plain(number(late.first)), plain(number(guess, 3))}),
+        phrase("fewer points for \"late\" than for a guess"));
   if (payoff.fast && of(payoff.fast->points).second <= 0)
     advice.add("payoff.fast", phrase("a fast answer is not worth more than a slow one"),
                phrase("points above 0"));
@@ -216,8 +217,8 @@ void check_lasting(AdviceList& advice, const std::variant<Block, Sequence>& part
   const double shortest_s = cue_s + shortest_deadline_s + advice.protocol.timing.iti_s.low;
   if (*trials * shortest_s < *block.lasts_s)
     advice.add(key_of(part, "lasts_s"),
-               phrase("the %1 trials of the block can be over before %2 s", {plain(number(std::floor(*trials))),
-                                                                         plain(number(*block.lasts_s))}),
+               phrase("the %1 trials of the block can be over before %2 s",
+                      {plain(number(std::floor(*trials))), plain(number(*block.lasts_s))}),
                phrase("plan %1 trials or more, such as by \"repeats\" of the procedure",
                       {plain(number(std::ceil(*block.lasts_s / shortest_s)))}));
 }

@@ -85,8 +85,8 @@ struct Task {
   Localised question;
   /// If the answer is a value, there is one choice, which says that a value was given.
   std::vector<Choice> choices;
-  /// What the participant may answer instead of guessing; empty if everybody must choose. It is no choice, but
-  /// comes after the choices on the page, and its index is their number.
+  /// What the participant may answer instead of guessing; empty if everybody must choose. It is no choice,
+  /// but comes after the choices on the page, and its index is their number.
   Localised unsure;
   /// for a rating: texts at some of the choices, which are the points 1, 2, ...
   std::vector<Anchor> anchors;
@@ -147,7 +147,8 @@ struct Timing {
   std::optional<ResponseSignal> signal;
 };
 
-/// What a trial is worth to the participant, in points. The score is the sum over all trials outside practice.
+/// What a trial is worth to the participant, in points. The score is the sum over all trials outside
+/// practice.
 struct Payoff {
   /// points of a right answer, of a wrong one, of one that came too late, and of one that came too early
   Linear right, wrong, late, early;
@@ -157,7 +158,7 @@ struct Payoff {
     Linear below_s, points;
   };
   std::optional<Fast> fast;
-  Localised text;  ///< how pages say a score, with %1 for its worth; if empty, "%1 points"
+  Localised text;    ///< how pages say a score, with %1 for its worth; if empty, "%1 points"
   double worth = 1;  ///< what one point is worth in `text`, such as an amount of money
   int decimals = 0;  ///< decimals of the worth
 };

@@ -309,18 +309,19 @@ Keys payoff() {
   const auto points = [](const char* key, const char* help) {
     return expression(key, any_value, help).by_default("0");
   };
-  return {expression("right", any_value, "points of a right answer").required(),
-          points("wrong", "points of a wrong answer"),
-          points("late", "points of a missed deadline"),
-          points("early", "points of an answer that was too early"),
-          points("unsure", "points of the answer \"unsure\" of [task]"),
-          table("fast",
-                {expression("below_s", {0, 600, Ends::open_low, "s"}, "for response times below this").required(),
-                 expression("points", any_value, "points").required()},
-                "more points for right answers that are fast"),
-          localised("text", "how a score is said, with %1 for its worth").without_it("\"%1 points\""),
-          number("worth", {0, 1e6, Ends::open_low}, "worth of one point in this text").by_default("1"),
-          integer("decimals", 0, 3, "decimals of the worth").by_default("0")};
+  return {
+      expression("right", any_value, "points of a right answer").required(),
+      points("wrong", "points of a wrong answer"),
+      points("late", "points of a missed deadline"),
+      points("early", "points of an answer that was too early"),
+      points("unsure", "points of the answer \"unsure\" of [task]"),
+      table("fast",
+            {expression("below_s", {0, 600, Ends::open_low, "s"}, "for response times below this").required(),
+             expression("points", any_value, "points").required()},
+            "more points for right answers that are fast"),
+      localised("text", "how a score is said, with %1 for its worth").without_it("\"%1 points\""),
+      number("worth", {0, 1e6, Ends::open_low}, "worth of one point in this text").by_default("1"),
+      integer("decimals", 0, 3, "decimals of the worth").by_default("0")};
 }
 
 Keys pass_of_trials() {
@@ -336,9 +337,10 @@ Keys trials(bool of_block) {
       string("level", "instead of procedures: the factor of the fixed levels"),
       numbers("levels", any_value, "fixed levels, presented in shuffled order"),
       integer("trials", 1, 100000, "number of trials at most").without_it("until the procedures end"),
-      number("lasts_s", {10, 7200, Ends::closed, "s"},
-             "the block ends with the trial in which its trials, with the pauses between them, have lasted this "
-             "long; breaks and void trials do not count")
+      number(
+          "lasts_s", {10, 7200, Ends::closed, "s"},
+          "the block ends with the trial in which its trials, with the pauses between them, have lasted this "
+          "long; breaks and void trials do not count")
           .without_it("until the procedures end"),
       word("feedback", {"none", "trial", "block"},
            "when the participant learns what was right: never, after each trial, after the block")
@@ -570,9 +572,10 @@ const Keys& all() {
            word("incomplete_sessions", {"leave_out", "count"},
                 "whether a report of a study counts sessions that were not completed")
                .without_it("as [sessions] says"),
-           word("holm", {"measure", "all"},
-                "which differences between conditions have their p values corrected together for their number "
-                "(Holm): those of each measure, or all of a table")
+           word(
+               "holm", {"measure", "all"},
+               "which differences between conditions have their p values corrected together for their number "
+               "(Holm): those of each measure, or all of a table")
                .without_it("no correction"),
            table(
                "response_time_exclude",

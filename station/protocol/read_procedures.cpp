@@ -231,8 +231,10 @@ void check_unsure(TableReader& reader, Spec& spec, const Reading& reading) {
   const auto& task = reading.protocol.task;
   if (task.unsure.empty() || task.choices.empty()) return;
   spec.guess_rate = 1.0 / static_cast<double>(task.choices.size());
-  if (spec.kind != Kind::constant_stimuli && spec.kind != Kind::weighted_up_down && spec.kind != Kind::program)
-    reader.problem("kind", phrase("this kind of procedure does not know what to do with the answer \"unsure\""),
+  if (spec.kind != Kind::constant_stimuli && spec.kind != Kind::weighted_up_down &&
+      spec.kind != Kind::program)
+    reader.problem("kind",
+                   phrase("this kind of procedure does not know what to do with the answer \"unsure\""),
                    phrase("use \"weighted-up-down\", \"constant-stimuli\" or \"program\""));
   if (spec.target && *spec.target <= *spec.guess_rate)
     reader.problem("target", phrase("a guess already reaches this target"),

@@ -62,7 +62,8 @@ void read_timing(TableReader& file, Reading& reading) {
   timing.iti_s = read_distribution(reader, "iti_s").value_or(Distribution{1, 1});
   if (const auto* delays = reader.maybe_table("delay_s")) {
     TableReader inner(*delays, "timing.delay_s", reading.findings, reader.keys("delay_s"));
-    for (const auto& [key, delay] : {std::pair{"wrong", &timing.delay_s.wrong}, {"late", &timing.delay_s.late},
+    for (const auto& [key, delay] : {std::pair{"wrong", &timing.delay_s.wrong},
+                                     {"late", &timing.delay_s.late},
                                      {"early", &timing.delay_s.early}})
       *delay = read_expression(inner, key, reading).value_or(Linear{});
     inner.finish();
@@ -78,8 +79,10 @@ void read_payoff(TableReader& file, Reading& reading) {
   TableReader reader(*table, "payoff", reading.findings, file.keys("payoff"));
   Payoff payoff;
   reader.require("right");
-  for (const auto& [key, points] : {std::pair{"right", &payoff.right}, {"wrong", &payoff.wrong},
-                                    {"late", &payoff.late}, {"early", &payoff.early},
+  for (const auto& [key, points] : {std::pair{"right", &payoff.right},
+                                    {"wrong", &payoff.wrong},
+                                    {"late", &payoff.late},
+                                    {"early", &payoff.early},
                                     {"unsure", &payoff.unsure}})
     *points = read_expression(reader, key, reading).value_or(Linear{});
   if (const auto* fast = reader.maybe_table("fast")) {
@@ -93,7 +96,8 @@ void read_payoff(TableReader& file, Reading& reading) {
     payoff.text = localised_from(*text, "text", reading);
     for (const auto& [language, words] : payoff.text)
       if (words.find("%1") == std::string::npos)
-        reader.problem("text", phrase("the text in \"%1\" does not say where the number is", {plain(language)}),
+        reader.problem("text",
+                       phrase("the text in \"%1\" does not say where the number is", {plain(language)}),
                        phrase("write %1 in its place: \"You have earned € %1\"", {plain("%1")}));
   }
   payoff.worth = reader.number("worth");
@@ -122,7 +126,8 @@ void read_instructions(TableReader& file, Reading& reading) {
     instruction.target_accuracy = reader.maybe_interval("target_accuracy");
     if (const auto* table = reader.maybe_table("goal")) {
       TableReader inner(*table, "instructions." + entry.key + ".goal", reading.findings, reader.keys("goal"));
-      instruction.goal = Goal{inner.maybe_number("accuracy_above"), inner.maybe_number("median_time_below_s")};
+      instruction.goal =
+          Goal{inner.maybe_number("accuracy_above"), inner.maybe_number("median_time_below_s")};
       inner.finish();
     }
     reader.finish();

@@ -120,7 +120,8 @@ std::set<std::string> factors_used(const Protocol& protocol) {
   for (const auto* delay : {&timing.delay_s.wrong, &timing.delay_s.late, &timing.delay_s.early})
     add(*delay, names);
   if (const auto& payoff = protocol.payoff) {
-    for (const auto* points : {&payoff->right, &payoff->wrong, &payoff->late, &payoff->early, &payoff->unsure})
+    for (const auto* points :
+         {&payoff->right, &payoff->wrong, &payoff->late, &payoff->early, &payoff->unsure})
       add(*points, names);
     if (payoff->fast) add(payoff->fast->below_s, names), add(payoff->fast->points, names);
   }

@@ -158,8 +158,7 @@ constexpr MeasureRow kRows[] = {
     {"LISAS (s)", "LISAS", "lisas", &Result::lisas_s},
     {"Inverse efficiency (s)", "inverse efficiency", "ies", &Result::inverse_efficiency_s},
     {"Points a trial", "points a trial", "points", &Result::points},
-    {"Points a minute, of trials with their pauses", "points a minute", "points",
-     &Result::points_per_minute},
+    {"Points a minute, of trials with their pauses", "points a minute", "points", &Result::points_per_minute},
     {"Slower after an error than before it (s)", "", "", &Result::post_error_s},
     {"Answers that repeat the last answer, more than right ones would (share)", "", "", &Result::repetition},
     {"Boundary, second half of the blocks \u2212 first half (s = 0.1)", "", "ez", &Result::late_boundary}};
@@ -450,10 +449,10 @@ std::string course_section(const Summary& summary) {
                      std::to_string(counts.aborted) + " aborted, " + std::to_string(counts.faults) +
                      " faults (practice left out)");
   if (summary.data.unsure)
-    line("Unsure", std::to_string(counts.unsure) + " of " + std::to_string(counts.answered) +
-                       " answers; they are left out of proportions correct and response times, and count as " +
-                       number(1.0 / summary.data.alternatives, 3) +
-                       " of a right answer in the psychometric function");
+    line("Unsure",
+         std::to_string(counts.unsure) + " of " + std::to_string(counts.answered) +
+             " answers; they are left out of proportions correct and response times, and count as " +
+             number(1.0 / summary.data.alternatives, 3) + " of a right answer in the psychometric function");
   for (const auto& [degree, right] : summary.confidence)
     line("Right with confidence " + std::to_string(degree),
          std::to_string(right.right) + " of " + std::to_string(right.trials) + ", proportion " +

@@ -278,8 +278,9 @@ std::string to_json(const Summary& summary) {
   json["facts"] = facts_json(data.facts);
   json["station"] = facts_json(in_english(data.health));
   const auto& n = summary.outcomes;
-  json["trials"] = {{"presented", n.presented},         {"answered", n.answered}, {"unsure", n.unsure}, {"timeouts", n.timeouts},
-                    {"anticipations", n.anticipations}, {"aborted", n.aborted},   {"faults", n.faults}};
+  json["trials"] = {{"presented", n.presented}, {"answered", n.answered},           {"unsure", n.unsure},
+                    {"timeouts", n.timeouts},   {"anticipations", n.anticipations}, {"aborted", n.aborted},
+                    {"faults", n.faults}};
   json["fits"] = Json::array();
   for (const auto& named : summary.fits) json["fits"].push_back(fit_json(named, data));
   for (const auto& settings : summary.settings)

@@ -31,8 +31,8 @@ bool answers_item(const protocol::Item& item, const Input& input) {
 }  // namespace
 
 Interludes::Interludes(const Setup& setup, const Pages& pages, const trial::Director& director,
-                       const Scores& scores, OperatorGate& gate, Stage& stage, SimulatedParticipant* participant,
-                       store::SessionLog& log, Player player)
+                       const Scores& scores, OperatorGate& gate, Stage& stage,
+                       SimulatedParticipant* participant, store::SessionLog& log, Player player)
     : setup_(setup),
       pages_(pages),
       director_(director),

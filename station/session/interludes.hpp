@@ -9,8 +9,8 @@
 
 #include "station/protocol/interludes.hpp"
 #include "station/session/operator_gate.hpp"
-#include "station/session/scores.hpp"
 #include "station/session/pages.hpp"
+#include "station/session/scores.hpp"
 #include "station/session/stage.hpp"
 #include "station/store/session_log.hpp"
 
@@ -32,7 +32,8 @@ class Interludes {
 
   /// All references must outlive this object. `participant` is null if a person takes part.
   Interludes(const Setup& setup, const Pages& pages, const trial::Director& director, const Scores& scores,
-             OperatorGate& gate, Stage& stage, SimulatedParticipant* participant, store::SessionLog& log, Player player);
+             OperatorGate& gate, Stage& stage, SimulatedParticipant* participant, store::SessionLog& log,
+             Player player);
 
   /// Restores what was answered before the session was resumed.
   void restore(const Earlier& earlier);

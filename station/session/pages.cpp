@@ -167,7 +167,8 @@ std::optional<Page> Pages::block_over(const protocol::Block& block, const BlockS
   page.length_mm = 0;  // the page shows no surface
   const auto accuracy = score.accuracy(), time_s = score.median_time_s();
   const auto line = [&](const char* key, std::vector<core::Phrase> values = {}) {
-    page.text += (page.text.empty() ? "" : "\n") + core::say(core::phrase(key, std::move(values)), setup_.language);
+    page.text +=
+        (page.text.empty() ? "" : "\n") + core::say(core::phrase(key, std::move(values)), setup_.language);
   };
   line("block_right", {core::plain(core::number(std::round(100 * *accuracy)))});
   if (time_s) line("block_time", {core::plain(fmt::format("{:.2f}", *time_s))});

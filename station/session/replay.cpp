@@ -103,7 +103,7 @@ void check_observer(const Setup& setup, const simulation::Respondent& observer,
     return;
   const auto reply = observer.answer(trial::question_of(spec, setup.protocol, stored.session.start.seed));
   const auto& choices = setup.protocol.task.choices;
-  const auto answer = reply.value    ? std::optional(core::exact(*reply.value))
+  const auto answer = reply.value     ? std::optional(core::exact(*reply.value))
                       : !reply.choice ? std::nullopt
                       : *reply.choice < static_cast<int>(choices.size())
                           ? std::optional(choices[static_cast<std::size_t>(*reply.choice)].id)

@@ -21,7 +21,8 @@ struct BlockScore {
   std::optional<double> median_time_s() const;
 };
 
-/// What the participant has achieved so far in the session. Of several attempts at a block, the newest counts.
+/// What the participant has achieved so far in the session. Of several attempts at a block, the newest
+/// counts.
 class Scores {
  public:
   void add(const core::BlockStart& block, const core::TrialRow& trial);

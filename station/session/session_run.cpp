@@ -127,8 +127,8 @@ Flow SessionRun::leave_block() {
   }
   if (director_.block()->kind == protocol::BlockKind::friction_table && finish_friction_table() == Flow::stop)
     return Flow::stop;
-  if (const auto page =
-          pages_.block_over(*director_.block(), scores_.of(director_.block_index()), scores_.points(), director_))
+  if (const auto page = pages_.block_over(*director_.block(), scores_.of(director_.block_index()),
+                                          scores_.points(), director_))
     if (gate_.show_and_wait(*page, 0) == Flow::stop) return Flow::stop;
   ++summary_.blocks;
   director_.finish_block();
@@ -508,7 +508,9 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
   const bool judged = phase == trial::Phase::feedback || phase == trial::Phase::late;
   if (judged && director_.block() != nullptr && director_.block()->feedback == protocol::Feedback::trial)
     if (const auto points = trial::points_of(trial.machine.result(), trial.spec, setup_.protocol))
-      pages_.add_points(page, *points, director_.block()->practice ? std::nullopt : std::optional(scores_.points() + *points));
+      pages_.add_points(
+          page, *points,
+          director_.block()->practice ? std::nullopt : std::optional(scores_.points() + *points));
   if (trial.spec.strokes && phase == trial::Phase::feedback)
     page.text = pages_.movement(trial.row.finger.sensing);
   hold_bars(phase, trial);

@@ -54,8 +54,8 @@ struct Parameters {
   double residual_range_s = 0;
   /// SD of the judgements; if the answers are numbers (magnitude estimation), of their decimal logarithm
   double scatter = 0.1;
-  /// fraction of the guesses that the observer admits, where a question allows it: answers that would be right
-  /// only by chance
+  /// fraction of the guesses that the observer admits, where a question allows it: answers that would be
+  /// right only by chance
   double unsure = 0.5;
   double anticipation = 0;  ///< fraction of trials answered before anything can be felt
 };

@@ -463,10 +463,10 @@ const Table<TrialRow>& trial_table() {
                              "um"}),
        field<&T::correct_response>(
            {"correct_response", "correct_response", "Correct choice; n/a if no choice is correct"}),
-       field<&T::response>(
-           {"response", "response",
-            "Choice of the participant; unsure if the participant did not want to guess; in an adjustment task the setting, in the unit of the level; on a "
-            "scale or with a number pad the number that was given"}),
+       field<&T::response>({"response", "response",
+                            "Choice of the participant; unsure if the participant did not want to guess; in "
+                            "an adjustment task the setting, in the unit of the level; on a "
+                            "scale or with a number pad the number that was given"}),
        field<&T::correct>({"correct", "correct",
                            "1 if the choice was correct, 0 if not; n/a if the answer is not scored", "",
                            "0 | 1 | n/a"}),

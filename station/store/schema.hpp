@@ -11,7 +11,7 @@ namespace turnpoint::store {
 constexpr int kSchema = 11;
 
 /// The commit whose `turnpoint export` reads the schemas before the present one.
-constexpr const char* kLastReader = "9cfa5e50";
+constexpr const char* kLastReader = "650b067e";
 
 /// Identifies the files of the program as PRAGMA application_id: "TPNT".
 constexpr int kApplicationId = 0x54504e54;

@@ -17,10 +17,9 @@ void check(const Timing& plan) {
   if (plan.intervals.empty())
     throw std::invalid_argument("trial: there is no interval; at least one is needed");
   if (plan.answers < 1) throw std::invalid_argument("trial: there are no answers; at least one is needed");
-  for (const auto time :
-       {plan.signal_ns.value_or(0), plan.cue_ns, plan.gap_ns, plan.deadline_ns, plan.anticipation_ns,
-        plan.feedback_ns, plan.late_ns, plan.iti_ns, plan.wrong_delay_ns, plan.late_delay_ns,
-        plan.early_delay_ns, plan.watermark_ns})
+  for (const auto time : {plan.signal_ns.value_or(0), plan.cue_ns, plan.gap_ns, plan.deadline_ns,
+                          plan.anticipation_ns, plan.feedback_ns, plan.late_ns, plan.iti_ns,
+                          plan.wrong_delay_ns, plan.late_delay_ns, plan.early_delay_ns, plan.watermark_ns})
     if (time < 0) throw std::invalid_argument("trial: a time is negative; all times must be 0 or more");
   for (const auto& interval : plan.intervals) {
     std::int64_t last = 0;

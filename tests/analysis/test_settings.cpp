@@ -121,7 +121,8 @@ TEST_CASE("The interval of a ratio covers the ratio of the means", "[analysis]")
   CHECK_FALSE(analysis::student_ratio({1, 1, 1}, {2, 2, 2}));
   CHECK_FALSE(analysis::student_ratio({1, 0}, {2, 2}));
   // with equal times it is Student's interval of the mean
-  const auto ratio = analysis::student_ratio({3, 5, 10}, {1, 1, 1}), mean = analysis::student_mean({3, 5, 10});
+  const auto ratio = analysis::student_ratio({3, 5, 10}, {1, 1, 1}),
+             mean = analysis::student_mean({3, 5, 10});
   CHECK(ratio->value == Approx(mean->value));
   CHECK(ratio->interval.high == Approx(mean->interval.high));
 }

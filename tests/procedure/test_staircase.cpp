@@ -67,7 +67,8 @@ TEST_CASE("a weighted staircase balances at its target", "[procedure]") {
   CHECK(*trace(spec, {}, "1110").next == Approx(14));
 }
 
-TEST_CASE("after \"unsure\" a weighted staircase steps as it would, on average, after a guess", "[procedure]") {
+TEST_CASE("after \"unsure\" a weighted staircase steps as it would, on average, after a guess",
+          "[procedure]") {
   Spec spec;
   spec.name = "unforced";
   spec.level = "contrast_dB";
@@ -79,7 +80,9 @@ TEST_CASE("after \"unsure\" a weighted staircase steps as it would, on average, 
   spec.target = 0.75;
   spec.stop.trials = 4000;
   spec.guess_rate = 0.5;
-  const auto start = [&] { return make_procedure(spec, {}, {1, turnpoint::core::Stream::level_order, 0, 0, 0}); };
+  const auto start = [&] {
+    return make_procedure(spec, {}, {1, turnpoint::core::Stream::level_order, 0, 0, 0});
+  };
   const auto level = [](const Procedure& procedure) { return procedure.next()->level; };
   auto steps = start();
   steps->record(Answer::one);
@@ -112,10 +115,7 @@ TEST_CASE("after \"unsure\" a weighted staircase steps as it would, on average, 
       sum += known + 0.5 * (1 - known), ++counted;
       const bool knows = draws.uniform() < known;
       const bool admitted = draws.uniform() < admits, lucky = draws.uniform() < 0.5;
-      track->record(knows      ? Answer::one
-                    : admitted ? Answer::unsure
-                    : lucky    ? Answer::one
-                               : Answer::zero);
+      track->record(knows ? Answer::one : admitted ? Answer::unsure : lucky ? Answer::one : Answer::zero);
     }
     INFO("admits " << admits << " of the guesses");
     CHECK(sum / counted == Approx(0.75).margin(0.02));

@@ -1,5 +1,5 @@
-// Points for answers, delays after errors, blocks of a fixed time, goals with what is said at their end, and answers
-// of people who do not want to guess.
+// Points for answers, delays after errors, blocks of a fixed time, goals with what is said at their end, and
+// answers of people who do not want to guess.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,8 +39,8 @@ decimals = 2
 
 /// Two blocks of a fixed time, one for each cost of an error.
 std::string protocol_text(const std::string& payoff = kPayoff, const std::string& lasts_s = "30.0",
-                          const std::string& feedback = "trial", const std::string& delays =
-                                                                     "{ wrong = 2.5, late = 4.0, early = 3.0 }") {
+                          const std::string& feedback = "trial",
+                          const std::string& delays = "{ wrong = 2.5, late = 4.0, early = 3.0 }") {
   return R"(format = "friction-protocol/1"
 [protocol]
 id = "points"
@@ -156,7 +156,8 @@ constexpr const char* kCareless = "sim:threshold=6,anticipation=0.25,bound=1.2";
 
 }  // namespace
 
-TEST_CASE("each trial is worth what the protocol says, and the score is the sum outside practice", "[session]") {
+TEST_CASE("each trial is worth what the protocol says, and the score is the sum outside practice",
+          "[session]") {
   const Station station(protocol_text());
   Screen screen;
   const auto summary = run(station.setup(kCareless), screen);
@@ -178,7 +179,8 @@ TEST_CASE("each trial is worth what the protocol says, and the score is the sum 
   CHECK((seen.count(-2) == 1 && seen.count(-10) == 1));
   REQUIRE(summary.points);
   CHECK(*summary.points == Approx(score));
-  const auto said = fmt::format("You have earned € {}{:.2f}", score < 0 ? "\u2212" : "", std::fabs(0.01 * score));
+  const auto said =
+      fmt::format("You have earned € {}{:.2f}", score < 0 ? "\u2212" : "", std::fabs(0.01 * score));
   CHECK(screen.pages.back().text.find(said) != std::string::npos);
 }
 
@@ -237,7 +239,8 @@ TEST_CASE("the pause is longer after a wrong, a late and an early answer", "[ses
       const double zero_s = 0.8, pause_s = 0.5 + (answered ? 0.8 : 1.0);
       if (answered) {
         ++kinds[*row.correct ? "right" : "wrong"];
-        CHECK(row.duration_s == Approx(zero_s + *row.response_time_s + pause_s + (*row.correct ? 0 : 2.5)).margin(0.2));
+        CHECK(row.duration_s ==
+              Approx(zero_s + *row.response_time_s + pause_s + (*row.correct ? 0 : 2.5)).margin(0.2));
       } else if (row.outcome == core::Outcome::timeout) {
         ++kinds["late"];
         CHECK(row.duration_s == Approx(zero_s + 1.0 + pause_s + 4.0).margin(0.2));
@@ -250,7 +253,8 @@ TEST_CASE("the pause is longer after a wrong, a late and an early answer", "[ses
   CHECK(kinds.size() == 4);
 }
 
-TEST_CASE("a session that is cut in a block of a fixed time goes on with its time and its score", "[session]") {
+TEST_CASE("a session that is cut in a block of a fixed time goes on with its time and its score",
+          "[session]") {
   const Station whole(protocol_text());
   Screen screen;
   const auto expected = run(whole.setup(kCareless), screen);
@@ -407,7 +411,8 @@ procedures = ["staircase"]
 
 }  // namespace
 
-TEST_CASE("people who do not want to guess may say so, and the level steps as after a guess on average", "[session]") {
+TEST_CASE("people who do not want to guess may say so, and the level steps as after a guess on average",
+          "[session]") {
   const Station station(unforced_text());
   Screen screen;
   const auto summary = run(station.setup("sim:threshold=9,lapse=0,unsure=0.8"), screen);

@@ -173,8 +173,12 @@ void add_trials(std::vector<Exhibit>& all, const Words& words) {
   Page over = base(words, PageKind::instructions);
   over.title = said("block_over");
   over.length_mm = 0;
-  for (const auto& [key, value] : {std::pair{"block_right", "83"}, {"block_time", "0.55"}, {"goal_right", "85"},
-                                   {"goal_time", "0.6"}, {"goal_missed", ""}, {"points", "120"}})
+  for (const auto& [key, value] : {std::pair{"block_right", "83"},
+                                   {"block_time", "0.55"},
+                                   {"goal_right", "85"},
+                                   {"goal_time", "0.6"},
+                                   {"goal_missed", ""},
+                                   {"points", "120"}})
     over.text += (over.text.empty() ? "" : "\n") + said(key, value);
   all.push_back({"block-over", over});
 }
