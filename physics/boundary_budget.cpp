@@ -408,7 +408,8 @@ LevelBudget level_budget(const Surface& surface, double f, double at_m) {
     const double sd = standard_deviation(surface, parameter);
     if (!(sd > 0)) continue;
     // Gauss and Hermite's five points of a normal deviate.
-    constexpr std::array points{1.355626179974266, 2.856970013872806}, weights{0.222075922005613, 0.011257411327721};
+    constexpr std::array points{1.355626179974266, 2.856970013872806},
+        weights{0.222075922005613, 0.011257411327721};
     double mean = 0, square = 0;
     for (std::size_t i = 0; i < points.size(); ++i)
       for (const double side : {-1.0, 1.0}) {

@@ -79,7 +79,8 @@ struct LevelBudget {
 // solved on 64 surfaces whose parameters are drawn together, with their correlations, by Latin hypercube
 // sampling (McKay, Beckman, Conover 1979) with a fixed seed, and five times for each parameter alone.
 // Densities, moduli, thicknesses, tensions and
-// quality factors are log-normal. Throws std::invalid_argument if a standard deviation is so large that a drawn surface cannot exist.
+// quality factors are log-normal. Throws std::invalid_argument if a standard deviation is so large that a
+// drawn surface cannot exist.
 LevelBudget level_budget(const Surface& surface, double frequency_Hz, double at_m);
 
 // The same without the parts.

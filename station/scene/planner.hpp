@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "physics/boundary_budget.hpp"
 #include "physics/boundary_map.hpp"
 #include "physics/crest.hpp"
 #include "physics/friction.hpp"
@@ -91,6 +92,11 @@ struct UnderFinger {
   /// relative friction at `finger_m`: from the vibration without a finger, and from the vibration under the
   /// finger
   double free_friction = 1, friction = 1;
+  /// What the rig's uncertain parameters do to the highest tone's level at `finger_m`, and the 95 % interval
+  /// of the friction under the finger there if the levels of all tones move with it. Empty if no parameter of
+  /// the surface has a standard deviation.
+  std::optional<physics::LevelBudget> level;
+  double friction_low = 1, friction_high = 1;
   double lowest_friction = 1;  ///< lowest relative friction that the finger meets at any position
   /// for a finger in the zone: mean friction, and rms deviation from this mean
   std::optional<double> zone_friction, residual;
