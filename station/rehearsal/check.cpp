@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
-#include <limits>
 #include <optional>
 #include <set>
 
@@ -314,7 +314,8 @@ void note_needless_tolerances(const Protocol& protocol, Check& check) {
       {{protocol.path, 0, 0},
        phrase("the model may err far less than the rig's own parameters do (one standard deviation): %1 "
               "(scene %2)",
-              {plain(fmt::format("{}", fmt::join(compared, ", "))), plain(fmt::format("{}", fmt::join(scenes, ", ")))}),
+              {plain(fmt::format("{}", fmt::join(compared, ", "))),
+               plain(fmt::format("{}", fmt::join(scenes, ", ")))}),
        phrase("a larger \"tolerance\" would do, unless only differences between scenes matter")});
 }
 

@@ -252,8 +252,9 @@ ExportColumns interval_columns() {
   add(columns, trial, {"trial_index"});
   add(columns, tone,
       {"interval_index", "scene_index", "tone_index", "scene", "boundary_mm", "frequency_hz", "amplitude_um",
-       "displacement_um", "friction", "rove_db", "model", "error_bound_mm", "uncertainty_mm", "reason",
-       "onset_frame", "length_frames", "measured_db", "measured_phase_deg"});
+       "displacement_um", "friction", "rove_db", "model", "error_bound_mm", "uncertainty_mm",
+       "level_uncertainty_db", "reason", "onset_frame", "length_frames", "measured_db",
+       "measured_phase_deg"});
   columns.push_back(columns_version());
   return columns;
 }

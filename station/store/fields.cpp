@@ -613,6 +613,11 @@ const Table<ToneRow>& tone_table() {
        field<&T::uncertainty_mm>({"uncertainty_mm", "uncertainty_mm",
                                   "Uncertainty of the boundary's position that the rig's parameters cause",
                                   "mm"}),
+       field<&T::level_uncertainty_dB>(
+           {"level_uncertainty_dB", "level_uncertainty_db",
+            "Standard deviation of the level at the tone's last maximum that the rig's parameters cause, "
+            "computed at a frequency that differs by at most 0.25 %",
+            "dB"}),
        field<&T::reason>({"reason", "reason", "Why this model was chosen"}),
        field<&T::onset_frame>({"onset_frame", "onset_frame",
                                "Output frame at which the tone starts, counted from the start of the segment",

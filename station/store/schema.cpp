@@ -227,6 +227,7 @@ CREATE TABLE tone (
   model TEXT NOT NULL,
   error_bound_mm REAL NOT NULL,
   uncertainty_mm REAL NOT NULL,
+  level_uncertainty_dB REAL,
   reason TEXT NOT NULL,
   onset_frame INTEGER NOT NULL,
   length_frames INTEGER NOT NULL,

@@ -65,6 +65,7 @@ inline ToneRow tone(int interval, int index) {
   t.model = "mode";
   t.error_bound_mm = 0.1;
   t.uncertainty_mm = 0.4;
+  t.level_uncertainty_dB = 2.75;
   t.reason = "cheapest inside the tolerance";
   t.onset_frame = 192000 + interval * 96000;
   t.length_frames = 96000;
