@@ -5,8 +5,8 @@ the study from trials.csv, and this program compares them.
 
     tests/report/corpus.py TURNPOINT [--each NUMBER] [--first SEED] [KIND...]
 
-NUMBER protocols of each kind (default 2). With more than two, the posterior of the diffusion model is sampled as well,
-which takes longer. Figures that are not computed again are counted and named at the end. As a
+NUMBER protocols of each kind (default 2). With more than two, the posterior of the diffusion model is sampled and study.R
+is run as well, which takes longer. Figures that are not computed again are counted and named at the end. As a
 negative control, the CSV of one session is changed in one answer, which must be noticed.
 """
 import collections
@@ -16,6 +16,7 @@ import math
 import pathlib
 import random
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -1350,6 +1351,32 @@ def compare_tables(study, folder):
                         f"{key}: {difference}, {effects[key]['difference']}")
 
 
+def compare_r(study, folder, kind):
+    """study.R prints the labels, signs and figures of the report, and lme4 finds no better fit of a group."""
+    if not shutil.which("Rscript"):
+        return
+    document = study.document
+    printed = subprocess.run(["Rscript", SCRIPT.with_suffix(".R"), folder], capture_output=True, text=True, check=True).stdout
+    lines = list(csv.reader(printed.splitlines()))
+    groups = {group["condition"] or "all trials": group["fit"] for group in document["groups"] if group["fit"]}
+    for what in ("threshold", "rate", "log_likelihood"):
+        study.check("study.R", [row[1] for row in lines if row[0] == what] == list(groups), f"{what}: {lines}, {list(groups)}")
+    for name, fit in groups.items():
+        found = {row[0]: (float(row[2] or "-inf"), float(row[3])) for row in lines if row[0] != "log_response_time" and row[1] == name}
+        reported = {"threshold": -fit["intercept"] / fit["rate"], "rate": fit["rate"], "log_likelihood": fit["log_likelihood"]}
+        for what, (theirs, ours) in found.items():
+            study.check("study.R", math.isclose(ours, reported[what], rel_tol=1e-5, abs_tol=1e-9), f"{what}: {ours}, {reported[what]}")
+        theirs, ours = found["log_likelihood"]
+        shared = kind.fit and kind.fit["guess"] != "false alarms"  # lme4 has one guess rate for all
+        study.check("study.R", not shared or theirs < ours + 0.02, f"{name}: lme4 finds a more likely fit: {theirs}, {ours}")
+    effects = {(e["first"], e["second"]): e for e in document["effects"] if e["measure"] == "mean time of right answers"}
+    for _, first, second, value, error in (row for row in lines if row[0] == "log_response_time"):
+        effect = effects.get((first, second))
+        study.check("study.R", effect is not None, f"log_response_time: {first}, {second}: no such effect in the report")
+        if effect and effect["difference"] and abs(float(value)) > 5 * float(error):
+            study.check("study.R", (float(value) > 0) == (effect["difference"]["value"] > 0), f"{first}, {second}: another sign")
+
+
 def measure_of(entry, own, session):
     """The same number in the report of the session, which was compared with the trials; none if it has no such number."""
     name = entry["measure"]
@@ -1436,6 +1463,8 @@ def one(turnpoint, name, seed, deep, spoil=False):
         study = Compared(document, f"{name} {seed} study")
         compare_study(study, sessions, reports)
         compare_tables(study, folder / "tables")
+        if deep:
+            compare_r(study, folder / "tables", kind)
         compare_groups(study, sessions)
         return reports[codes[0]], study
 
