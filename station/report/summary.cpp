@@ -93,6 +93,7 @@ void hide(const SessionData& data, analysis::Trade& trade) {
   for (auto& entry : trade.instructions) {
     if (!shows(data, "ez")) {
       entry.boundary.reset(), entry.nondecision_s.reset(), entry.contaminants.reset(), entry.drift.reset();
+      entry.effective_draws.reset();
       entry.check.reset();
       for (auto& cell : entry.cells) cell.drift.reset();
       std::erase_if(entry.statements, [](const auto& said) { return said.code.starts_with("diffusion-"); });

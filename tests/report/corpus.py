@@ -649,6 +649,45 @@ def trade_measures(cells, session_times, session_error):
     return p, numpy.median(times), lisas, mean / p if p else math.nan
 
 
+QUANTILES = {"low": (".interval.low", 0.025), "value": (".value", 0.5), "high": (".interval.high", 0.975)}
+REPLICATES = 1000  # of the report's bootstrap
+
+
+def effective(values):
+    """How many independent draws a chain is worth: its length over the sum of its autocorrelations until they fall below 0.05."""
+    deviations = values - values.mean()
+    spectrum = numpy.fft.rfft(deviations, 2 * len(values))
+    correlation = numpy.fft.irfft(numpy.abs(spectrum) ** 2)[:len(values)]
+    correlation /= correlation[0]
+    end = int(numpy.argmax(correlation < 0.05))
+    return len(values) / (1 + 2 * correlation[1:max(1, end)].sum())
+
+
+def same_quantiles(report, path, values, draws, names=tuple(QUANTILES)):
+    """Quantiles of the report's `draws` draws and of those of this program. How many draws lie below the true quantile is a
+    binomial number, in both; so the report's lies between two other quantiles of this program's draws, except in one case of
+    50 000."""
+    values = values[numpy.isfinite(values)]
+    both = int(1 / (1 / draws + 1 / effective(values))) if numpy.ptp(values) > 0 else draws
+    for name, share in (QUANTILES[name] for name in names):
+        low, high = numpy.quantile(values, [stats.binom.ppf(1e-5, both, share) / both, stats.binom.isf(1e-5, both, share) / both])
+        theirs = report.numbers.get(path + name)
+        report.check(path + name, theirs is not None and low - 1e-9 <= theirs <= high + 1e-9,
+                     f"expected between {low:.6g} and {high:.6g}, of {both} draws")
+
+
+def unnoticed_changes():
+    """Negative control of same_quantiles(): numbers that are moved by half an SD, or an interval of half or twice the width."""
+    values, unnoticed = stats.norm.rvs(size=4000, random_state=5), []
+    for what, shift, stretch, wrong in (("nothing", 0, 1, False), ("moved", 0.5, 1, True), ("narrow", 0, 0.5, True), ("wide", 0, 2, True)):
+        numbers = {"value": shift, "interval": {"low": shift - stretch * Z95, "high": shift + stretch * Z95}}
+        report = Compared({"x": numbers}, "control")
+        same_quantiles(report, "x", values, 600)
+        if bool(report.wrong) != wrong:
+            unnoticed.append(f"negative control of quantiles: {what}: {report.wrong}")
+    return unnoticed
+
+
 def compare_trade(report, session, deep):
     mad, below = (3.5, 0.15) if session.kind.name == "diffusion" else (None, 0.0)
     groups, raw = [], []
@@ -721,9 +760,7 @@ def compare_trade(report, session, deep):
             if f"{path}.value" not in report.numbers:
                 continue
             report.same(path + ".value", found[at][which])
-            ends = numpy.nanquantile(again[:, at, which], [0.025, 0.975])
-            # a median jumps from one time to the next
-            report.same(path + ".interval", {"low": ends[0], "high": ends[1]}, 0.5 if which == 1 else 0.2, ends[1] - ends[0])
+            same_quantiles(report, path, again[:, at, which], REPLICATES, ("low", "high"))
     gaps = {"proportion correct": 0, "median response time": 1, "LISAS": 2, "inverse efficiency": 3}
     for i, entry in enumerate(report.document["differences"]):
         if entry["measure"] not in gaps or entry["estimate"] is None:
@@ -738,8 +775,7 @@ def compare_trade(report, session, deep):
             report.same(path + ".interval", {"low": gap - math.hypot(q - ends_q["low"], ends_p["high"] - p),
                                              "high": gap + math.hypot(ends_q["high"] - q, p - ends_p["low"])})
         else:
-            ends = numpy.nanquantile(again[:, b, which] - again[:, a, which], [0.025, 0.975])
-            report.same(path + ".interval", {"low": ends[0], "high": ends[1]}, 0.2, ends[1] - ends[0])
+            same_quantiles(report, path, again[:, b, which] - again[:, a, which], REPLICATES, ("low", "high"))
     for at, condition in enumerate(session.conditions):  # none with a response signal
         compare_predicted(report, session, at, condition, 0.150 if session.kind.name == "diffusion" else 0.0)
     if deep:
@@ -787,27 +823,7 @@ def compare_predicted(report, session, at, condition, anticipation):
             report.same(path + ".predicted_quantiles_s", wanted, 0.02)
 
 
-def same_posterior(report, path, values):
-    """The report has at least 400 effective draws. Of so many, a binomial number lies below a quantile, so each of its three
-    numbers lies between two other quantiles, except in one case of 50 000."""
-    for name, share in ((".interval.low", 0.025), (".value", 0.5), (".interval.high", 0.975)):
-        ends = numpy.quantile(values, [stats.binom.ppf(1e-5, 400, share) / 400, stats.binom.isf(1e-5, 400, share) / 400])
-        theirs = report.numbers.get(path + name)
-        report.check(path + name, theirs is not None and ends[0] <= theirs <= ends[1], f"expected between {ends[0]:.6g} and {ends[1]:.6g}")
-
-
 def compare_diffusion(report, session):
-    """A short chain leaves differences now and then; a long one then says whether they are real."""
-    for count in (6000, 40000):
-        before = len(report.wrong)
-        compare_posterior_draws(report, session, count)
-        if len(report.wrong) == before:
-            return
-        if count == 6000:
-            del report.wrong[before:]
-
-
-def compare_posterior_draws(report, session, count):
     draws = []
     for at, condition in enumerate(session.conditions):
         rows = session.of(condition, session.rows)
@@ -815,20 +831,23 @@ def compare_posterior_draws(report, session, count):
         late = collections.Counter(difficulty(r) for r in rows if r["outcome"] == "timeout")
         early = collections.Counter(difficulty(r) for r in rows if r["outcome"] == "anticipation")
         model = Diffusion(answers, late, early, float(rows[0]["deadline"]), 0.150)
-        chain = model.draws(count)
+        chain = model.draws(20000)
+        worth = report.document["instructions"][at]["effective_draws"]
+        report.check(f"instructions[{at}].effective_draws", 30 <= worth <= 1000, "fewer draws would not be reported")
         named = {"boundary": numpy.exp(chain[:, 0]), "nondecision_s": chain[:, 1], "contaminants": chain[:, 2],
                  "drift": chain[:, 3:].mean(axis=1)}
         draws.append(named)
         for name, values in named.items():
-            same_posterior(report, f"instructions[{at}].{name}", values)
+            same_quantiles(report, f"instructions[{at}].{name}", values, worth)
         for i in range(len(model.names)):
-            same_posterior(report, f"instructions[{at}].difficulties[{i}].drift", chain[:, 3 + i])
+            same_quantiles(report, f"instructions[{at}].difficulties[{i}].drift", chain[:, 3 + i], worth)
     names = {"boundary": "boundary", "time outside the decision": "nondecision_s", "drift": "drift"}
     for i, entry in enumerate(report.document["differences"]):
         if entry["measure"] in names and entry["estimate"]:
             a, b = session.conditions.index(entry["first"]), session.conditions.index(entry["second"])
             gap = draws[b][names[entry["measure"]]] - draws[a][names[entry["measure"]]]
-            same_posterior(report, f"differences[{i}].estimate", gap)
+            worth = [report.document["instructions"][k]["effective_draws"] for k in (a, b)]
+            same_quantiles(report, f"differences[{i}].estimate", gap, min(worth))
 
 
 def counted(session, condition, log_scale):
@@ -1515,6 +1534,7 @@ def main():
                 compared += len(part.seen & set(part.numbers))
                 left.update(part.left())
         print(f"{name}: {each} protocols, {len(wrong)} differences so far", flush=True)
+    wrong += unnoticed_changes()
     if not one(turnpoint, "pse", first, deep=False, spoil=True)[0].wrong:
         wrong.append("negative control: a changed answer was not noticed")
     for line in wrong:
