@@ -158,7 +158,8 @@ Likelihood::Maximum Likelihood::search() const {
         for (int i = 0; i < 4; ++i) theta[i] = bounds_.low[i] + share[i] * (bounds_.high[i] - bounds_.low[i]);
         theta = project(theta);
         // if a parameter is held, several points of the grid are one
-        if (std::none_of(starts.begin(), starts.end(), [&](const Maximum& one) { return one.theta == theta; }))
+        if (std::none_of(starts.begin(), starts.end(),
+                         [&](const Maximum& one) { return one.theta == theta; }))
           starts.push_back({theta, negative_log(theta)});
       }
   std::stable_sort(starts.begin(), starts.end(),

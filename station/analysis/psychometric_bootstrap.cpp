@@ -63,8 +63,8 @@ struct Replicator {
     return likelihood(of, narrowed, quantity.anchor).climb(start);
   }
 
-  /// The same for the counts of the session, searched for from other starts as well: with the threshold held, a
-  /// steep and a shallow function can each be a maximum.
+  /// The same for the counts of the session, searched for from other starts as well: with the threshold held,
+  /// a steep and a shallow function can each be a maximum.
   Likelihood::Maximum highest(const Quantity& quantity, double value, const Theta& start) const {
     const ThetaBounds narrowed = with(quantity, value);
     const auto near = held(counts, quantity, value, start);

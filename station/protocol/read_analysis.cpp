@@ -47,7 +47,8 @@ void read_by(TableReader& reader, Reading& reading) {
   // Reports name a condition by its levels, which may contain commas themselves.
   Protocol all = reading.protocol;
   for (const auto& factor : factors)
-    if (is_group(factor) && !seen.count(factor.name)) all.analysis.by.insert(all.analysis.by.begin(), factor.name);
+    if (is_group(factor) && !seen.count(factor.name))
+      all.analysis.by.insert(all.analysis.by.begin(), factor.name);
   std::set<std::string> named;
   for (const auto& name : conditions(all))
     if (!named.insert(name).second)
@@ -140,8 +141,7 @@ void read_analysis(TableReader& file, Reading& reading) {
   read_show(reader, reading);
   const auto& sessions = reading.protocol.sessions;
   const auto incomplete = reader.maybe_word("incomplete_sessions");
-  if (const auto holm = reader.maybe_word("holm"))
-    analysis.holm = *holm == "all" ? Holm::all : Holm::measure;
+  if (const auto holm = reader.maybe_word("holm")) analysis.holm = *holm == "all" ? Holm::all : Holm::measure;
   if (incomplete) analysis.count_incomplete = *incomplete == "count";
   if (incomplete == "leave_out" && sessions && sessions->incomplete == Unfinished::count)
     reader.problem(

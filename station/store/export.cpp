@@ -114,7 +114,8 @@ void add_levels(Database& database, const std::string& session_id, std::vector<E
   while (texts.step()) {
     const auto name = texts.text(0), level = texts.text(1);
     for (auto& factor : factors)
-      if (factor.name == name && std::find(factor.levels.begin(), factor.levels.end(), level) == factor.levels.end())
+      if (factor.name == name &&
+          std::find(factor.levels.begin(), factor.levels.end(), level) == factor.levels.end())
         factor.levels.push_back(level);
   }
 }

@@ -207,7 +207,8 @@ TEST_CASE("An interval ends where no function with that threshold is likely enou
   three.guess_value = 1.0 / 3;
   detection.guess = Guess::fitted, detection.guess_high = 0.9;
   const std::vector<std::pair<FitOptions, std::vector<LevelCount>>> sessions{
-      {three, {{0.049, 18, 7}, {0.089, 18, 6}, {0.137, 18, 14}, {0.253, 18, 14}, {0.421, 18, 16}, {0.708, 18, 18}}},
+      {three,
+       {{0.049, 18, 7}, {0.089, 18, 6}, {0.137, 18, 14}, {0.253, 18, 14}, {0.421, 18, 16}, {0.708, 18, 18}}},
       {detection, {{kNoise, 24, 6}, {0.048, 12, 4}, {0.115, 12, 3}, {0.283, 12, 9}, {0.699, 12, 12}}}};
   for (const auto& [options, data] : sessions) {
     const auto fit = fit_psychometric(data, options);
@@ -221,9 +222,9 @@ TEST_CASE("An interval ends where no function with that threshold is likely enou
             const double guess = options.guess == Guess::fitted ? 0.02 * g + 0.01 : options.guess_value;
             double cost = 0;
             for (const auto& point : data) {
-              const double p = point.level == kNoise
-                                   ? guess
-                                   : probability(options.function, options.scale, {end, slope, guess, lapse}, point.level);
+              const double p = point.level == kNoise ? guess
+                                                     : probability(options.function, options.scale,
+                                                                   {end, slope, guess, lapse}, point.level);
               cost -= point.positive * std::log(p) + (point.trials - point.positive) * std::log1p(-p);
             }
             least = std::min(least, cost);
@@ -332,12 +333,15 @@ TEST_CASE("Trials without a signal determine the rate of false alarms", "[analys
   CHECK(posterior.intervals.guess->interval.high < 0.5);
 }
 
-TEST_CASE("an interval that ends at a bound says so, even if the best curve at the bound itself is hard to find", "[analysis]") {
+TEST_CASE(
+    "an interval that ends at a bound says so, even if the best curve at the bound itself is hard to find",
+    "[analysis]") {
   FitOptions options;
   options.function = Function::weibull;
   options.scale = Scale::log10;
   const auto fit = fit_psychometric(
-      {{0.051, 19, 4}, {0.087, 19, 14}, {0.137, 19, 11}, {0.243, 19, 16}, {0.432, 19, 19}, {0.68, 19, 18}}, options);
+      {{0.051, 19, 4}, {0.087, 19, 14}, {0.137, 19, 11}, {0.243, 19, 16}, {0.432, 19, 19}, {0.68, 19, 18}},
+      options);
   const auto drawn = bootstrap(fit, {});
   // with this steep a slope the likelihood is still only 0.6 below its maximum
   REQUIRE(drawn.slope);
