@@ -269,6 +269,7 @@ void fill_cells(Group& group, InstructionResult& result, int stream, const Trade
     result.boundary = group.diffusion->boundary;
     result.nondecision_s = group.diffusion->nondecision_s;
     result.contaminants = group.diffusion->contaminants;
+    result.effective_draws = group.diffusion->effective_draws;
     std::vector<double> drifts;
     for (const auto& draw : group.diffusion->draws) drifts.push_back(mean(draw.drift));
     const double middle = quantile(drifts, 0.5);

@@ -40,6 +40,7 @@ struct InstructionResult {
   std::optional<Estimate> boundary, nondecision_s, contaminants;
   /// points a trial, and points a minute of trials with their pauses, from all trials that are not void
   std::optional<Estimate> points, points_per_minute;
+  std::optional<double> effective_draws;  ///< how many independent draws the numbers of the model rest on
   std::optional<Estimate> drift;         ///< mean of the drifts over the condition's difficulties
   std::optional<DiffusionCheck> check;   ///< what the fit predicts, for each of `difficulties`
   std::vector<double> difficulties;      ///< ascending

@@ -85,6 +85,7 @@ Json instruction_json(const analysis::InstructionResult& entry) {
   json["boundary"] = value(entry.boundary);
   json["nondecision_s"] = value(entry.nondecision_s);
   json["contaminants"] = value(entry.contaminants);
+  json["effective_draws"] = value(entry.effective_draws);
   json["drift"] = value(entry.drift);
   json["lisas_s"] = value(entry.lisas_s);
   json["inverse_efficiency_s"] = value(entry.inverse_efficiency_s);

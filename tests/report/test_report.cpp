@@ -233,6 +233,17 @@ TEST_CASE("A forced-choice session in dB has its threshold and 75 % point in the
   keep("staircase.svg", shown(trace_figure(summary)));
 }
 
+TEST_CASE("A participant of a group has the threshold of that condition", "[report]") {
+  auto data = staircase_session();
+  data.conditions = {"trained", "untrained"};
+  for (auto& trial : data.trials) trial.instruction = "untrained";
+  const auto fits = fits_of(data);
+  REQUIRE(fits.size() == 1);
+  CHECK(fits[0].name == "untrained");
+  data.conditions = {"untrained"};
+  CHECK(fits_of(data).at(0).name.empty());
+}
+
 TEST_CASE("If the answers determined the levels, the report states the posterior and its prior", "[report]") {
   auto data = staircase_session();
   data.prior = analysis::Prior{-40, 3, 0.25, 16, 0.25};
