@@ -56,6 +56,10 @@ enum class Ended {
 /// `count` is the number of steps or trials.
 std::optional<core::Phrase> end_in_words(Ended ended, const std::string& procedure, int count);
 
+/// How pages and reports call an estimated parameter, such as "threshold". A parameter of a separate program keeps the
+/// name that the program gives it.
+core::Phrase parameter_name(const std::string& parameter);
+
 struct Estimate {
   double mode = 0, mean = 0;
   /// standard deviation of the estimate; empty if the estimate is a single number

@@ -67,13 +67,6 @@ struct ThresholdCurve {
 using Fact = std::pair<std::string, std::string>;
 /// A fact in a language that is chosen later.
 using SpokenFact = std::pair<core::Phrase, core::Phrase>;
-/// The facts as a file says them.
-inline std::vector<Fact> in_english(const std::vector<SpokenFact>& facts) {
-  std::vector<Fact> said;
-  for (const auto& [name, text] : facts) said.emplace_back(core::say(name, "en"), core::say(text, "en"));
-  return said;
-}
-
 /// The measured vibration of a trial's stimuli, compared with the plan.
 struct MeasuredTrial {
   int trial_index = 0;

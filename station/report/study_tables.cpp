@@ -147,7 +147,7 @@ std::string groups_table(const Study& study) {
 
 }  // namespace
 
-std::vector<Table> study_tables(const Study& study) {
+std::vector<CsvTable> study_tables(const Study& study) {
   return {{"answers.csv", answers_table(study)},
           {"measures.csv", measures_table(study)},
           {"effects.csv", effects_table(study)},

@@ -9,13 +9,17 @@
 
 namespace turnpoint::report {
 
+/// With a typographic minus sign.
+inline std::string with_minus(std::string number) {
+  return number.starts_with('-') ? "\u2212" + number.substr(1) : number;
+}
+
 /// Formats an estimate with the digits that its interval justifies, as tables show it, and with a typographic minus
 /// sign. Without an interval it has three digits.
 inline std::string in_digits(double value, const analysis::Interval* interval) {
-  auto text = interval == nullptr
-                  ? core::number(value, 3)
-                  : core::estimated(value, core::uncertainty(value, interval->low, interval->high));
-  return text.starts_with('-') ? "\u2212" + text.substr(1) : text;
+  return with_minus(interval == nullptr
+                        ? core::number(value, 3)
+                        : core::estimated(value, core::uncertainty(value, interval->low, interval->high)));
 }
 
 /// Says the words of figures and tables in one language.

@@ -7,20 +7,12 @@
 
 #include "station/core/number.hpp"
 #include "station/core/texts.hpp"
+#include "station/procedure/procedure.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/interludes.hpp"
 #include "station/scene/planner.hpp"
 
 namespace turnpoint::session {
-
-core::Phrase parameter_name(const std::string& parameter) {
-  static const std::map<std::string, const char*> known{
-      {"threshold", "report.threshold"}, {"pse", "report.pse"},     {"slope", "report.slope"},
-      {"spread", "report.spread"},       {"lapse", "report.lapse"}, {"criterion", "report.criterion"},
-      {"gradient", "report.gradient"},   {"floor", "report.floor"}};
-  const auto found = known.find(parameter);
-  return found == known.end() ? core::plain(parameter) : core::Phrase{found->second, "", {}};
-}
 
 namespace {
 
@@ -342,7 +334,7 @@ Page Pages::end(const Summary& summary, const trial::Director& director) const {
   if (summary.accuracy) add("report.right", core::number(100 * *summary.accuracy, 3) + " %");
   if (summary.points) add("report.score", core::number(*summary.points, 6));
   for (const auto& e : summary.estimates)
-    page.summary.push_back({{"", e.procedure + ", ", {parameter_name(e.parameter)}}, in_words(e)});
+    page.summary.push_back({{"", e.procedure + ", ", {procedure::parameter_name(e.parameter)}}, in_words(e)});
   for (const auto& end : summary.early_ends) add("report.ended_early", core::say(end, setup_.language));
   return page;
 }

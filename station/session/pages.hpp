@@ -12,10 +12,6 @@
 
 namespace turnpoint::session {
 
-/// How pages call an estimated parameter, such as "threshold". A parameter of a separate program keeps the
-/// name that the program gives it.
-core::Phrase parameter_name(const std::string& parameter);
-
 /// Makes the pages of one session. They contain texts in the session's language, the size of the surface for
 /// its drawing, and the progress.
 class Pages {

@@ -7,7 +7,7 @@
 #include "station/report/chart.hpp"
 #include "station/report/figures.hpp"
 #include "station/report/figure_files.hpp"
-#include "station/report/html.hpp"
+#include "station/report/document.hpp"
 #include "station/report/words.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/diffusion.hpp"
@@ -398,7 +398,7 @@ TEST_CASE("The label of a threshold has the digits of the table and the height o
 
 TEST_CASE("Every figure of a report has a caption that says whose trials it shows and how many", "[report]") {
   const auto summary = summarise(speed_accuracy(28));
-  const auto figures = figures_of(summary);
+  const auto figures = figures_of(document(summary));
   REQUIRE(figures.size() >= 4);
   for (const auto& [name, figure] : figures) {
     INFO(name << ": " << figure.caption);

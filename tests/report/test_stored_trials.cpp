@@ -6,7 +6,7 @@
 
 #include "station/core/toml.hpp"
 #include "station/protocol/conditions.hpp"
-#include "station/report/html.hpp"
+#include "station/report/document.hpp"
 #include "tests/report/simulated_report.hpp"
 #include "tests/support/catch.hpp"
 

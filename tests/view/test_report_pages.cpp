@@ -16,6 +16,13 @@ const report::Figure* figure_in(const view::ReportPages& pages, const std::strin
   return nullptr;
 }
 
+std::string value_of(const view::ReportPages& pages, const std::string& label, const char* language = "en") {
+  for (const auto& section : pages.sections)
+    for (const auto& [name, value] : section.facts)
+      if (core::say(name, language) == label) return core::say(value, language);
+  return "";
+}
+
 }  // namespace
 
 TEST_CASE("the report on the screen has the numbers and figures of the speed-accuracy trade-off",
@@ -24,10 +31,10 @@ TEST_CASE("the report on the screen has the numbers and figures of the speed-acc
   session::Inputs inputs;
   const auto summary = session::run(session::prepare(demo_in(folder)), nullptr, inputs);
   const auto pages = view::report_pages(summary.database, summary.session_id);
-  CHECK(value_of(pages.outcomes, "Presented") == "10");
-  CHECK_FALSE(value_of(pages.speed_accuracy, "proportion right").empty());
+  CHECK(value_of(pages, "Presented") == "10");
+  CHECK_FALSE(value_of(pages, "Proportion correct (0 to 1)").empty());
   CHECK(figure_in(pages, "levels") != nullptr);
-  CHECK_FALSE(pages.health.empty());
+  CHECK(core::say(pages.sections.back().heading, "en") == "The station");
 }
 
 TEST_CASE("tables and figures of the report on the screen are in the language of the operator",
@@ -44,8 +51,8 @@ TEST_CASE("tables and figures of the report on the screen are in the language of
     return svg.finish();
   };
   const auto german = view::report_pages(summary.database, summary.session_id, "de");
-  CHECK(value_of(german.outcomes, "Dargeboten") == "10");
-  CHECK_FALSE(value_of(german.speed_accuracy, "Anteil richtig").empty());
+  CHECK(value_of(german, "Dargeboten", "de") == "10");
+  CHECK_FALSE(value_of(german, "Anteil richtig (0 bis 1)", "de").empty());
   CHECK(svg_of(german, "levels").find("Durchgang (Nummer in der Sitzung)") != std::string::npos);
   CHECK(svg_of(german, "levels").find("Trial") == std::string::npos);
   CHECK(svg_of(german, "response-times").find("Reaktionszeit (s)") != std::string::npos);
@@ -59,20 +66,25 @@ TEST_CASE("remarks and facts about the station in a report are said in the langu
   session::Inputs inputs;
   const auto summary = session::run(session::prepare(demo_in(folder)), nullptr, inputs);
   const auto pages = view::report_pages(summary.database, summary.session_id, "de");
-  CHECK_FALSE(pages.statements.empty());
-  for (const auto& statement : pages.statements) {
-    INFO(core::say(statement, "en"));
-    CHECK(core::say(statement, "de") != core::say(statement, "en"));
-  }
-  CHECK(pages.health.size() > 15);
-  for (const auto& [name, text] : pages.health) CHECK(core::say(name, "de") != core::say(name, "en"));
+  bool remarked = false;
+  for (const auto& section : pages.sections)
+    for (const auto& statement : section.statements) {
+      INFO(core::say(statement, "en"));
+      CHECK(core::say(statement, "de") != core::say(statement, "en"));
+      remarked = true;
+    }
+  CHECK(remarked);
+  const auto& station = pages.sections.back();
+  CHECK(core::say(station.heading, "de") == "Station");
+  CHECK(station.facts.size() > 15);
+  for (const auto& [name, text] : station.facts) CHECK(core::say(name, "de") != core::say(name, "en"));
 }
 
 TEST_CASE("the report on the screen has the finger's forces and friction, if force cells recorded",
           "[operator]") {
   report::Summary summary;
   summary.data.design = report::Design::ratings;
-  CHECK(view::report_pages(summary).forces.empty());
+  CHECK(value_of(view::report_pages(summary), "speed: Speed (mm/s)").empty());
   CHECK(figure_in(view::report_pages(summary), "finger") == nullptr);
   std::vector<analysis::FingerTrial> trials;
   for (int i = 0; i < 4; ++i) {
@@ -81,8 +93,8 @@ TEST_CASE("the report on the screen has the finger's forces and friction, if for
   }
   summary.finger = analysis::finger(trials, {});
   const auto pages = view::report_pages(summary);
-  CHECK(value_of(pages.forces, "speed: speed").find("81.5 [") == 0);
-  CHECK(value_of(pages.forces, "speed: felt \u2212 planned boundary").find(" mm") != std::string::npos);
+  CHECK(value_of(pages, "speed: Speed (mm/s)").find("81.5 [") == 0);
+  CHECK(value_of(pages, "speed: Felt minus planned boundary (mm)").find(" [") != std::string::npos);
   CHECK(figure_in(pages, "finger") != nullptr);
   CHECK(figure_in(pages, "friction") != nullptr);
 }
