@@ -25,19 +25,26 @@ constexpr int fewest_points = 200;
 constexpr double unknown = 2, unknown_dB = 120;
 // An edge that friction defines lies between the last maximum and this fraction of it.
 constexpr double faint = 0.02;
-// Error of `modes` that is assumed before it is solved: without a resonance of a higher mode, what a resonance
-// adds, and the most that it adds. The values are above the largest errors found on random surfaces. Plates
-// under tension have thin boundary layers along their clamped sides. The field of a clamped plate's piston
-// jumps at the corners of the drive edge.
+// Error of a solution of `modes` that is assumed before it is solved: without a resonance of a higher mode, what
+// a resonance adds, and the most that it adds. The values are above the largest errors found on random
+// surfaces. The field of a clamped plate's piston jumps at the corners of the drive edge.
 struct Accuracy {
   double quiet, resonance, most;
 };
-constexpr Accuracy membrane_accuracy{2e-3, 5e-4, 1e-3}, plate_accuracy{1e-3, 6e-4, 1},
-    tense_plate_accuracy{5e-3, 6e-4, 1}, thick_plate_accuracy{4e-3, 6e-4, 1}, plate_piston_accuracy{0.15, 0, 0};
-// the same for the coarser solution, and for its level relative to the motion of the drive edge
-constexpr Accuracy coarser_membrane{2e-3, 5e-3, 0.15}, coarser_plate{4e-3, 5e-3, 0.1},
-    coarser_thick_plate{0.02, 5e-3, 0.1};
-constexpr Accuracy coarser_membrane_level{1e-3, 2e-3, 0.01};
+// The errors of |v| with the usual and the coarser resolution, and of the level with the coarser one, which is
+// relative to the motion of the drive edge.
+struct Accuracies {
+  Accuracy usual, coarser, coarser_level;
+};
+constexpr Accuracies membrane_accuracy{{2e-3, 5e-4, 1e-3}, {2e-3, 5e-3, 0.15}, {1e-3, 2e-3, 0.01}},
+    plate_accuracy{{1e-3, 6e-4, 4e-3}, {8e-3, 5e-3, 0.25}, {5e-3, 0, 0}},
+    tense_plate_accuracy{{5e-3, 6e-4, 4e-3}, {0.02, 5e-3, 0.25}, {0.012, 0, 0}},
+    layered_plate_accuracy{{5e-3, 4e-3, 0.15}, {0.02, 8e-3, 0.25}, {0.012, 0, 0}},
+    thick_plate_accuracy{{2e-3, 1e-4, 1e-3}, {0.02, 1e-3, 0.03}, {0.02, 1e-3, 0.03}};
+constexpr double plate_piston_accuracy = 0.15;
+// Plates under tension have boundary layers along their clamped sides. If these are thinner than the half-width
+// at the cut-off divided by this, polynomials across the strip follow them badly.
+constexpr double thin_layers = 8;
 // shift of an edge relative to the cut-off half-width, divided by the error of `modes`; larger with a quality
 // factor of the wave below 30, because the field is then less steep at its edges
 constexpr double edge_share = 0.8, lossy_edge_share = 1.2, lossy_below = 30;
@@ -76,17 +83,21 @@ Difference compare(const Surface& surface, const PlanRequest& request, double f,
   std::vector<double> x(points + 1);
   for (std::size_t i = 0; i <= points; ++i)
     x[i] = surface.length_m * static_cast<double>(i) / static_cast<double>(points);
+  // If v(0) is 1, the phase is known too, and the difference is that of complex numbers.
   const auto profile = [&x, drive](const Probe& one) {
     std::vector<std::complex<double>> v(x.size());
     std::vector<double> ln(x.size());
-    one.line->evaluate(x, 1.0, drive ? one.ln_drive : one.ln_peak, v, ln);
-    for (double& value : ln) value = std::exp(std::clamp(value, -700.0, 300.0));
-    return ln;
+    const auto at_drive = one.line->value(0).mantissa;
+    const auto turned = drive && at_drive != 0.0 ? at_drive / std::abs(at_drive) : 1.0;
+    one.line->evaluate(x, turned, drive ? one.ln_drive : one.ln_peak, v, ln);
+    for (std::size_t i = 0; i < v.size(); ++i)
+      if (!drive || !(ln[i] < 300)) v[i] = std::exp(std::clamp(ln[i], -700.0, 300.0));
+    return v;
   };
   const auto of_a = profile(a), of_b = profile(b);
   for (std::size_t i = 0; i <= points; ++i) {
     worst = std::max(worst, std::abs(of_a[i] - of_b[i]));
-    most = std::max(most, of_b[i]);
+    most = std::max(most, std::abs(of_b[i]));
   }
   d.amplitude = between_points * worst / most;
   d.level_dB = 8.686 * std::abs((a.ln_peak - a.ln_drive) - (b.ln_peak - b.ln_drive));
@@ -181,18 +192,14 @@ double placed_elsewhere_m(const PlanRequest& request, const Reference& reference
 
 enum class Detail { usual, coarser };
 
-Accuracy field_accuracy(const Surface& surface, Detail detail) {
-  const bool coarser = detail == Detail::coarser;
-  if (!Dispersion(surface).clamped_bending()) return coarser ? coarser_membrane : membrane_accuracy;
-  if (surface.drive == DriveShape::piston) return plate_piston_accuracy;
-  if (surface.theory != PlateTheory::kirchhoff) return coarser ? coarser_thick_plate : thick_plate_accuracy;
-  if (coarser) return coarser_plate;
-  return surface.tension_Pa > 0 ? tense_plate_accuracy : plate_accuracy;
-}
-
-Accuracy level_accuracy(const Surface& surface, Detail detail) {
-  return detail == Detail::coarser && !Dispersion(surface).clamped_bending() ? coarser_membrane_level
-                                                                            : field_accuracy(surface, detail);
+Accuracies accuracies(const Surface& surface, double f) {
+  const Dispersion dispersion(surface);
+  if (!dispersion.clamped_bending()) return membrane_accuracy;
+  if (surface.theory != PlateTheory::kirchhoff) return thick_plate_accuracy;
+  if (!(surface.tension_Pa > 0)) return plate_accuracy;
+  const double layers =
+      dispersion.cut_off_half_width_m(f) * std::sqrt(dispersion.tension_N_per_m / dispersion.stiffness_N_m);
+  return layers > thin_layers ? layered_plate_accuracy : tense_plate_accuracy;
 }
 
 double at_resonance(const Accuracy& accuracy, double resonance) {
@@ -215,12 +222,15 @@ RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, 
                             Detail detail = Detail::usual) {
   RungEstimate e;
   e.cost_s = cost_s(surface, reference.f, Model::modes, request.points);
-  const double accuracy = at_resonance(field_accuracy(surface, detail), reference.bound.resonance);
-  const double level = at_resonance(level_accuracy(surface, detail), reference.bound.resonance);
+  const Accuracies assumed = accuracies(surface, reference.f);
+  const bool coarser = detail == Detail::coarser, plate = Dispersion(surface).clamped_bending();
+  double accuracy = at_resonance(coarser ? assumed.coarser : assumed.usual, reference.bound.resonance);
+  double level = at_resonance(coarser ? assumed.coarser_level : assumed.usual, reference.bound.resonance);
+  if (plate && surface.drive == DriveShape::piston) accuracy = level = plate_piston_accuracy;
   const bool drive = request.normalise != Normalise::peak;
   e.amplitude_bound = accuracy * (drive ? reference.conditioning : 1);
   e.level_bound_dB = 20 * std::log10(1 + level * reference.conditioning);
-  if (reference.bound.shape > 1 && Dispersion(surface).clamped_bending() && modes_bound_applies(surface)) {
+  if (reference.bound.shape > 1 && plate && modes_bound_applies(surface)) {
     if (drive) e.amplitude_bound += unknown;
     e.level_bound_dB += unknown_dB;
   }
@@ -228,8 +238,8 @@ RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, 
   const double share = lossy ? lossy_edge_share : edge_share;
   e.boundary_bound_m =
       accuracy * share * cut_off_half_width_m(surface, reference.f) + placed_elsewhere_m(request, reference);
-  e.reason = detail == Detail::usual ? "two-dimensional field at its default resolution"
-                                     : "two-dimensional field at a coarser resolution";
+  e.reason = coarser ? "two-dimensional field at a coarser resolution"
+                     : "two-dimensional field at its default resolution";
   add_sides(e, request, reference);
   return e;
 }
@@ -289,8 +299,9 @@ RungEstimate compared_mode_estimate(const Surface& surface, const PlanRequest& r
   e.reason = "first transverse mode with loss, compared with a two-dimensional field";
   e.amplitude_bound = std::min(e.amplitude_bound, rest.amplitude_bound + d.amplitude);
   e.level_bound_dB = std::min(e.level_bound_dB, rest.level_bound_dB + d.level_dB);
-  // an edge that friction defines may be anywhere between the last maximum and the tip
-  if (reference.edge.kind != Edge::Kind::friction)
+  // An edge that friction defines may be anywhere between the last maximum and the tip. Where `mode` says
+  // nothing of the field, nothing is assumed of `modes` either.
+  if (reference.edge.kind != Edge::Kind::friction && reference.bound.shape <= 1)
     e.boundary_bound_m = std::min(e.boundary_bound_m, rest.boundary_bound_m + d.position_m);
   return e;
 }
