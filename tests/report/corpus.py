@@ -108,6 +108,12 @@ class Kind:
         return TWO_SCENES + single(f'{{ first = "amount < {cut}", second = "amount > {cut}" }}') + \
             constant(values, self.draw.randint(8, 14))
 
+    def choice(self):
+        """Two answers, none of them right."""
+        self.people(threshold=(0.1, 0.3), bias=(-0.1, 0.1))
+        self.fit, self.positive = {"function": "normal", "guess": "tied"}, "second"
+        return TWO_SCENES + single("").replace("correct = \n", "") + constant(self.signed(), self.draw.randint(8, 14))
+
     def pse_2ifc(self):
         self.people(threshold=(0.1, 0.3), bias=(-0.1, 0.1))
         self.fit, self.positive = {"function": "normal", "guess": "tied"}, "comparison"
@@ -138,6 +144,10 @@ class Kind:
     def abx(self):
         self.models = [("independent observations", 2), ("differencing", 2)]
         return self.interval("abx", ["first", "second"], 2)
+
+    def match_to_sample(self):
+        self.models = [("independent observations", 2), ("differencing", 2)]
+        return self.interval("match-to-sample", ["second", "third"], 2)
 
     def oddity(self):
         return self.interval("oddity", ["1", "2", "3"], 3)
@@ -264,8 +274,9 @@ class Kind:
             'show = ["psychometric", "ez", "bis", "lisas", "caf"]\nresponse_time_exclude = { below_s = 0.150, mad = 3.5 }\n'
 
 
-KINDS = ["pse", "bisection", "pse_2ifc", "threshold_2ifc", "mafc", "abx", "oddity", "same_different", "yes_no", "confusion",
-         "rating", "magnitude", "line", "setting", "staircase", "quest_plus", "response_signal", "diffusion"]
+KINDS = ["pse", "bisection", "choice", "pse_2ifc", "threshold_2ifc", "mafc", "abx", "match_to_sample", "oddity",
+         "same_different", "yes_no", "confusion", "rating", "magnitude", "line", "setting", "staircase", "quest_plus",
+         "response_signal", "diffusion"]
 
 # ------------------------------------------------------------------------------------------------ computed again
 
@@ -1227,7 +1238,8 @@ def compare_session(report, session, deep):
     compare_counts(report, session)
     if kind.design in ("binary", "confusion"):
         compare_binary_bias(report, session)
-        compare_trade(report, session, deep and getattr(kind, "trade", False))
+        if kind.name != "choice":  # no answer is right
+            compare_trade(report, session, deep and getattr(kind, "trade", False))
     if kind.fit:
         compare_fits(report, session)
     if getattr(kind, "detection", None):
