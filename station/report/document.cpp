@@ -7,7 +7,6 @@
 #include <set>
 
 #include "station/core/number.hpp"
-#include "station/report/words.hpp"
 
 namespace turnpoint::report {
 
@@ -61,8 +60,6 @@ std::vector<NamedFigure> figures_of(const Document& document) {
   return figures;
 }
 
-std::string name_of(const std::string& condition) { return condition.empty() ? "all trials" : condition; }
-
 Text threshold_label(const LevelAnalysis& data) {
   const auto* key = data.design == Design::two_sided ? "report.pse" : "report.threshold";
   return Text(core::phrase(key), Text::Look::label) +
@@ -81,7 +78,8 @@ Text slope_label(core::Function function, const LevelAnalysis& data) {
 void add_meanings(const SessionData& data, Document& document) {
   List list;
   const auto add = [&list](const LevelAnalysis& part) {
-    if (!part.meaning.empty()) list.items.push_back((part.name.empty() ? "" : part.name + ": ") + part.meaning);
+    if (!part.meaning.empty())
+      list.items.push_back((part.name.empty() ? "" : part.name + ": ") + part.meaning);
   };
   for (const auto& part : data.parts) add(part);
   if (data.parts.empty()) add(data);
@@ -138,22 +136,25 @@ std::string why_estimates_differ(const std::vector<OwnEstimate>& estimates, bool
 
 }  // namespace
 
-void add_own_estimates(std::vector<Column> of, const std::vector<OwnEstimate>& estimates, bool thresholds_differ,
-                       Document& document) {
+void add_own_estimates(std::vector<Column> of, const std::vector<OwnEstimate>& estimates,
+                       bool thresholds_differ, Document& document) {
   if (estimates.empty()) return;
   Table table{std::move(of), {}};
-  for (const auto* title : {"Procedure", "Block", "Parameter", "Estimate", "Standard deviation", "Taken from"})
+  for (const auto* title :
+       {"Procedure", "Block", "Parameter", "Estimate, 95 % interval", "Standard deviation", "Taken from"})
     table.columns.emplace_back(title);
   for (const auto& [first, estimate, is_brief] : estimates) {
     const bool level = estimate.parameter.starts_with("threshold") || estimate.parameter == "pse";
     const auto unit = estimate.unit.empty() && level ? "no unit" : estimate.unit;
-    const auto parameter = Text(procedure::parameter_name(estimate.parameter)) + (unit.empty() ? "" : " (" + unit + ")");
+    const auto parameter =
+        Text(procedure::parameter_name(estimate.parameter)) + (unit.empty() ? "" : " (" + unit + ")");
     auto value = estimate.interval ? estimated(estimate.mean, *estimate.interval)
                  : estimate.sd     ? count(with_minus(core::estimated(estimate.mean, *estimate.sd)))
                                    : amount(estimate.mean);
     value.brief = is_brief;
     auto row = first;
-    row.insert(row.end(), {estimate.procedure, estimate.block, parameter, std::move(value), amount(estimate.sd, 2, ""), estimate.basis});
+    row.insert(row.end(), {estimate.procedure, estimate.block, parameter, std::move(value),
+                           amount(estimate.sd, 2, ""), estimate.basis});
     table.rows.push_back(std::move(row));
   }
   document.table(std::move(table));

@@ -8,11 +8,12 @@
 #include "station/report/figure_files.hpp"
 #include "station/report/study.hpp"
 #include "station/report/summary.hpp"
+#include "station/report/words.hpp"
 
 namespace turnpoint::report {
 
-// A report as one document: headings, texts, tables, remarks and figures, of a session or of a study. The page in HTML
-// and the report on the screen are written from it.
+// A report as one document: headings, texts, tables, remarks and figures, of a session or of a study. The
+// page in HTML and the report on the screen are written from it.
 
 /// A number with what is known of it.
 struct Number {
@@ -57,8 +58,8 @@ struct Cell {
   int columns = 1;     ///< how many columns the cell covers
 
   template <class T>
-    requires std::convertible_to<T, Text>
-  Cell(T&& content, Kind of_kind = Kind::text) : text(std::forward<T>(content)), kind(of_kind) {}
+  requires std::convertible_to<T, Text> Cell(T&& content, Kind of_kind = Kind::text)
+      : text(std::forward<T>(content)), kind(of_kind) {}
 };
 inline Cell head(Text text) { return {std::move(text), Cell::Kind::head}; }
 inline Cell count(Text text) { return {std::move(text), Cell::Kind::number}; }
@@ -74,8 +75,8 @@ struct Column {
   bool named = false;  ///< a short report names the column with each of its cells
 
   template <class T>
-    requires std::convertible_to<T, Text>
-  Column(T&& text, bool is_named = false) : title(std::forward<T>(text)), named(is_named) {}
+  requires std::convertible_to<T, Text> Column(T&& text, bool is_named = false)
+      : title(std::forward<T>(text)), named(is_named) {}
 };
 
 struct Table {
@@ -97,9 +98,9 @@ struct List {
 };
 
 struct Document {
-  std::string title;      ///< of the protocol
-  std::string name;       ///< of the whole document: the title, and whose data it shows
-  Text about;             ///< the line below the title
+  std::string title;  ///< of the protocol
+  std::string name;   ///< of the whole document: the title, and whose data it shows
+  Text about;         ///< the line below the title
   std::string run_mode;
   using Part = std::variant<Heading, Paragraph, analysis::Statement, List, Table, NamedFigure>;
   std::vector<Part> parts;
@@ -107,7 +108,8 @@ struct Document {
   void heading(Text text, int level = 2) { parts.push_back(Heading{std::move(text), level}); }
   void say(Text text) { parts.push_back(Paragraph{std::move(text)}); }
   void explain(Text text) { parts.push_back(Paragraph{std::move(text), true}); }
-  /// Remarks that must be shown with the numbers. `condition` is the one that they are about, if no heading says so.
+  /// Remarks that must be shown with the numbers. `condition` is the one that they are about, if no heading
+  /// says so.
   void remark(const std::vector<analysis::Statement>& statements, const std::string& condition = "");
   void remark(std::string words) { parts.push_back(analysis::Statement{"", core::plain(std::move(words))}); }
   /// Adds a table, unless it has no rows.
@@ -129,8 +131,6 @@ std::vector<NamedFigure> figures_of(const Document& document);
 
 // What documents of a session and of a study have in common.
 
-/// The name of a condition, or "all trials" if there is only one condition.
-std::string name_of(const std::string& condition);
 /// The name of the threshold, and of the slope, of a psychometric function, with its unit.
 Text threshold_label(const LevelAnalysis& data);
 Text slope_label(core::Function function, const LevelAnalysis& data);
@@ -142,12 +142,12 @@ struct OwnEstimate {
   ProcedureEstimate estimate;
   bool brief = false;
 };
-void add_own_estimates(std::vector<Column> of, const std::vector<OwnEstimate>& estimates, bool thresholds_differ,
-                       Document& document);
+void add_own_estimates(std::vector<Column> of, const std::vector<OwnEstimate>& estimates,
+                       bool thresholds_differ, Document& document);
 Text early_end(const EarlyEnd& end);
 
-/// Writes a document as one self-contained page, laid out for the screen and for A4 paper: inline SVG, no script, no
-/// external files.
+/// Writes a document as one self-contained page, laid out for the screen and for A4 paper: inline SVG, no
+/// script, no external files.
 std::string to_html(const Document& document);
 inline std::string to_html(const Summary& summary) { return to_html(document(summary)); }
 

@@ -120,8 +120,8 @@ struct Writer {
     const auto& name = named.name;
     return "<figure>" + render(named.figure) + "<p class=\"soft save\">Save: " +
            download(name + "-1-column.svg", "image/svg+xml", paper(kOneColumn_mm), "SVG, 85 mm wide") + ", " +
-           download(name + "-2-columns.svg", "image/svg+xml", paper(kTwoColumns_mm), "SVG, 180 mm wide") + ", " +
-           download(name + ".csv", "text/csv;charset=utf-8", data_csv(named.figure), "data, CSV") +
+           download(name + "-2-columns.svg", "image/svg+xml", paper(kTwoColumns_mm), "SVG, 180 mm wide") +
+           ", " + download(name + ".csv", "text/csv;charset=utf-8", data_csv(named.figure), "data, CSV") +
            "</p></figure>\n";
   }
 };
@@ -129,10 +129,11 @@ struct Writer {
 }  // namespace
 
 std::string to_html(const Document& document) {
-  std::string page = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-                     "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
-                     escaped(document.name) + "</title>\n<style>" + kStyle + "</style></head><body>\n<h1>" +
-                     escaped(document.title) + "</h1>\n<p>" + html(document.about);
+  std::string page =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
+      escaped(document.name) + "</title>\n<style>" + kStyle + "</style></head><body>\n<h1>" +
+      escaped(document.title) + "</h1>\n<p>" + html(document.about);
   if (document.run_mode != "live") page += " <span class=\"mode\">" + escaped(document.run_mode) + "</span>";
   page += "</p>\n";
   for (const auto& part : document.parts) page += std::visit(Writer{}, part);

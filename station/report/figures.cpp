@@ -427,7 +427,7 @@ std::optional<Figure> quantile_probability_figure(const Summary& summary) {
   std::vector<double> times{0};
   for (const auto& entry : summary.trade.instructions) {
     if (!entry.check) continue;
-    Chart chart{or_default(entry.instruction, "all trials"), {}, {}, {}, false};
+    Chart chart{name_of(entry.instruction), {}, {}, {}, false};
     for (std::size_t q = 0; q < analysis::kPredictedQuantiles.size(); ++q) {
       Points points;
       std::vector<std::pair<double, double>> predicted;

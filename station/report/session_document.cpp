@@ -45,10 +45,13 @@ void add_fit(const NamedFit& named, const SessionData& session, Document& docume
   if (fit.parameters) {
     const auto& p = *fit.parameters;
     Table table;
-    const auto row = [&table](Text name, double value, const std::optional<analysis::ParameterInterval>& interval,
+    const auto row = [&table](Text name, double value,
+                              const std::optional<analysis::ParameterInterval>& interval,
                               bool is_brief = false) {
-      auto cell = interval ? count(Number{value, interval->interval, 3, interval->touches_low, interval->touches_high})
-                           : amount(value);
+      auto cell =
+          interval
+              ? count(Number{value, interval->interval, 3, interval->touches_low, interval->touches_high})
+              : amount(value);
       cell.brief = is_brief;
       table.rows.push_back({std::move(name), std::move(cell)});
     };
@@ -57,14 +60,16 @@ void add_fit(const NamedFit& named, const SessionData& session, Document& docume
     row(slope_label(fit.options.function, data), p.slope, found.slope, slope_estimated(named));
     if (!slope_estimated(named)) {
       auto& cell = table.rows.back()[1];
-      cell.text = found.slope ? Text("only limited ", Look::soft) +
-                                    Text(in_known_digits(std::get<Number>(cell.text.runs[0].what)).second, Look::soft)
-                              : Text("only limited", Look::soft);
+      cell.text = found.slope
+                      ? Text("only limited ", Look::soft) +
+                            Text(in_known_digits(std::get<Number>(cell.text.runs[0].what)).second, Look::soft)
+                      : Text("only limited", Look::soft);
     }
     if (found.level_75 && !two_sided) row(in_unit("75 % point", data), *found.level_75, found.interval_75);
     row(Text(phrase("report.lapse"), Look::label) + " (proportion)", p.lapse, found.lapse, true);
     if (found.guess)
-      row(has_noise(data.design) ? "False alarms (proportion)" : "Guess rate (proportion)", p.guess, found.guess);
+      row(has_noise(data.design) ? "False alarms (proportion)" : "Guess rate (proportion)", p.guess,
+          found.guess);
     if (found.method != analysis::IntervalMethod::posterior) row("Deviance (no unit)", fit.deviance, {});
     if (found.deviance_p)
       row("Share of bootstrap replicates with a worse fit (proportion)", *found.deviance_p, {});
@@ -110,8 +115,10 @@ void add_threshold_curves(const Summary& summary, Document& document) {
     document.table(std::move(table));
   }
   document.explain(
-      "Means and central 95 % credible intervals of the procedure's posterior, with the prior and the grid of the "
-      "protocol. All answers determine the threshold at each place, because the procedure assumes that it changes by "
+      "Means and central 95 % credible intervals of the procedure's posterior, with the prior and the grid "
+      "of the "
+      "protocol. All answers determine the threshold at each place, because the procedure assumes that it "
+      "changes by "
       "its gradient.");
 }
 
@@ -124,7 +131,8 @@ void add_settings(const Summary& summary, Document& document) {
   if (summary.settings.empty()) return document.remark("There are no settings in this session.");
   for (const auto& settings : summary.settings) {
     Table table;
-    const auto row = [&](const std::string& name, const std::optional<Estimate>& value, bool is_brief = false) {
+    const auto row = [&](const std::string& name, const std::optional<Estimate>& value,
+                         bool is_brief = false) {
       table.rows.push_back({name, estimated(value)});
       table.rows.back()[1].brief = is_brief;
     };
@@ -159,13 +167,15 @@ void add_judgements(const Summary& summary, Document& document) {
       table.rows.push_back({amount(level.level, 4), count(static_cast<int>(level.values.size())),
                             brief(estimated(level.mean)), amount(level.median)});
     if (!table.rows.empty() && numbers)
-      document.table({{}, {{Text(phrase("report.exponent"), Look::label), brief(estimated(judged.exponent))}}});
+      document.table(
+          {{}, {{Text(phrase("report.exponent"), Look::label), brief(estimated(judged.exponent))}}});
     document.table(std::move(table));
     document.remark(judged.statements);
   }
-  document.explain(numbers ? "95 % intervals: Student's t of the logarithms. The exponent is the slope of log number "
-                             "over log level (Stevens\u2019 law)."
-                           : "95 % intervals: Student's t.");
+  document.explain(
+      numbers ? "95 % intervals: Student's t of the logarithms. The exponent is the slope of log number "
+                "over log level (Stevens\u2019 law)."
+              : "95 % intervals: Student's t.");
 }
 
 // --- answers by stimulus, and sensitivity
@@ -189,7 +199,8 @@ void add_confusions(const Summary& summary, Document& document) {
       auto& cells = table.rows.emplace_back();
       cells.push_back(row.stimulus ? Cell(quoted(data.choices.at(static_cast<std::size_t>(*row.stimulus))))
                                    : amount(row.level, 4, "none"));
-      for (const int answers : row.answers) cells.push_back(count(answers)), cells.back().shade = 1.0 * answers / row.trials;
+      for (const int answers : row.answers)
+        cells.push_back(count(answers)), cells.back().shade = 1.0 * answers / row.trials;
       cells.push_back(proportion_cell(row.right));
       cells.back().brief = row.stimulus && row.right;
     }
@@ -206,10 +217,12 @@ void add_detections(const Summary& summary, Document& document) {
   if (summary.detections.empty()) return;
   const auto& data = summary.data;
   document.heading("Sensitivity and criterion");
-  Table table{{"Condition", data.cut != 0 ? "Distance from " + core::number(data.cut, 6) : data.level_label, "Hits",
-               "False alarms", "d\u2032 (standard deviations)", "Criterion c (standard deviations)"},
+  Table table{{"Condition", data.cut != 0 ? "Distance from " + core::number(data.cut, 6) : data.level_label,
+               "Hits", "False alarms", "d\u2032 (standard deviations)", "Criterion c (standard deviations)"},
               {}};
-  const auto of = [](int some, int others) { return count(std::to_string(some) + " / " + std::to_string(some + others)); };
+  const auto of = [](int some, int others) {
+    return count(std::to_string(some) + " / " + std::to_string(some + others));
+  };
   for (const auto& entry : summary.detections) {
     const auto& n = entry.counts;
     table.rows.push_back({name_of(entry.condition), level_cell(entry.level), of(n.hits, n.misses),
@@ -218,10 +231,11 @@ void add_detections(const Summary& summary, Document& document) {
   }
   document.table(std::move(table));
   const auto yes = static_cast<std::size_t>(data.design == Design::yes_no ? data.positive : 1);
-  document.explain("A hit is the answer \u201c" + (yes < data.choices.size() ? data.choices[yes] : "second") +
-                   "\u201d in a trial in which this answer is right. A false alarm is the same answer in a trial in "
-                   "which it is wrong. A positive criterion means that the participant avoids this answer. Rates have "
-                   "the log-linear correction; 95 % intervals are those of Gourevitch and Galanter.");
+  document.explain(
+      "A hit is the answer \u201c" + (yes < data.choices.size() ? data.choices[yes] : "second") +
+      "\u201d in a trial in which this answer is right. A false alarm is the same answer in a trial in "
+      "which it is wrong. A positive criterion means that the participant avoids this answer. Rates have "
+      "the log-linear correction; 95 % intervals are those of Gourevitch and Galanter.");
 }
 
 void add_rocs(const Summary& summary, Document& document) {
@@ -230,12 +244,13 @@ void add_rocs(const Summary& summary, Document& document) {
   const auto unequal = Text("d") + Text("a", Look::below);
   document.heading("Receiver operating characteristic");
   document.figure("roc", roc_figure(summary));
-  Table table{{"Condition", level, "Area under the curve", "d\u2032, equal variances", unequal + ", unequal variances",
-               "SD with a signal"},
+  Table table{{"Condition", level, "Area under the curve", "d\u2032, equal variances",
+               unequal + ", unequal variances", "SD with a signal"},
               {}};
-  Table criteria{{"Condition", level,
-                  "Criteria between ratings that were given (equal variances; SDs above the mean without a signal)"},
-                 {}};
+  Table criteria{
+      {"Condition", level,
+       "Criteria between ratings that were given (equal variances; SDs above the mean without a signal)"},
+      {}};
   const auto of = [](const std::optional<analysis::RatingFit>& fit, Estimate analysis::RatingFit::*value) {
     return estimated(fit ? std::optional((*fit).*value) : std::nullopt);
   };
@@ -247,7 +262,8 @@ void add_rocs(const Summary& summary, Document& document) {
                           of(entry.unequal, &analysis::RatingFit::sd)});
     if (!entry.equal) continue;
     Text list;
-    for (const double criterion : entry.equal->criteria) list += (list.runs.empty() ? "" : ", ") + Text(Number{criterion});
+    for (const double criterion : entry.equal->criteria)
+      list += (list.runs.empty() ? "" : ", ") + Text(Number{criterion});
     criteria.rows.push_back({name, level_cell(entry.level), std::move(list)});
   }
   document.table(std::move(table));
@@ -256,12 +272,16 @@ void add_rocs(const Summary& summary, Document& document) {
       Text(summary.data.design == Design::ratings
                ? "Ratings go from the surest no to the surest yes."
                : "Answer and confidence together are a rating, from the surest no to the surest yes.") +
-      " Each point counts the trials that are rated at least so high: hits with a signal, false alarms without one. An "
-      "area of 0.5 is chance. The area is that under straight lines, which is a little smaller than under a smooth "
+      " Each point counts the trials that are rated at least so high: hits with a signal, false alarms "
+      "without one. An "
+      "area of 0.5 is chance. The area is that under straight lines, which is a little smaller than under a "
+      "smooth "
       "curve; its 95 % interval is that of Newcombe (2006, method 5). d\u2032 and " +
       unequal +
-      " are maximum likelihood fits of normal distributions, without and with a standard deviation of its own for "
-      "trials with a signal (1 is that of trials without); their intervals follow from the expected information. They "
+      " are maximum likelihood fits of normal distributions, without and with a standard deviation of its "
+      "own for "
+      "trials with a signal (1 is that of trials without); their intervals follow from the expected "
+      "information. They "
       "are left out where the answers do not determine them.");
 }
 
@@ -293,9 +313,10 @@ void add_discriminations(const Summary& summary, Document& document) {
       cells.push_back(count(Number{estimate.value, estimate.interval, 3, false, false, true}));
   }
   document.table(std::move(table));
-  document.explain(models +
-                   "No preference for an answer is assumed. 95 % intervals: Clopper and Pearson for the proportion "
-                   "correct, with both ends converted to d\u2032. The value itself has the log-linear correction.");
+  document.explain(
+      models +
+      "No preference for an answer is assumed. 95 % intervals: Clopper and Pearson for the proportion "
+      "correct, with both ends converted to d\u2032. The value itself has the log-linear correction.");
 }
 
 // --- accuracy at the response signal
@@ -306,8 +327,8 @@ void add_curve_differences(const Summary& summary, Document& document) {
               {}};
   for (const auto& pair : summary.curve_differences) {
     auto& cells = table.rows.emplace_back();
-    cells = {second_minus_first(pair.first, pair.second), estimated(pair.asymptote), estimated(pair.rate_ratio),
-             estimated(pair.intercept_s)};
+    cells = {second_minus_first(pair.first, pair.second), estimated(pair.asymptote),
+             estimated(pair.rate_ratio), estimated(pair.intercept_s)};
     for (std::size_t i = 0; i < pair.p.size(); ++i) {
       cells.push_back(amount(pair.p[i]));
       if (pair.corrected_p[i]) cells.back().text += ", corrected " + Text(Number{*pair.corrected_p[i]});
@@ -321,7 +342,9 @@ void add_signal(const Summary& summary, Document& document) {
   document.heading("Accuracy at the response signal");
   document.figure("response-signal", signal_figure(summary));
   Table curves{{"Condition", "Asymptote (d\u2032)", "Rate (1/s)", "Intercept (s)"}, {}};
-  Table lags{{"Condition", "Signal after (s)", "Mean response time (s)", "Trials", "d\u2032 (standard deviations)"}, {}};
+  Table lags{
+      {"Condition", "Signal after (s)", "Mean response time (s)", "Trials", "d\u2032 (standard deviations)"},
+      {}};
   Table levels{{"Condition", "Signal after (s)", summary.data.level_label + ", without sign",
                 "d\u2032 (standard deviations)"},
                {}};
@@ -332,7 +355,8 @@ void add_signal(const Summary& summary, Document& document) {
     for (const auto& point : curve.points) {
       const auto& n = point.counts;
       lags.rows.push_back({name, amount(point.lag_s), amount(point.time_s),
-                           count(n.hits + n.misses + n.false_alarms + n.correct_rejections), estimated(point.d_prime)});
+                           count(n.hits + n.misses + n.false_alarms + n.correct_rejections),
+                           estimated(point.d_prime)});
     }
     for (std::size_t i = 0; i < curve.by_level.size(); ++i)
       for (const auto& level : curve.by_level[i])
@@ -345,14 +369,22 @@ void add_signal(const Summary& summary, Document& document) {
   document.table(std::move(lags));
   document.table(std::move(levels));
   document.explain(
-      "Only answers within the window after the signal are used. The curve is d\u2032(t) = asymptote (1 \u2212 "
-      "exp(\u2212rate (t \u2212 intercept))); t is the mean response time at a lag, so it includes the time that people "
-      "need to answer the signal. Each lag has its own criterion. The values are the most probable ones, with 95 % "
-      "profile intervals. Priors: the asymptote is half-normal with a standard deviation of 1.8; the rate is log-normal "
-      "around 3 per second, with a standard deviation of 1.5 in its natural logarithm; the intercept is uniform up to "
-      "the longest mean response time. With few trials a rate is drawn towards 3 per second. An end that the answers do "
-      "not determine is named as such. The p values compare the model in which both conditions share one parameter with "
-      "two curves of their own (chi squared, one degree of freedom). d\u2032 at each lag has the log-linear correction "
+      "Only answers within the window after the signal are used. The curve is d\u2032(t) = asymptote (1 "
+      "\u2212 "
+      "exp(\u2212rate (t \u2212 intercept))); t is the mean response time at a lag, so it includes the time "
+      "that people "
+      "need to answer the signal. Each lag has its own criterion. The values are the most probable ones, "
+      "with 95 % "
+      "profile intervals. Priors: the asymptote is half-normal with a standard deviation of 1.8; the rate is "
+      "log-normal "
+      "around 3 per second, with a standard deviation of 1.5 in its natural logarithm; the intercept is "
+      "uniform up to "
+      "the longest mean response time. With few trials a rate is drawn towards 3 per second. An end that the "
+      "answers do "
+      "not determine is named as such. The p values compare the model in which both conditions share one "
+      "parameter with "
+      "two curves of their own (chi squared, one degree of freedom). d\u2032 at each lag has the log-linear "
+      "correction "
       "and the interval of Gourevitch and Galanter.");
 }
 
@@ -370,7 +402,8 @@ bool has(const Measure<Result>& row, const Summary& summary) {
 template <class Condition>
 Table table_of(const std::vector<Condition>& conditions, std::string Condition::*name) {
   Table table{{""}, {}};
-  for (const auto& entry : conditions) table.columns.push_back({name_of(entry.*name), !(entry.*name).empty()});
+  for (const auto& entry : conditions)
+    table.columns.push_back({name_of(entry.*name), !(entry.*name).empty()});
   return table;
 }
 template <class Condition>
@@ -378,7 +411,7 @@ std::vector<Cell> row_of(const Measure<Condition>& measure, const std::vector<Co
   std::vector<Cell> cells{head(phrase(measure.title))};
   for (const auto& entry : conditions) {
     cells.push_back(estimated(entry.*measure.value));
-    cells.back().brief = measure.brief && entry.*measure.value;
+    cells.back().brief = measure.brief;
   }
   return cells;
 }
@@ -412,7 +445,9 @@ Cell difference_cell(const analysis::Difference& difference) {
 void add_differences(const Summary& summary, Document& document) {
   const auto& differences = summary.trade.differences;
   std::vector<std::string> pairs;
-  const auto pair_of = [](const analysis::Difference& one) { return second_minus_first(one.first, one.second); };
+  const auto pair_of = [](const analysis::Difference& one) {
+    return second_minus_first(one.first, one.second);
+  };
   for (const auto& one : differences)
     if (std::find(pairs.begin(), pairs.end(), pair_of(one)) == pairs.end()) pairs.push_back(pair_of(one));
   Table table{{"Difference"}, {}};
@@ -459,8 +494,7 @@ void add_conditional(const Summary& summary, Document& document) {
 
 void add_difficulties(const Summary& summary, Document& document) {
   const bool drift = shows(summary.data, "ez");
-  Table table{{"Condition",
-               "Difficulty (as " + Text("difficulty", Look::code) + " or the size of the level)",
+  Table table{{"Condition", "Difficulty (as " + Text("difficulty", Look::code) + " or the size of the level)",
                "Correct (trials, proportion)", "Mean correct (s)"},
               {}};
   if (drift) table.columns.emplace_back("Drift v (1/s, s = 0.1)");
@@ -468,7 +502,8 @@ void add_difficulties(const Summary& summary, Document& document) {
     for (const auto& part : entry.cells) {
       auto& cells = table.rows.emplace_back();
       cells = {name_of(entry.instruction), amount(part.difficulty, 4),
-               count(Text(part.correct) + " / " + part.answered + ", " + Number{part.proportion_correct, part.accuracy}),
+               count(Text(part.correct) + " / " + part.answered + ", " +
+                     Number{part.proportion_correct, part.accuracy}),
                amount(part.mean_correct_s, 3, "none")};
       if (drift) cells.push_back(estimated(part.drift));
     }
@@ -477,13 +512,15 @@ void add_difficulties(const Summary& summary, Document& document) {
   document.table(std::move(table));
 }
 
-/// What the trade was, in one paragraph for each pair of conditions: how much later answers came, how much more often
-/// they were right, and what of it the diffusion model ascribes to caution and to the quality of the evidence.
+/// What the trade was, in one paragraph for each pair of conditions: how much later answers came, how much
+/// more often they were right, and what of it the diffusion model ascribes to caution and to the quality of
+/// the evidence.
 void add_trade_in_words(const Summary& summary, Document& document) {
   const auto& differences = summary.trade.differences;
   const auto of = [&](const analysis::Difference& pair, const char* measure) -> const analysis::Difference* {
     for (const auto& one : differences)
-      if (one.first == pair.first && one.second == pair.second && one.measure == measure && one.estimate) return &one;
+      if (one.first == pair.first && one.second == pair.second && one.measure == measure && one.estimate)
+        return &one;
     return nullptr;
   };
   const auto change = [](const analysis::Difference& gap, const char* lower, const char* higher) {
@@ -493,8 +530,8 @@ void add_trade_in_words(const Summary& summary, Document& document) {
   };
   const auto size = [](Estimate gap, double scale) {
     if (gap.value < 0) gap = {-gap.value, {-gap.interval.high, -gap.interval.low, gap.interval.confidence}};
-    return Number{scale * gap.value,
-                  analysis::Interval{scale * gap.interval.low, scale * gap.interval.high, gap.interval.confidence}};
+    return Number{scale * gap.value, analysis::Interval{scale * gap.interval.low, scale * gap.interval.high,
+                                                        gap.interval.confidence}};
   };
   for (const auto& pair : differences) {
     if (pair.measure != "proportion correct") continue;
@@ -503,8 +540,8 @@ void add_trade_in_words(const Summary& summary, Document& document) {
     auto text = "Compared with " + Text(name_of(pair.first), Look::strong) + ", answers under " +
                 Text(name_of(pair.second), Look::strong) + " came " + size(*time->estimate, 1) + " s " +
                 (time->estimate->value < 0 ? "sooner" : "later") + " (median) and were right " +
-                size(*right->estimate, 100) + " % of the trials " + (right->estimate->value < 0 ? "less" : "more") +
-                " often.";
+                size(*right->estimate, 100) + " % of the trials " +
+                (right->estimate->value < 0 ? "less" : "more") + " often.";
     const auto *boundary = of(pair, "boundary"), *drift = of(pair, "drift");
     if (boundary != nullptr && drift != nullptr)
       text += std::string(" The boundary ") +
@@ -514,23 +551,24 @@ void add_trade_in_words(const Summary& summary, Document& document) {
   }
 }
 
-/// Whether the diffusion model describes the answers: a sentence, the observed and the predicted quantiles, and a table
-/// of what it predicts.
+/// Whether the diffusion model describes the answers: a sentence, the observed and the predicted quantiles,
+/// and a table of what it predicts.
 void add_model(const Summary& summary, Document& document) {
   const auto& trade = summary.trade;
   if (!trade.model_p) return;
   document.heading("Does the diffusion model describe these answers?", 3);
   const auto percent = core::number(100 * *trade.model_p, 2);
-  document.say(*trade.model_p < 0.05
-                   ? "No: only " + percent +
-                         " % of sessions that follow the fitted model are as far from it as this one. Boundary, drift "
-                         "and time outside the decision may mislead here."
-                   : "Yes, as far as these answers can tell: " + percent +
-                         " % of sessions that follow the fitted model are as far from it as this one, or farther.");
+  document.say(
+      *trade.model_p < 0.05
+          ? "No: only " + percent +
+                " % of sessions that follow the fitted model are as far from it as this one. Boundary, drift "
+                "and time outside the decision may mislead here."
+          : "Yes, as far as these answers can tell: " + percent +
+                " % of sessions that follow the fitted model are as far from it as this one, or farther.");
   document.figure("quantiles", quantile_probability_figure(summary));
   Table table{{"Condition", "Difficulty", "Right, observed (proportion of answers)", "Right, predicted",
-               "Mean time of right answers, observed (s)", "predicted (s)", "Mean time of wrong answers, observed (s)",
-               "predicted (s)"},
+               "Mean time of right answers, observed (s)", "predicted (s)",
+               "Mean time of wrong answers, observed (s)", "predicted (s)"},
               {}};
   const auto part = [](double some, double whole) {
     return amount(whole > 0 ? std::optional(some / whole) : std::nullopt, 3, "none");
@@ -569,18 +607,23 @@ void add_trade(const Summary& summary, Document& document) {
   if (data.design != Design::categories) add_difficulties(summary, document);
   if (shows(data, "ez"))
     document.explain(
-        "Boundary, time outside the decision and drift come from the diffusion model, fitted to all answers, with those "
-        "that came too late as decisions not made by the deadline. Times that the exclusion rule leaves out elsewhere "
-        "are part of this fit: trimming would change the distribution that is fitted. The numbers are medians of the "
+        "Boundary, time outside the decision and drift come from the diffusion model, fitted to all answers, "
+        "with those "
+        "that came too late as decisions not made by the deadline. Times that the exclusion rule leaves out "
+        "elsewhere "
+        "are part of this fit: trimming would change the distribution that is fitted. The numbers are "
+        "medians of the "
         "posterior distribution, with 95 % intervals.");
   for (const auto& [part, what, more] :
-       {std::tuple("lisas", "LISAS", ""), {"ies", "The inverse efficiency score",
-                                           ", and suits few errors only, up to 10 % (Bruyer & Brysbaert 2011)"}})
+       {std::tuple("lisas", "LISAS", ""),
+        {"ies", "The inverse efficiency score",
+         ", and suits few errors only, up to 10 % (Bruyer & Brysbaert 2011)"}})
     if (shows(data, part))
-      document.explain(std::string(what) +
-                       " combines speed and accuracy, but is not free of the trade-off itself: it can change when only "
-                       "the boundary does (Liesefeld & Janczyk 2019)" +
-                       more + ". Do not read its differences as differences of ability.");
+      document.explain(
+          std::string(what) +
+          " combines speed and accuracy, but is not free of the trade-off itself: it can change when only "
+          "the boundary does (Liesefeld & Janczyk 2019)" +
+          more + ". Do not read its differences as differences of ability.");
   for (const auto& entry : trade.instructions) document.remark(entry.statements, entry.instruction);
   document.remark(trade.statements);
   add_model(summary, document);
@@ -596,13 +639,16 @@ void add_course(const Summary& summary, Document& document) {
     table.rows.back()[1].brief = is_brief;
   };
   const auto trend = [&](const char* name, const std::optional<analysis::Trend>& found, const char* unit) {
-    line(name, found ? Number{found->per_100_trials, found->interval} + Text(unit) + " per 100 trials" : "too few trials",
+    line(name,
+         found ? Number{found->per_100_trials, found->interval} + Text(unit) + " per 100 trials"
+               : "too few trials",
          false);
   };
   const auto& counts = summary.outcomes;
   line(phrase("report.presented"), counts.presented);
   line(phrase("report.answered"), counts.answered);
-  line(phrase("report.late_early"), std::to_string(counts.timeouts) + ", " + std::to_string(counts.anticipations));
+  line(phrase("report.late_early"),
+       std::to_string(counts.timeouts) + ", " + std::to_string(counts.anticipations));
   line(phrase("report.void"), counts.aborted + counts.faults);
   if (counts.aborted > 0) line("of these, aborted", counts.aborted, false);
   if (summary.data.unsure)
@@ -616,8 +662,10 @@ void add_course(const Summary& summary, Document& document) {
   if (summary.catch_trials) line(phrase("report.catch_right"), right_of(*summary.catch_trials));
   if (const auto& bias = summary.bias; bias && summary.data.choices.size() > 1)
     line(phrase("report.chose", {core::plain(summary.data.choices[1])}),
-         Number{100 * bias->share_second, analysis::Interval{100 * bias->interval.low, 100 * bias->interval.high}} +
-             Text(" %") + (bias->criterion ? ", criterion c = " + Text(Number{*bias->criterion, {}, 2}) : Text()));
+         Number{100 * bias->share_second,
+                analysis::Interval{100 * bias->interval.low, 100 * bias->interval.high}} +
+             Text(" %") +
+             (bias->criterion ? ", criterion c = " + Text(Number{*bias->criterion, {}, 2}) : Text()));
   trend("Trend of response time", summary.fatigue.response_time_s, " s");
   if (summary.data.scored && summary.data.design != Design::adjustment)
     trend("Trend of accuracy", summary.fatigue.proportion_correct, " (proportion correct)");
@@ -633,8 +681,8 @@ void add_finger_conditions(const analysis::Finger& finger, Document& document) {
   auto& cells = table.rows.emplace_back();
   cells.push_back(head("Trials recorded / with known forces / with a felt boundary"));
   for (const auto& condition : finger.conditions)
-    cells.push_back(count(std::to_string(condition.trials) + " / " + std::to_string(condition.measured) + " / " +
-                          std::to_string(condition.felt)));
+    cells.push_back(count(std::to_string(condition.trials) + " / " + std::to_string(condition.measured) +
+                          " / " + std::to_string(condition.felt)));
   document.table(std::move(table));
 }
 
@@ -647,12 +695,15 @@ void add_finger(const Summary& summary, Document& document) {
   if (auto friction = friction_figure(summary)) {
     document.figure("friction", std::move(friction));
     document.explain(
-        "All conditions together. Filled markers: means of 3 or more trials at one planned boundary. Open markers: "
-        "single trials, side by side if they have the same boundary. The felt boundary is where friction changed under "
+        "All conditions together. Filled markers: means of 3 or more trials at one planned boundary. Open "
+        "markers: "
+        "single trials, side by side if they have the same boundary. The felt boundary is where friction "
+        "changed under "
         "the finger; the planned one is the place that the scene\u2019s " +
         Text("edge", Look::code) + " names. They should agree for an edge that friction defines, " +
         Text("{ friction = \u2026 }", Look::code) +
-        "; other edges are defined at other places. Along the strip: means of the strokes in bins of 2 mm, with bars of "
+        "; other edges are defined at other places. Along the strip: means of the strokes in bins of 2 mm, "
+        "with bars of "
         "one standard error, where 3 or more strokes were made.");
   }
   Table repeats{{"Level", "Presented", "Presented again because of the movement"}, {}};
@@ -666,9 +717,12 @@ void add_finger(const Summary& summary, Document& document) {
         "If some levels are repeated more often than others, the trials that count are a selection.");
   }
   document.explain(
-      "Answered trials without practice. Force and speed are means over a trial\u2019s strokes; with more than 40 "
-      "trials, a marker is the mean of several trials, with a bar from the smallest to the largest. Friction is lateral "
-      "force divided by normal force, in the scene presented last. 95 % intervals: Student\u2019s t over trials; for a "
+      "Answered trials without practice. Force and speed are means over a trial\u2019s strokes; with more "
+      "than 40 "
+      "trials, a marker is the mean of several trials, with a bar from the smallest to the largest. Friction "
+      "is lateral "
+      "force divided by normal force, in the scene presented last. 95 % intervals: Student\u2019s t over "
+      "trials; for a "
       "single trial, 1.96 standard errors.");
 }
 
@@ -680,8 +734,8 @@ Document document(const Summary& summary) {
   document.title = data.title;
   document.name = data.title + ", " + data.participant;
   document.run_mode = data.run_mode;
-  document.about = "Participant " + Text(data.participant, Look::strong) + ", session " + data.session_id + ", " +
-                   data.status;
+  document.about = "Participant " + Text(data.participant, Look::strong) + ", session " + data.session_id +
+                   ", " + data.status;
   document.facts(data.facts);
   add_meanings(data, document);
   if (judges(data.design)) {

@@ -15,21 +15,24 @@ std::string with_unit(const std::string& name, const std::string& unit) {
 void add_people(const Study& study, Document& document) {
   const auto& n = study.sessions;
   document.heading("Participants");
-  document.say(std::string("Completed sessions count. A session that was not completed and was begun again later does not "
-                           "count. A session that was not completed and not begun again ") +
-               (n.incomplete_count ? "counts" : "does not count") +
-               ", as the protocol decides (incomplete_sessions). Counted: " + std::to_string(n.counted()) + " of " +
-               std::to_string(n.found) + " sessions; begun again later: " + std::to_string(n.superseded) +
-               "; not completed: " + std::to_string(n.incomplete) + ".");
+  document.say(
+      std::string(
+          "Completed sessions count. A session that was not completed and was begun again later does not "
+          "count. A session that was not completed and not begun again ") +
+      (n.incomplete_count ? "counts" : "does not count") +
+      ", as the protocol decides (incomplete_sessions). Counted: " + std::to_string(n.counted()) + " of " +
+      std::to_string(n.found) + " sessions; begun again later: " + std::to_string(n.superseded) +
+      "; not completed: " + std::to_string(n.incomplete) + ".");
   if (study.rules.empty()) {
     document.remark("The protocol states no rules of exclusion, so every participant counts.");
   } else {
     document.say("The protocol excludes participants with:");
     document.parts.push_back(List{{study.rules.begin(), study.rules.end()}});
   }
-  Table table{{"Participant", "Group", "Sessions", "Trials answered", "Correct",
-               Text(core::phrase("report.catch_right"), Look::label), "Timeouts", "Median time (s)", "Excluded"},
-              {}};
+  Table table{
+      {"Participant", "Group", "Sessions", "Trials answered", "Correct",
+       Text(core::phrase("report.catch_right"), Look::label), "Timeouts", "Median time (s)", "Excluded"},
+      {}};
   for (const auto& person : study.persons) {
     std::string why;
     for (const auto& reason : person.excluded) why += (why.empty() ? "" : "; ") + reason;
@@ -51,8 +54,8 @@ void add_group(const GroupFit& group, const Study& study, Document& document) {
                 {{threshold_label(part), estimated(fit.threshold)},
                  {slope_label(fit.options.function, part), estimated(fit.slope)}}};
     if (fit.threshold_sd)
-      table.rows.push_back({with_unit("Standard deviation between participants", part.level_unit),
-                            amount(fit.threshold_sd)});
+      table.rows.push_back(
+          {with_unit("Standard deviation between participants", part.level_unit), amount(fit.threshold_sd)});
     table.rows.push_back({Text(core::phrase("report.lapse"), Look::label) + " (proportion), the same for all",
                           amount(fit.lapse, 2)});
     document.table(std::move(table));
@@ -73,9 +76,12 @@ void add_groups(const Study& study, Document& document) {
   document.figure("participants", shrinkage_figure(study));
   for (const auto& group : study.groups) add_group(group, study, document);
   document.explain(
-      "Partial pooling: across participants, intercept and slope on the function\u2019s axis follow a bivariate normal "
-      "distribution. The fit is maximum likelihood with Laplace\u2019s approximation. 95 % intervals of the group: delta "
-      "method and Student\u2019s t. The intervals of participants include the uncertainty of the distribution.");
+      "Partial pooling: across participants, intercept and slope on the function\u2019s axis follow a "
+      "bivariate normal "
+      "distribution. The fit is maximum likelihood with Laplace\u2019s approximation. 95 % intervals of the "
+      "group: delta "
+      "method and Student\u2019s t. The intervals of participants include the uncertainty of the "
+      "distribution.");
 }
 
 void add_effects(const Study& study, Document& document) {
@@ -88,7 +94,8 @@ void add_effects(const Study& study, Document& document) {
   for (const auto& effect : study.effects) {
     auto& cells = table.rows.emplace_back();
     cells = {with_unit(effect.measure, effect.unit),
-             name_of(effect.second) + " \u2212 " + name_of(effect.first) + (effect.between_groups ? ", groups" : ""),
+             name_of(effect.second) + " \u2212 " + name_of(effect.first) +
+                 (effect.between_groups ? ", groups" : ""),
              count(effect.persons), estimated(effect.difference), amount(effect.standardised, 2)};
     if (!p_values) continue;
     cells.push_back(amount(effect.difference ? effect.difference->p : std::nullopt, 2));
@@ -96,20 +103,26 @@ void add_effects(const Study& study, Document& document) {
   }
   document.table(std::move(table));
   document.explain(
-      "Each participant counts once, with estimates from the participant\u2019s own trials. 95 % intervals of means: "
-      "Student\u2019s t. Effects within participants: Student\u2019s t of the participants\u2019 differences, in standard "
+      "Each participant counts once, with estimates from the participant\u2019s own trials. 95 % intervals "
+      "of means: "
+      "Student\u2019s t. Effects within participants: Student\u2019s t of the participants\u2019 "
+      "differences, in standard "
       "deviations of these differences (d" +
       Text("z", Look::below) +
-      "). Effects between groups: Welch\u2019s t of the difference of the means, in pooled standard deviations (d" +
+      "). Effects between groups: Welch\u2019s t of the difference of the means, in pooled standard "
+      "deviations (d" +
       Text("s", Look::below) +
-      "). The balanced integration score (BIS) is the z score of accuracy minus that of the mean time of right answers; "
+      "). The balanced integration score (BIS) is the z score of accuracy minus that of the mean time of "
+      "right answers; "
       "both standardise over all participants who count and all their conditions. " +
-      (!p_values ? "The intervals are not corrected for the number of comparisons."
-                 : std::string("p values are two-sided, of Student\u2019s or Welch\u2019s t; the last column corrects "
-                               "them by Holm\u2019s method for the number of ") +
-                       (holm == protocol::Holm::all ? "all effects in this table"
-                                                    : "pairs of conditions that a measure compares") +
-                       ". The intervals are not corrected."));
+      (!p_values
+           ? "The intervals are not corrected for the number of comparisons."
+           : std::string(
+                 "p values are two-sided, of Student\u2019s or Welch\u2019s t; the last column corrects "
+                 "them by Holm\u2019s method for the number of ") +
+                 (holm == protocol::Holm::all ? "all effects in this table"
+                                              : "pairs of conditions that a measure compares") +
+                 ". The intervals are not corrected."));
 }
 
 void add_means(const Study& study, Document& document) {

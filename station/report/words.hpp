@@ -9,6 +9,11 @@
 
 namespace turnpoint::report {
 
+/// The name of a condition, or "all trials" if there is only one condition.
+inline std::string name_of(const std::string& condition) {
+  return condition.empty() ? core::text("figure.all_trials", "en") : condition;
+}
+
 /// With a typographic minus sign.
 inline std::string with_minus(std::string number) {
   return number.starts_with('-') ? "\u2212" + number.substr(1) : number;

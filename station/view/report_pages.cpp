@@ -59,7 +59,8 @@ struct Brief {
       else
         name.values = {said(row.front().text)};
       for (; begin < row.size() && row[begin].kind == Cell::Kind::text && !row[begin].brief; ++begin)
-        if (!row[begin].text.runs.empty()) name.values.insert(name.values.end(), {core::plain(", "), said(row[begin].text)});
+        if (!row[begin].text.runs.empty())
+          name.values.insert(name.values.end(), {core::plain(", "), said(row[begin].text)});
       for (std::size_t i = begin; i < row.size(); ++i) {
         if (!row[i].brief) continue;
         auto label = name;

@@ -1,13 +1,14 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "station/core/number.hpp"
 #include "station/report/chart.hpp"
-#include "station/report/figures.hpp"
-#include "station/report/figure_files.hpp"
 #include "station/report/document.hpp"
+#include "station/report/figure_files.hpp"
+#include "station/report/figures.hpp"
 #include "station/report/words.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/diffusion.hpp"
@@ -406,6 +407,18 @@ TEST_CASE("Every figure of a report has a caption that says whose trials it show
     CHECK(figure.caption.find(" trials.") != std::string::npos);
   }
   CHECK(psychometric_figure(summary)->caption.find("95 %") != std::string::npos);
+}
+
+TEST_CASE("A number of a report has the digits that its interval determines, and says what is not determined",
+          "[report]") {
+  using Shown = std::pair<std::string, std::string>;
+  const double endless = std::numeric_limits<double>::infinity();
+  CHECK(in_known_digits({-0.51234}) == Shown("\u22120.512", ""));
+  CHECK(in_known_digits({-0.51234, analysis::Interval{-0.71, -0.31}}) ==
+        Shown("\u22120.512", "[\u22120.710, \u22120.310]"));
+  CHECK(in_known_digits({2, analysis::Interval{1, 3}, 3, true, true}).second == "[\u2264 1.00, \u2265 3.00]");
+  CHECK(in_known_digits({2, analysis::Interval{1, endless}}).second == "[1.00, not determined]");
+  CHECK(in_known_digits({2, analysis::Interval{1, endless}, 3, false, false, true}).second == "[1, \u221e]");
 }
 
 TEST_CASE("A curve ends where its band ends", "[report]") {

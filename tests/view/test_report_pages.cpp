@@ -1,6 +1,7 @@
 // Tests the report of a session on the screen: its tables, its figures, and their language.
 #include "station/report/svg.hpp"
 #include "station/view/live_facts.hpp"
+#include "station/view/report_data.hpp"
 #include "station/view/report_pages.hpp"
 #include "station/view/scene_figures.hpp"
 #include "tests/support/catch.hpp"
@@ -35,6 +36,29 @@ TEST_CASE("the report on the screen has the numbers and figures of the speed-acc
   CHECK_FALSE(value_of(pages, "Proportion correct (0 to 1)").empty());
   CHECK(figure_in(pages, "levels") != nullptr);
   CHECK(core::say(pages.sections.back().heading, "en") == "The station");
+}
+
+TEST_CASE("each number of the report on the screen stands on its page as well", "[operator]") {
+  const TemporaryFolder folder;
+  session::Inputs inputs;
+  const auto stored = session::run(session::prepare(demo_in(folder)), nullptr, inputs);
+  const auto summary = report::summarise(view::report_data(stored.database, stored.session_id));
+  const auto page = report::to_html(summary);
+  int intervals = 0;
+  for (const auto& section : view::report_pages(summary).sections) {
+    CHECK(page.find(">" + report::escaped(core::say(section.heading, "en")) + "</h2>") != std::string::npos);
+    for (const auto& [name, value] : section.facts) {
+      const auto text = core::say(value, "en");
+      const auto at = text.find(" [");
+      INFO(core::say(name, "en") << ": " << text);
+      if (at == std::string::npos) continue;
+      ++intervals;
+      const auto end = text.find(']', at) + 1;
+      CHECK(page.find(text.substr(0, at) + " <span class=\"soft\">" + text.substr(at + 1, end - at - 1) +
+                      "</span>" + text.substr(end)) != std::string::npos);
+    }
+  }
+  CHECK(intervals > 2);
 }
 
 TEST_CASE("tables and figures of the report on the screen are in the language of the operator",

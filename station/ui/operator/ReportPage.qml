@@ -120,9 +120,10 @@ Rectangle {
                     Column {
                         id: section
                         required property var modelData
+                        readonly property Texts words: texts
                         width: sheet.width
                         spacing: look.unit
-                        FactTable { width: parent.width; theme: look; texts: texts; heading: texts.say(section.modelData.heading); facts: section.modelData.facts; labelShare: 0.5 }
+                        FactTable { width: parent.width; theme: look; texts: section.words; heading: section.words.say(section.modelData.heading); facts: section.modelData.facts; labelShare: 0.5 }
                         Repeater {
                             model: section.modelData.statements
                             PlainText {
