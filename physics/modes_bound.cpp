@@ -56,18 +56,16 @@ bool modes_bound_applies(const Surface& surface) {
   return surface.drive != DriveShape::piston || !Dispersion(surface).clamped_bending();
 }
 
-std::unique_ptr<CentreLine> make_coarser_line(const Surface& surface, double f) {
-  // For comparison: the polynomials of `modes` itself have degree 7, or 5 for a thick plate.
-  const bool thick = surface.theory == PlateTheory::mindlin;
-  return make_modal_line(surface, f, Losses::kept, ModalResolution{thick ? 4 : 6, 2.5, thick ? 1 : 2, {}});
-}
-
 std::optional<ModesBound> modes_bound(const Surface& surface, double f, const Edge& edge,
                                       Comparison comparison, const CentreLine* modes) {
+  ModalResolution other;
   const bool finer = comparison == Comparison::finer;
+  // For comparison: the polynomials of `modes` itself have degree 7, or 5 for a thick plate.
+  other.degree = finer ? 8 : surface.theory == PlateTheory::mindlin ? 4 : 6;
+  other.radians = finer ? 2.2 : 2.5;
+  other.spare_functions = finer ? 5 : 2;
   const auto usual = modes ? nullptr : make_modal_line(surface, f, Losses::kept, {});
-  const auto compared = finer ? make_modal_line(surface, f, Losses::kept, ModalResolution{8, 2.2, 5, {}})
-                              : make_coarser_line(surface, f);
+  const auto compared = make_modal_line(surface, f, Losses::kept, other);
   const Line a(modes ? *modes : *usual), b(*compared);
   if (a.peak_m.has_value() != b.peak_m.has_value()) return std::nullopt;
   const double phase = wavenumber_per_m(surface, f) * surface.length_m;

@@ -1,6 +1,5 @@
 #pragma once
 // Bounds the error of `modes` by solving a second time, at another resolution.
-#include <memory>
 #include <optional>
 
 #include "physics/centre_line.hpp"
@@ -20,14 +19,10 @@ struct ModesBound {
 // is driven by a piston, because both solutions have much the same error at the corners.
 bool modes_bound_applies(const Surface& surface);
 
-// Solves for `modes` in half of the time (on a thick plate a quarter). The field differs from that of `modes`
-// by 3e-5 in the median of random membranes, on thick plates by 2e-3 (see planner.cpp for the largest errors).
-std::unique_ptr<CentreLine> make_coarser_line(const Surface& surface, double frequency_Hz);
-
 // Which solution `modes` is compared with.
 enum class Comparison {
   finer,   // takes four times as long as `modes`
-  coarser  // that of make_coarser_line(); its bound is larger
+  coarser  // takes half as long as `modes`; its bound is larger
 };
 
 // Returns several times the difference between `modes` and another solution. On random surfaces, the true

@@ -18,50 +18,47 @@
 namespace turnpoint::physics {
 namespace {
 
-// Safety factor, because two models may differ more between the points at which they are compared, and the
-// number of these points.
-constexpr double between_points = 1.15, compared_per_radian = 3;
-constexpr int fewest_points = 200;
+// safety factor, because models may differ more between the probe points than at them
+constexpr double probe_margin = 1.9;
+constexpr int probes = 160;
 constexpr double unknown = 2, unknown_dB = 120;
 // An edge that friction defines lies between the last maximum and this fraction of it.
 constexpr double faint = 0.02;
-// Error of a solution of `modes` that is assumed before it is solved: without a resonance of a higher mode, what
-// a resonance adds, and the most that it adds. The values are above the largest errors found on random
-// surfaces. The field of a clamped plate's piston jumps at the corners of the drive edge.
-struct Accuracy {
-  double quiet, resonance, most;
-};
-// The errors of |v| with the usual and the coarser resolution, and of the level with the coarser one, which is
-// relative to the motion of the drive edge.
-struct Accuracies {
-  Accuracy usual, coarser, coarser_level;
-};
-constexpr Accuracies membrane_accuracy{{2e-3, 5e-4, 1e-3}, {2e-3, 5e-3, 0.15}, {1e-3, 2e-3, 0.01}},
-    plate_accuracy{{1e-3, 6e-4, 4e-3}, {8e-3, 5e-3, 0.25}, {5e-3, 0, 0}},
-    tense_plate_accuracy{{5e-3, 6e-4, 4e-3}, {0.02, 5e-3, 0.25}, {0.012, 0, 0}},
-    layered_plate_accuracy{{5e-3, 4e-3, 0.15}, {0.02, 8e-3, 0.25}, {0.012, 0, 0}},
-    thick_plate_accuracy{{2e-3, 1e-4, 1e-3}, {0.02, 1e-3, 0.06}, {0.02, 1e-3, 0.06}};
-constexpr double plate_piston_accuracy = 0.15;
-// Plates under tension have boundary layers along their clamped sides. If these are thinner than the half-width
-// at the cut-off divided by this, polynomials across the strip follow them badly.
-constexpr double thin_layers = 8;
+// Error of `modes` that is assumed before it is solved, if no higher mode resonates. The values are above the
+// largest errors found on random surfaces. Plates under tension have thin boundary layers along their clamped
+// sides. The field of a clamped plate's piston jumps at the corners of the drive edge.
+constexpr double membrane_accuracy = 2e-3, plate_accuracy = 1e-3, tense_plate_accuracy = 5e-3,
+                 thick_plate_accuracy = 4e-3, plate_piston_accuracy = 0.15;
+// how much a resonance of a higher mode adds to the assumed error of `modes`
+constexpr double membrane_resonance = 5e-4, plate_resonance = 6e-4;
 // shift of an edge relative to the cut-off half-width, divided by the error of `modes`; larger with a quality
 // factor of the wave below 30, because the field is then less steep at its edges
 constexpr double edge_share = 0.8, lossy_edge_share = 1.2, lossy_below = 30;
 
-// The profile of one model, with the positions of its maximum and edge.
+// The profile of one model: logarithms of |v| at the probe points, and the positions of its maximum and edge.
 struct Probe {
   std::shared_ptr<const CentreLine> line;
+  std::vector<double> ln;
   std::optional<double> peak, edge;
   double ln_peak = 0, ln_drive = 0;
 };
 
-Probe probe(const Edge& edge, std::shared_ptr<const CentreLine> line) {
+std::vector<double> probe_points(const Surface& surface) {
+  std::vector<double> x;
+  for (int i = 0; i <= probes; ++i) x.push_back(surface.length_m * i / probes);
+  return x;
+}
+
+Probe probe(const Surface& surface, const Edge& edge, double f, Model model) {
   Probe p;
-  p.line = std::move(line);
+  p.line = make_centre_line(surface, f, model);
+  std::vector<std::complex<double>> v(probes + 1);
+  p.ln.resize(probes + 1);
   p.peak = p.line->last_peak_m();
   p.ln_drive = p.line->value(0).ln_magnitude();
   p.ln_peak = p.peak ? p.line->value(*p.peak).ln_magnitude() : p.ln_drive;
+  p.line->evaluate(probe_points(surface), 1.0, p.ln_peak, v, p.ln);
+  for (double& one : p.ln) one = std::max(one, -700.0);
   if (edge.kind == Edge::Kind::percent) p.edge = p.line->level_m(edge.level);
   if (edge.kind == Edge::Kind::peak || edge.kind == Edge::Kind::friction) p.edge = p.peak;
   return p;
@@ -73,33 +70,19 @@ struct Difference {
   double amplitude = 0, level_dB = 0, position_m = 0;
 };
 
-Difference compare(const Surface& surface, const PlanRequest& request, double f, const Edge& edge,
-                   const Probe& a, const Probe& b) {
+Difference compare(const Surface& surface, const PlanRequest& request, const Edge& edge, const Probe& a,
+                   const Probe& b) {
   Difference d;
   double worst = 0, most = 0;
   const bool drive = request.normalise != Normalise::peak;
-  const double phase = compared_per_radian * wavenumber_per_m(surface, f) * surface.length_m;
-  const auto points = static_cast<std::size_t>(fewest_points + std::min(1e5, phase));
-  std::vector<double> x(points + 1);
-  for (std::size_t i = 0; i <= points; ++i)
-    x[i] = surface.length_m * static_cast<double>(i) / static_cast<double>(points);
-  // If v(0) is 1, the phase is known too, and the difference is that of complex numbers.
-  const auto profile = [&x, drive](const Probe& one) {
-    std::vector<std::complex<double>> v(x.size());
-    std::vector<double> ln(x.size());
-    const auto at_drive = one.line->value(0).mantissa;
-    const auto turned = drive && at_drive != 0.0 ? at_drive / std::abs(at_drive) : 1.0;
-    one.line->evaluate(x, turned, drive ? one.ln_drive : one.ln_peak, v, ln);
-    for (std::size_t i = 0; i < v.size(); ++i)
-      if (!drive || !(ln[i] < 300)) v[i] = std::exp(std::clamp(ln[i], -700.0, 300.0));
-    return v;
-  };
-  const auto of_a = profile(a), of_b = profile(b);
-  for (std::size_t i = 0; i <= points; ++i) {
-    worst = std::max(worst, std::abs(of_a[i] - of_b[i]));
-    most = std::max(most, std::abs(of_b[i]));
+  const double shift_a = drive ? a.ln_peak - a.ln_drive : 0, shift_b = drive ? b.ln_peak - b.ln_drive : 0;
+  for (std::size_t i = 0; i < a.ln.size(); ++i) {
+    const double va = std::exp(std::min(300.0, a.ln[i] + shift_a)),
+                 vb = std::exp(std::min(300.0, b.ln[i] + shift_b));
+    worst = std::max(worst, std::abs(va - vb));
+    most = std::max(most, vb);
   }
-  d.amplitude = between_points * worst / most;
+  d.amplitude = probe_margin * worst / most;
   d.level_dB = 8.686 * std::abs((a.ln_peak - a.ln_drive) - (b.ln_peak - b.ln_drive));
   // one profile has a last maximum and the other has none: they are normalised differently and cannot be
   // compared
@@ -159,7 +142,7 @@ struct Reference {
 };
 
 Reference reference(const Surface& surface, const Edge& edge, double f) {
-  Probe mode = probe(edge, make_centre_line(surface, f, Model::mode));
+  Probe mode = probe(surface, edge, f, Model::mode);
   const double conditioning = mode.line->drive_conditioning(wavenumber_per_m(surface, f));
   const auto farthest =
       edge.kind == Edge::Kind::friction ? mode.line->level_m(faint).value_or(surface.length_m) : mode.edge;
@@ -190,20 +173,11 @@ double placed_elsewhere_m(const PlanRequest& request, const Reference& reference
                                                                             : 0;
 }
 
-enum class Detail { usual, coarser };
-
-Accuracies accuracies(const Surface& surface, double f) {
-  const Dispersion dispersion(surface);
-  if (!dispersion.clamped_bending()) return membrane_accuracy;
-  if (surface.theory != PlateTheory::kirchhoff) return thick_plate_accuracy;
-  if (!(surface.tension_Pa > 0)) return plate_accuracy;
-  const double layers =
-      dispersion.cut_off_half_width_m(f) * std::sqrt(dispersion.tension_N_per_m / dispersion.stiffness_N_m);
-  return layers > thin_layers ? layered_plate_accuracy : tense_plate_accuracy;
-}
-
-double at_resonance(const Accuracy& accuracy, double resonance) {
-  return accuracy.quiet + std::min(accuracy.most, accuracy.resonance * (resonance - 1));
+double modes_accuracy(const Surface& surface) {
+  if (!Dispersion(surface).clamped_bending()) return membrane_accuracy;
+  if (surface.drive == DriveShape::piston) return plate_piston_accuracy;
+  if (surface.tension_Pa > 0) return tense_plate_accuracy;
+  return surface.theory == PlateTheory::kirchhoff ? plate_accuracy : thick_plate_accuracy;
 }
 
 // Adds the error of curved, simply supported sides, which the two-dimensional field has too.
@@ -215,22 +189,18 @@ void add_sides(RungEstimate& e, const PlanRequest& request, const Reference& ref
   if (reference.edge.kind != Edge::Kind::turning) e.boundary_bound_m += sides.position_m;
 }
 
-// Estimates the error bounds of a solution of `modes` before it is solved. They depend on how much the field
-// is larger than the motion of the drive edge. The first mode tells this, but not on a clamped plate on which
+// Estimates the error bounds of the model `modes` without solving it. They depend on how much the field is
+// larger than the motion of the drive edge. The first mode tells this, but not on a clamped plate on which
 // its error exceeds the field; there nothing can be assumed.
-RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference,
-                            Detail detail = Detail::usual) {
+RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference) {
   RungEstimate e;
   e.cost_s = cost_s(surface, reference.f, Model::modes, request.points);
-  const Accuracies assumed = accuracies(surface, reference.f);
-  const bool coarser = detail == Detail::coarser, plate = Dispersion(surface).clamped_bending();
-  double accuracy = at_resonance(coarser ? assumed.coarser : assumed.usual, reference.bound.resonance);
-  double level = at_resonance(coarser ? assumed.coarser_level : assumed.usual, reference.bound.resonance);
-  if (plate && surface.drive == DriveShape::piston) accuracy = level = plate_piston_accuracy;
+  const double resonance = Dispersion(surface).clamped_bending() ? plate_resonance : membrane_resonance;
+  const double accuracy = modes_accuracy(surface) + resonance * (reference.bound.resonance - 1);
   const bool drive = request.normalise != Normalise::peak;
   e.amplitude_bound = accuracy * (drive ? reference.conditioning : 1);
-  e.level_bound_dB = 20 * std::log10(1 + level * reference.conditioning);
-  if (reference.bound.shape > 1 && plate && modes_bound_applies(surface)) {
+  e.level_bound_dB = 20 * std::log10(1 + accuracy * reference.conditioning);
+  if (reference.bound.shape > 1 && Dispersion(surface).clamped_bending() && modes_bound_applies(surface)) {
     if (drive) e.amplitude_bound += unknown;
     e.level_bound_dB += unknown_dB;
   }
@@ -238,8 +208,7 @@ RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, 
   const double share = lossy ? lossy_edge_share : edge_share;
   e.boundary_bound_m =
       accuracy * share * cut_off_half_width_m(surface, reference.f) + placed_elsewhere_m(request, reference);
-  e.reason = coarser ? "two-dimensional field at a coarser resolution"
-                     : "two-dimensional field at its default resolution";
+  e.reason = "two-dimensional field at its default resolution";
   add_sides(e, request, reference);
   return e;
 }
@@ -287,22 +256,16 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
   return e;
 }
 
-// Computes the error bounds of the model `mode` from a solution of `modes`. The error is at most the difference
-// between the two plus the error of `modes`.
+// Computes the error bounds of the model `mode` by solving for `modes`. The error of |v| is at most the
+// difference between the two plus the error of `modes`.
 RungEstimate compared_mode_estimate(const Surface& surface, const PlanRequest& request,
-                                    const Reference& reference, Detail detail,
-                                    std::shared_ptr<const CentreLine> modes) {
+                                    const Reference& reference) {
   RungEstimate e = profile_estimate(surface, request, reference, Model::mode);
-  const RungEstimate rest = modes_estimate(surface, request, reference, detail);
-  const Difference d = compare(surface, request, reference.f, reference.edge, reference.mode,
-                               probe(reference.edge, std::move(modes)));
-  e.reason = "first transverse mode with loss, compared with a two-dimensional field";
-  e.amplitude_bound = std::min(e.amplitude_bound, rest.amplitude_bound + d.amplitude);
-  e.level_bound_dB = std::min(e.level_bound_dB, rest.level_bound_dB + d.level_dB);
-  // An edge that friction defines may be anywhere between the last maximum and the tip. Where `mode` says
-  // nothing of the field, nothing is assumed of `modes` either.
-  if (reference.edge.kind != Edge::Kind::friction && reference.bound.shape <= 1)
-    e.boundary_bound_m = std::min(e.boundary_bound_m, rest.boundary_bound_m + d.position_m);
+  const RungEstimate modes = modes_estimate(surface, request, reference);
+  const Difference d = compare(surface, request, reference.edge, reference.mode,
+                               probe(surface, reference.edge, reference.f, Model::modes));
+  e.amplitude_bound = std::min(e.amplitude_bound, modes.amplitude_bound + d.amplitude);
+  e.level_bound_dB = std::min(e.level_bound_dB, modes.level_bound_dB + probe_margin * d.level_dB);
   return e;
 }
 
@@ -390,60 +353,9 @@ RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model 
   if (model != Model::mode || !modes_bound_applies(surface) || !Dispersion(surface).clamped_bending())
     return estimate_with(surface, request, references, model);
   RungEstimate all;
-  for (const Reference& one : references)
-    merge(all, compared_mode_estimate(surface, request, one, Detail::usual,
-                                      make_centre_line(surface, one.f, Model::modes)));
+  for (const Reference& one : references) merge(all, compared_mode_estimate(surface, request, one));
   return all;
 }
-
-namespace {
-
-// True if both solutions have the same last maximum. Where it is shallow, a small error makes another one the
-// last.
-bool same_peak(const Surface& surface, const Reference& reference, const CentreLine& line) {
-  constexpr double most_rad = 0.8;
-  const auto peak = line.last_peak_m(), &expected = reference.mode.peak;
-  return peak && expected && !reference.shallow_peak &&
-         std::abs(*peak - *expected) * wavenumber_per_m(surface, reference.f) < most_rad;
-}
-
-// Tries a coarser solution of `modes`, if nothing cheaper than `modes` is inside the tolerance, but the error
-// of this solution is. It takes half of the time. The error of `mode` is known closely once it is solved, so
-// that `mode` may turn out to suffice. Returns the rung that is taken, or nothing. Sets the rung's bounds, and
-// `solved` to the coarser solutions if they are the field.
-std::optional<Model> try_coarser(const Surface& surface, const PlanRequest& request,
-                                 const std::vector<Reference>& references, std::vector<RungEstimate>& rungs,
-                                 SolvedLines& solved) {
-  RungEstimate coarser, mode;
-  coarser.model = Model::modes;
-  mode.model = Model::mode;
-  for (const Reference& one : references)
-    merge(coarser, modes_estimate(surface, request, one, Detail::coarser));
-  if (!inside(coarser, request.tolerance)) return std::nullopt;
-  SolvedLines lines;
-  try {
-    for (const Reference& one : references) {
-      lines.push_back(make_coarser_line(surface, one.f));
-      if (!same_peak(surface, one, *lines.back())) return std::nullopt;
-      merge(mode, compared_mode_estimate(surface, request, one, Detail::coarser, lines.back()));
-    }
-  } catch (const std::domain_error&) {  // the two-dimensional field would take too long
-    return std::nullopt;
-  }
-  const auto put = [&rungs](const RungEstimate& rung) {
-    const auto place = std::ranges::find(rungs, rung.model, &RungEstimate::model);
-    if (place == rungs.end()) return false;
-    *place = rung;
-    return true;
-  };
-  if (put(mode) && inside(mode, request.tolerance)) return Model::mode;
-  if (request.points == 0) return std::nullopt;  // the caller solves for more than the profile
-  put(coarser);
-  solved = std::move(lines);
-  return Model::modes;
-}
-
-}  // namespace
 
 PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {
   check(surface, request);
@@ -458,9 +370,6 @@ PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {
   SolvedLines by_modes;
   auto chosen = std::find_if(rungs.begin(), rungs.end(),
                              [&](const RungEstimate& e) { return inside(e, request.tolerance); });
-  if ((chosen == rungs.end() || chosen->model == Model::modes) && modes_bound_applies(surface))
-    if (const auto taken = try_coarser(surface, request, references, rungs, by_modes))
-      chosen = std::ranges::find(rungs, *taken, &RungEstimate::model);
   if (chosen == rungs.end() && modes_bound_applies(surface)) {
     chosen = std::find_if(rungs.begin(), rungs.end(), [](const auto& e) { return e.model == Model::modes; });
     for (const auto comparison : {Comparison::coarser, Comparison::finer}) {

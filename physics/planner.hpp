@@ -22,7 +22,7 @@ struct Tolerance {
 
 // The error bounds of a model for a set of tones. They are estimated before the model is evaluated, except
 // that estimate() solves for `modes` twice and compares, and for `mode` of a clamped plate compares it with
-// `modes`; choose_model() compares `mode` with a coarser solution of `modes` where this may pay. For membranes and simply supported plates the errors are differences from the two-dimensional
+// `modes`. For membranes and simply supported plates the errors are differences from the two-dimensional
 // field; for clamped plates, from the one-mode equation.
 struct RungEstimate {
   Model model = Model::mode;
@@ -58,8 +58,7 @@ struct PlanChoice {
   std::optional<RungEstimate> cheaper;  // the most exact one of the cheaper models
   std::vector<RungEstimate> considered;
   // The solutions of the model (of `mode`, if the model is `edge`), if the choice has needed them. evaluate()
-  // takes them, so that nothing is solved twice. If the request has points, those of `modes` may be coarser than
-  // by default; `bound` is then that of these solutions.
+  // takes them, so that nothing is solved twice.
   SolvedLines solved;
 };
 
