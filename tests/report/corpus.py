@@ -413,6 +413,9 @@ class Function:
         if 1 in fixed:  # a steep function has a maximum between each pair of levels
             starts = [[u, fixed[1], 0.01, 0.2][:len(self.bounds)] for u in numpy.linspace(self.low, self.low + self.range, 25)]
             starts = sorted(starts, key=lambda start: self.nll(whole(numpy.array(start)[free])))[:5]
+        if 0 in fixed:  # and a threshold at a level may be best with the steepest one
+            more = [[fixed[0], rate, 0.01, 0.2][:len(self.bounds)] for rate in numpy.linspace(*self.bounds[1], 25)]
+            starts += sorted(more, key=lambda start: self.nll(whole(numpy.array(start)[free])))[:3]
         found = [optimize.minimize(lambda part: self.nll(whole(part)), numpy.array(start)[free], method=method,
                                    bounds=[self.bounds[i] for i in free]) for start in starts for method in ("L-BFGS-B", "Nelder-Mead")]
         best = min(found, key=lambda result: result.fun)
