@@ -10,6 +10,7 @@
 #include <QTimer>
 #include <cstdio>
 #include <exception>
+#include <utility>
 
 #include "station/core/records.hpp"
 #include "station/ui/participant/session_bridge.hpp"
@@ -36,6 +37,8 @@ void take_part(ui::SessionBridge& bridge) {
   }
   if (page->kind() != Kind::Stimulus || !page->answers_open()) return;
   if (page->trials_done() >= 1) {
+    static bool stopped = false;  // a second signal would end the process
+    if (std::exchange(stopped, true)) return;
     if (!filling.empty()) SmallDisk::fill(filling);
     return void(::raise(SIGTERM));
   }
