@@ -303,20 +303,19 @@ void note_needless_tolerances(const Protocol& protocol, Check& check) {
     }
   }
   if (scenes.empty()) return;
-  std::vector<std::string> compared;
+  core::Phrase compared{"", "", {}};
   if (boundary_sd_mm > 0)
-    compared.push_back(fmt::format("{} mm for a boundary that is uncertain by {} mm",
-                                   core::number(boundary_mm, 3), core::number(boundary_sd_mm, 2)));
-  if (std::isfinite(level_dB))
-    compared.push_back(fmt::format("{} dB for a level that is uncertain by {} dB", core::number(level_dB, 3),
-                                   core::number(level_sd_dB, 2)));
+    compared.values.push_back(phrase("problem.needless_boundary", {plain(core::number(boundary_mm, 3)),
+                                                                   plain(core::number(boundary_sd_mm, 2))}));
+  if (std::isfinite(level_dB)) {
+    if (!compared.values.empty()) compared.values.push_back(plain(", "));
+    compared.values.push_back(phrase(
+        "problem.needless_level", {plain(core::number(level_dB, 3)), plain(core::number(level_sd_dB, 2))}));
+  }
   check.notes.push_back(
       {{protocol.path, 0, 0},
-       phrase("the model may err far less than the rig's own parameters do (one standard deviation): %1 "
-              "(scene %2)",
-              {plain(fmt::format("{}", fmt::join(compared, ", "))),
-               plain(fmt::format("{}", fmt::join(scenes, ", ")))}),
-       phrase("a larger \"tolerance\" would do, unless only differences between scenes matter")});
+       phrase("problem.needless", {std::move(compared), plain(fmt::format("{}", fmt::join(scenes, ", ")))}),
+       phrase("problem.needless_allowed")});
 }
 
 std::vector<core::Problem> language_notes(const Protocol& protocol) {
