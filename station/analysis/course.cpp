@@ -173,6 +173,7 @@ OutcomeCounts count_outcomes(const std::vector<TrialRecord>& trials) {
     switch (trial.outcome) {
       case Outcome::answered:
         ++counts.answered;
+        counts.unsure += trial.unsure ? 1 : 0;
         break;
       case Outcome::timeout:
         ++counts.timeouts;

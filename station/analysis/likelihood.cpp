@@ -157,12 +157,15 @@ Likelihood::Maximum Likelihood::search() const {
         const Theta share{t, b, side, side};
         for (int i = 0; i < 4; ++i) theta[i] = bounds_.low[i] + share[i] * (bounds_.high[i] - bounds_.low[i]);
         theta = project(theta);
-        starts.push_back({theta, negative_log(theta)});
+        // if a parameter is held, several points of the grid are one
+        if (std::none_of(starts.begin(), starts.end(),
+                         [&](const Maximum& one) { return one.theta == theta; }))
+          starts.push_back({theta, negative_log(theta)});
       }
   std::stable_sort(starts.begin(), starts.end(),
                    [](const Maximum& a, const Maximum& b) { return a.negative_log < b.negative_log; });
   Maximum best = climb(starts[0].theta);
-  for (int i = 1; i < 4; ++i) {
+  for (std::size_t i = 1; i < std::min<std::size_t>(4, starts.size()); ++i) {
     const Maximum other = climb(starts[i].theta);
     if (other.negative_log < best.negative_log) best = other;
   }

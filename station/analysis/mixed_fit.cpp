@@ -42,7 +42,7 @@ Scaled scaled(const std::vector<PersonCounts>& data, const MixedOptions& options
     for (const auto& point : person.counts) {
       if (point.level == kNoise || point.trials == 0) continue;
       axis.x.push_back(axis_position(options.function, options.scale, point.level));
-      axis.trials.push_back(point.trials), axis.positive.push_back(point.positive);
+      axis.trials.push_back(point.trials), axis.positive.push_back(point.sum());
       trials += point.trials;
       n += point.trials, sum += point.trials * axis.x.back();
       squares += point.trials * axis.x.back() * axis.x.back();

@@ -58,10 +58,24 @@ struct Replicator {
 
   /// Returns the maximum of the likelihood with `quantity` fixed at a value. The climb begins at `start`.
   Likelihood::Maximum held(const AxisCounts& of, const Quantity& quantity, double value, Theta start) const {
-    ThetaBounds narrowed = bounds;
-    narrowed.low[quantity.parameter] = narrowed.high[quantity.parameter] = value;
+    const ThetaBounds narrowed = with(quantity, value);
     start[quantity.parameter] = value;
     return likelihood(of, narrowed, quantity.anchor).climb(start);
+  }
+
+  /// The same for the counts of the session, searched for from other starts as well: with the threshold held,
+  /// a steep and a shallow function can each be a maximum.
+  Likelihood::Maximum highest(const Quantity& quantity, double value, const Theta& start) const {
+    const ThetaBounds narrowed = with(quantity, value);
+    const auto near = held(counts, quantity, value, start);
+    const auto other = likelihood(counts, narrowed, quantity.anchor).search();
+    return other.negative_log < near.negative_log ? other : near;
+  }
+
+  ThetaBounds with(const Quantity& quantity, double value) const {
+    ThetaBounds narrowed = bounds;
+    narrowed.low[quantity.parameter] = narrowed.high[quantity.parameter] = value;
+    return narrowed;
   }
 };
 
@@ -96,13 +110,13 @@ Replicator replicator(const PsychometricFit& fit) {
 double profile_end(const Replicator& base, const Quantity& quantity, Theta start, double bound,
                    double best_cost, double critical) {
   double inside = start[quantity.parameter], outside = bound;
-  auto at_bound = base.held(base.counts, quantity, bound, start);
+  auto at_bound = base.highest(quantity, bound, start);
   if (2 * (at_bound.negative_log - best_cost) <= critical) return bound;
   for (int i = 0; i < 40 && std::abs(outside - inside) > 1e-5 * (1 + std::abs(inside)); ++i) {
     // The end of the interval is usually near the estimate and the bound far away. Therefore each of the
     // first three steps cuts off three quarters of the distance.
     const double middle = i < 3 ? inside + (outside - inside) / 4 : (inside + outside) / 2;
-    const auto found = base.held(base.counts, quantity, middle, start);
+    const auto found = base.highest(quantity, middle, start);
     if (2 * (found.negative_log - best_cost) <= critical) {
       inside = middle;
       start = found.theta;

@@ -17,9 +17,9 @@ namespace {
 void check(const std::vector<LevelCount>& data, const FitOptions& options) {
   for (const auto& point : data)
     if (!(std::isfinite(point.level) || point.level == kNoise) || point.trials < 0 || point.positive < 0 ||
-        point.positive > point.trials)
+        point.admitted < 0 || point.sum() > point.trials)
       throw std::invalid_argument(
-          "level " + core::number(point.level) + ": " + std::to_string(point.positive) + " of " +
+          "level " + core::number(point.level) + ": " + core::number(point.sum()) + " of " +
           std::to_string(point.trials) +
           " trials; the level must be finite, and there cannot be more positive answers than trials");
   const auto inside = [](double low, double high, double most) {
@@ -45,6 +45,7 @@ std::vector<LevelCount> merged(const std::vector<LevelCount>& data) {
     entry.level = point.level;
     entry.trials += point.trials;
     entry.positive += point.positive;
+    entry.admitted += point.admitted;
   }
   std::vector<LevelCount> result;
   for (const auto& [level, point] : by_level) result.push_back(point);
@@ -75,10 +76,11 @@ double trend(AxisCounts counts) {
 
 /// Returns the reason why the likelihood has no maximum within the bounds; empty if it has one.
 std::optional<Statement> refusal(const std::vector<LevelCount>& data, const FitOptions& options) {
-  int trials = 0, positive = 0;
+  int trials = 0;
+  double positive = 0;
   for (const auto& point : data) {
     trials += point.trials;
-    positive += point.positive;
+    positive += point.sum();
   }
   const auto levels = static_cast<int>(data.size());
   if (levels > 0 && levels < options.minimum_levels)
@@ -97,7 +99,7 @@ double deviance(const PsychometricFit& fit, const Likelihood& likelihood, const 
                 const AxisCounts& counts) {
   double saturated = 0;
   for (const auto& point : fit.data) {
-    const double k = point.positive, n = point.trials;
+    const double k = point.sum(), n = point.trials;
     if (k > 0) saturated -= k * std::log(k / n);
     if (k < n) saturated -= (n - k) * std::log((n - k) / n);
   }
@@ -163,7 +165,7 @@ AxisCounts axis_counts(const std::vector<LevelCount>& data, Function function, S
   for (const auto& point : data) {
     counts.u.push_back(point.level == kNoise ? kNoise : axis_position(function, scale, point.level));
     counts.trials.push_back(point.trials);
-    counts.positive.push_back(point.positive);
+    counts.positive.push_back(point.sum());
   }
   return counts;
 }
@@ -218,25 +220,31 @@ PsychometricFit fit_psychometric(const std::vector<LevelCount>& data, const FitO
 
 namespace {
 
+/// `positive` says whether an answer was positive; empty if it does not count. Unsure answers count as
+/// `admitted`.
 template <class Positive>
-std::vector<LevelCount> count(const std::vector<TrialRecord>& trials, Positive positive) {
+std::vector<LevelCount> count(const std::vector<TrialRecord>& trials, double admitted, Positive positive) {
   std::vector<LevelCount> result;
   for (const auto& trial : trials) {
     if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered || !trial.level) continue;
     const std::optional<bool> value = positive(trial);
-    if (value) result.push_back({*trial.level, 1, *value ? 1 : 0});
+    if (value)
+      result.push_back({*trial.level, 1, *value ? 1 : 0});
+    else if (trial.unsure && admitted > 0)
+      result.push_back({*trial.level, 1, 0, admitted});
   }
   return merged(result);
 }
 
 }  // namespace
 
-std::vector<LevelCount> count_correct(const std::vector<TrialRecord>& trials) {
-  return count(trials, [](const TrialRecord& trial) { return trial.correct; });
+std::vector<LevelCount> count_correct(const std::vector<TrialRecord>& trials, int alternatives) {
+  return count(trials, 1.0 / std::max(alternatives, 2),
+               [](const TrialRecord& trial) { return trial.correct; });
 }
 
 std::vector<LevelCount> count_choice(const std::vector<TrialRecord>& trials, int positive_choice) {
-  return count(trials, [positive_choice](const TrialRecord& trial) -> std::optional<bool> {
+  return count(trials, 0, [positive_choice](const TrialRecord& trial) -> std::optional<bool> {
     if (!trial.response) return std::nullopt;
     return *trial.response == positive_choice;
   });
@@ -244,11 +252,10 @@ std::vector<LevelCount> count_choice(const std::vector<TrialRecord>& trials, int
 
 bool falls(const std::vector<LevelCount>& counts) {
   double n = 0, k = 0, level = 0;
-  for (const auto& point : counts)
-    n += point.trials, k += point.positive, level += point.trials * point.level;
+  for (const auto& point : counts) n += point.trials, k += point.sum(), level += point.trials * point.level;
   double covariance = 0;
   for (const auto& point : counts)
-    if (n > 0) covariance += (point.positive - point.trials * k / n) * (point.level - level / n);
+    if (n > 0) covariance += (point.sum() - point.trials * k / n) * (point.level - level / n);
   return covariance < 0;
 }
 

@@ -18,6 +18,9 @@ struct LevelCount {
   double level = 0;  ///< kNoise for trials without a signal; their probability is the lower asymptote
   int trials = 0;
   int positive = 0;
+  /// what guesses that were not made would have added to `positive` on average (count_correct())
+  double admitted = 0;
+  double sum() const { return positive + admitted; }
 };
 
 /// How the lower asymptote is determined: fixed (1 / alternatives), fitted within bounds, or tied to the
@@ -125,9 +128,10 @@ PsychometricIntervals bootstrap(const PsychometricFit& fit, const BootstrapOptio
 bool falls(const std::vector<LevelCount>& counts);
 
 /// Counts answers by level. count_correct() uses the answered trials that have a level and a score
-/// (`correct`). count_choice() uses those that have a level and a response, and counts `positive_choice`.
-/// Both leave out practice, catch and warm-up trials.
-std::vector<LevelCount> count_correct(const std::vector<TrialRecord>& trials);
+/// (`correct`), and those in which the participant was unsure, as 1 / alternatives of a right answer: the
+/// mean of the guess that was not made (Kaernbach 2001). count_choice() uses those that have a level and a
+/// response, and counts `positive_choice`. Both leave out practice, catch and warm-up trials.
+std::vector<LevelCount> count_correct(const std::vector<TrialRecord>& trials, int alternatives = 2);
 std::vector<LevelCount> count_choice(const std::vector<TrialRecord>& trials, int positive_choice);
 
 }  // namespace turnpoint::analysis

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <tuple>
 
 #include "station/analysis/course.hpp"
 #include "station/analysis/diffusion.hpp"
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/quantile.hpp"
+#include "station/analysis/student.hpp"
 #include "station/core/draws.hpp"
 #include "station/core/number.hpp"
 
@@ -223,6 +225,19 @@ Group collect(const std::vector<TrialRecord>& trials, const TradeOptions& option
   return group;
 }
 
+/// Computes what the trials of a condition were worth to the participant.
+void add_points(const std::vector<TrialRecord>& trials, InstructionResult& result) {
+  std::vector<double> points, minutes;
+  for (const auto& trial : trials) {
+    if (trial.type != TrialType::experimental || trial.instruction != result.instruction || !trial.points)
+      continue;
+    points.push_back(*trial.points);
+    minutes.push_back(trial.duration_s / 60);
+  }
+  result.points = student_ratio(points, std::vector<double>(points.size(), 1));
+  result.points_per_minute = student_ratio(points, minutes);
+}
+
 /// The boundary in the second half of the blocks minus that in the first half.
 std::optional<Estimate> late_boundary(const Group& group, int stream, const TradeOptions& options) {
   std::vector<DiffusionTrial> halves[2];
@@ -254,6 +269,7 @@ void fill_cells(Group& group, InstructionResult& result, int stream, const Trade
     result.boundary = group.diffusion->boundary;
     result.nondecision_s = group.diffusion->nondecision_s;
     result.contaminants = group.diffusion->contaminants;
+    result.effective_draws = group.diffusion->effective_draws;
     std::vector<double> drifts;
     for (const auto& draw : group.diffusion->draws) drifts.push_back(mean(draw.drift));
     const double middle = quantile(drifts, 0.5);
@@ -394,6 +410,12 @@ void add_differences(const Sessions& sessions, const std::vector<Group>& groups,
              proportion_difference(proportion(first.caf[i].correct, first.caf[i].trials),
                                    proportion(second.caf[i].correct, second.caf[i].trials),
                                    options.confidence)});
+      for (const auto& [measure, unit, value] :
+           {std::tuple{"points a trial", "points", &InstructionResult::points},
+            {"points a minute", "points/min", &InstructionResult::points_per_minute}})
+        if (first.*value && second.*value)
+          trade.differences.push_back({first.instruction, second.instruction, measure, unit,
+                                       difference_of(*(first.*value), *(second.*value))});
     }
 }
 
@@ -408,6 +430,7 @@ Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options)
     groups.push_back(collect(trials, options, entry));
     entry.post_error_s = post_error_slowing(trials, name);
     entry.repetition = repetition(trials, name);
+    add_points(trials, entry);
     fill_cells(groups.back(), entry, static_cast<int>(groups.size()), options);
   }
   std::vector<const DiffusionCheck*> checks;

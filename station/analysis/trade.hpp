@@ -38,6 +38,9 @@ struct InstructionResult {
   /// of the diffusion model (fit_diffusion()), from all answers and those that came too late; no time is
   /// excluded
   std::optional<Estimate> boundary, nondecision_s, contaminants;
+  /// points a trial, and points a minute of trials with their pauses, from all trials that are not void
+  std::optional<Estimate> points, points_per_minute;
+  std::optional<double> effective_draws;  ///< how many independent draws the numbers of the model rest on
   std::optional<Estimate> drift;         ///< mean of the drifts over the condition's difficulties
   std::optional<DiffusionCheck> check;   ///< what the fit predicts, for each of `difficulties`
   std::vector<double> difficulties;      ///< ascending

@@ -29,6 +29,7 @@ struct TrialRecord {
   std::optional<int> right_choice;  ///< index of the correct choice; empty if there is none
   std::optional<int> response;      ///< index of the chosen answer
   std::optional<bool> correct;
+  bool unsure = false;  ///< the participant did not want to guess; then there is no response
   /// whether there was a signal, in a task in which people rate how sure they are of one; otherwise empty
   std::optional<bool> present;
   /// final position of a slider in the unit of the level; `level` is its starting position
@@ -36,6 +37,8 @@ struct TrialRecord {
   std::optional<int> confidence;  ///< from 1 for the least sure; empty if the task does not ask
   Outcome outcome = Outcome::answered;
   std::optional<double> response_time_s;
+  double duration_s = 0;         ///< length of the whole trial, with the pause after it
+  std::optional<double> points;  ///< what the result was worth; empty if the protocol gives no points
   std::optional<double>
       deadline_s;             ///< longest response time that the trial accepted; empty if it had no limit
   double anticipation_s = 0;  ///< an answer before this time is an anticipation

@@ -446,8 +446,11 @@ void show(const Found& found, const Options& options, Context& context) {
   std::vector<std::string> files;
   if (!options.out.empty()) {
     system::make_folder(options.out);
-    files.push_back((std::filesystem::path(options.out) / (found.id + "-power.svg")).string());
-    system::write_file(files.back(), report::render(rehearsal::figure_of(found.power, found.title)));
+    const auto figure = rehearsal::figure_of(found.power, found.title);
+    if (!figure.charts.empty()) {
+      files.push_back((std::filesystem::path(options.out) / (found.id + "-power.svg")).string());
+      system::write_file(files.back(), report::render(figure));
+    }
     const auto path = (std::filesystem::path(options.out) / (found.id + "-power.json")).string();
     system::write_file(path, to_json(found, files).dump(2, ' ', false, kInvalidBytes) + "\n");
     files.push_back(path);

@@ -104,6 +104,8 @@ struct Spec {
   std::string name;
   Kind kind = Kind::constant_stimuli;
   std::string level;   ///< the factor that the procedure sets
+  /// the probability that a guess is right, if the participant may be unsure instead of guessing
+  std::optional<double> guess_rate;
   std::string tracks;  ///< the answer that counts as 1; "" if right answers count as 1
   Scale scale = Scale::linear;
   /// the values that some factors have in all trials of this procedure

@@ -208,6 +208,13 @@ bool two_sided(const Protocol& protocol, const std::string& level) {
   return ends && ends->first < 0 && ends->second > 0;
 }
 
+procedure::Answer learned_from(const procedure::Spec& spec, const std::string& response,
+                               const std::optional<bool>& correct) {
+  if (spec.guess_rate && response == kUnsure) return procedure::Answer::unsure;
+  const bool one = spec.tracks.empty() ? correct.value_or(false) : response == spec.tracks;
+  return one ? procedure::Answer::one : procedure::Answer::zero;
+}
+
 bool explored(const Task& task) {
   return (task.kind == TaskKind::single_interval && task.standard.empty()) ||
          task.kind == TaskKind::adjustment;

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "station/procedure/procedure.hpp"
 #include "station/protocol/protocol.hpp"
 
 namespace turnpoint::protocol {
@@ -24,6 +25,10 @@ std::string scene_of(const Task& task, int number);
 
 /// True if the answers can be right or wrong.
 bool scored(const Task& task);
+
+/// What a procedure learns from an answer: its id, and whether it was right, if it can be.
+procedure::Answer learned_from(const procedure::Spec& spec, const std::string& response,
+                               const std::optional<bool>& correct);
 
 /// True if the participant may answer while the surface moves.
 bool explored(const Task& task);

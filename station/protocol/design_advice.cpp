@@ -185,6 +185,44 @@ void check_counts(AdviceList& advice, const std::variant<Block, Sequence>& part)
         phrase("have the break after fewer trials"));
 }
 
+/// Compares the points of trials with each other: whether it pays to be right, and to answer at all.
+void check_payoff(AdviceList& advice) {
+  const auto& protocol = advice.protocol;
+  if (!protocol.payoff) return;
+  const auto& payoff = *protocol.payoff;
+  const auto of = [&](const Linear& points) { return bounds(points, protocol.factors); };
+  const auto right = of(payoff.right), wrong = of(payoff.wrong), late = of(payoff.late);
+  if (right.second <= wrong.first)
+    advice.add("payoff.right", phrase("a right answer is never worth more than a wrong one"),
+               phrase("more than %1 points", {plain(number(wrong.first))}));
+  const double p = chance(protocol);
+  if (const double guess = p * right.second + (1 - p) * wrong.second; late.first > guess)
+    advice.add(
+        advice.places.has("payoff.late") ? "payoff.late" : "payoff.wrong",
+        phrase("a missed deadline is worth %1 points, more than a guess (%2 on average): it pays not to "
+               "answer",
+               {plain(number(late.first)), plain(number(guess, 3))}),
+        phrase("fewer points for \"late\" than for a guess"));
+  if (payoff.fast && of(payoff.fast->points).second <= 0)
+    advice.add("payoff.fast", phrase("a fast answer is not worth more than a slow one"),
+               phrase("points above 0"));
+}
+
+/// Warns of a block whose procedures may end before its time is up.
+void check_lasting(AdviceList& advice, const std::variant<Block, Sequence>& part) {
+  const auto& block = block_of(part);
+  const auto trials = most_trials(advice.protocol, block);
+  if (!block.lasts_s || !trials) return;
+  constexpr double cue_s = 0.8;  // each trial begins with it
+  const double shortest_s = cue_s + shortest_deadline_s + advice.protocol.timing.iti_s.low;
+  if (*trials * shortest_s < *block.lasts_s)
+    advice.add(key_of(part, "lasts_s"),
+               phrase("the %1 trials of the block can be over before %2 s",
+                      {plain(number(std::floor(*trials))), plain(number(*block.lasts_s))}),
+               phrase("plan %1 trials or more, such as by \"repeats\" of the procedure",
+                      {plain(number(std::ceil(*block.lasts_s / shortest_s)))}));
+}
+
 void check_blocks(AdviceList& advice) {
   const auto& protocol = advice.protocol;
   double practice = 0, rest = 0;
@@ -192,6 +230,7 @@ void check_blocks(AdviceList& advice) {
   for (const auto& part : protocol.plan) {
     const auto& block = block_of(part);
     check_counts(advice, part);
+    check_lasting(advice, part);
     if (block.kind != BlockKind::trials) continue;
     if (advice.places.has(key_of(part, "interleave")) && block.procedures.size() < 2)
       advice.add(key_of(part, "interleave"),
@@ -235,6 +274,9 @@ void check_instructions(AdviceList& advice) {
       advice.add("instructions." + name, phrase("no block shows the instruction \"%1\"", {plain(name)}),
                  phrase("set %1 in a block, or use a sequence over a factor named \"instruction\"",
                         {plain("instruction = \"" + name + "\"")}));
+    if (instruction.goal && instruction.goal->accuracy_above.value_or(1) < chance(advice.protocol))
+      advice.add("instructions." + name + ".goal", phrase("guessing already reaches this goal"),
+                 phrase("above %1", {plain(number(chance(advice.protocol), 3))}));
     const auto& target = instruction.target_accuracy;
     if (target && target->second <= chance(advice.protocol))
       advice.add("instructions." + name + ".target_accuracy",
@@ -266,6 +308,7 @@ void advise_on_plan(AdviceList& advice) {
   check_task(advice);
   check_blocks(advice);
   check_instructions(advice);
+  check_payoff(advice);
   check_analysis(advice);
 }
 

@@ -68,7 +68,9 @@ void advise_on_labels(AdviceList& advice) {
     for (std::size_t i = 0; i < task.choices.size(); ++i)
       for (const auto& [language, label] : task.choices[i].label)
         check_label(advice, "task.choices." + std::to_string(i) + ".label." + language, label,
-                    task.choices.size());
+                    task.choices.size() + (task.unsure.empty() ? 0 : 1));
+  for (const auto& [language, label] : task.unsure)
+    check_label(advice, "task.unsure." + language, label, task.choices.size() + 1);
   if (!task.confidence) return;
   const auto& labels = task.confidence->labels;
   for (std::size_t i = 0; i < labels.size(); ++i)

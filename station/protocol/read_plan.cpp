@@ -106,6 +106,10 @@ void read_block_keys(TableReader& reader, Block& block, const Reading& reading) 
   block.place = reader.place();
   read_what(reader, block, reading);
   block.trials = reader.maybe_integer("trials");
+  block.lasts_s = reader.maybe_number("lasts_s");
+  if (block.lasts_s && !block.level.empty())
+    reader.problem("lasts_s", phrase("a list of fixed levels has its own end"),
+                   phrase("use \"procedures\", or give \"trials\" instead"));
   if (!block.levels.empty() && !block.trials) block.trials = static_cast<int>(block.levels.size());
   const auto feedback = reader.word("feedback");
   block.feedback = feedback == "trial"   ? Feedback::trial

@@ -226,6 +226,21 @@ void add_family(const Value& table, const std::string& name, std::vector<Spec> f
   }
 }
 
+/// Tells the procedure how often a guess is right, if the participant may be unsure instead of guessing.
+void check_unsure(TableReader& reader, Spec& spec, const Reading& reading) {
+  const auto& task = reading.protocol.task;
+  if (task.unsure.empty() || task.choices.empty()) return;
+  spec.guess_rate = 1.0 / static_cast<double>(task.choices.size());
+  if (spec.kind != Kind::constant_stimuli && spec.kind != Kind::weighted_up_down &&
+      spec.kind != Kind::program)
+    reader.problem("kind",
+                   phrase("this kind of procedure does not know what to do with the answer \"unsure\""),
+                   phrase("use \"weighted-up-down\", \"constant-stimuli\" or \"program\""));
+  if (spec.target && *spec.target <= *spec.guess_rate)
+    reader.problem("target", phrase("a guess already reaches this target"),
+                   phrase("above %1", {plain(core::number(*spec.guess_rate, 3))}));
+}
+
 Spec read_procedure(const Value& table, const Reading& reading, core::Findings& findings) {
   TableReader reader(table, titled("procedure", table), findings, keys_of("procedure"));
   Spec spec;
@@ -235,6 +250,7 @@ Spec read_procedure(const Value& table, const Reading& reading, core::Findings& 
   const auto* factor = read_numeric_factor(reader, "level", reading);
   if (factor) spec.level = factor->name;
   procedure::description(spec.kind).read(reader, spec);
+  check_unsure(reader, spec, reading);
   if (procedure::follows_answers(spec)) procedure::read_runs(reader, spec);
   check_max_run(reader, spec, reading);
   check_second(table, spec, reading, findings);

@@ -270,6 +270,23 @@ void read_confidence(TableReader& reader, Task& task, const Reading& reading) {
   task.confidence = std::move(confidence);
 }
 
+/// Reads the answer for those who do not want to guess.
+void read_unsure(TableReader& reader, Task& task, const Reading& reading) {
+  const auto* text = reader.take("unsure");
+  if (!text) return;
+  task.unsure = localised_from(*text, "unsure", reading);
+  for (const auto& choice : task.choices)
+    if (choice.id == kUnsure)
+      reader.problem("choices", phrase("there is already an answer with the id \"%1\"", {plain(kUnsure)}),
+                     phrase("give this choice another id"));
+  if (task.kind == TaskKind::two_interval && !task.correct_answer.empty())
+    reader.problem("unsure", phrase("\"unsure\" needs an interval that is right at every level"),
+                   phrase("name the scene whose interval is right: %1", {plain("correct = \"SCENE\"")}));
+  if (task.confidence)
+    reader.problem("unsure", phrase("a task cannot have both \"unsure\" and \"confidence\""),
+                   phrase("use one of them"));
+}
+
 void read_choices(TableReader& reader, Task& task, const TaskForm& kind, const Reading& reading) {
   task.choices = read_choice_list(reader, "task.choices", reading);
   std::set<std::string> seen;
@@ -418,6 +435,7 @@ void read_task(TableReader& file, Reading& reading) {
   if (!judges(task) && !reader.has("rating") && !reader.has("number")) {
     read_choices(reader, task, *kind, reading);
     read_correct(reader, task, reading);
+    read_unsure(reader, task, reading);
   }
   reader.finish();
 }

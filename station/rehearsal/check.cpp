@@ -1,13 +1,19 @@
 #include "station/rehearsal/check.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 
 #include "station/analysis/proportion.hpp"
 #include "station/core/draws.hpp"
+#include "station/core/number.hpp"
 #include "station/core/texts.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/design_advice.hpp"
@@ -108,7 +114,8 @@ Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::u
                                  start.instruction,
                                  start.practice,
                                  {}});
-      estimate.blocks.back().before = interludes(protocol, order, static_cast<std::size_t>(start.block_index), visit);
+      estimate.blocks.back().before =
+          interludes(protocol, order, static_cast<std::size_t>(start.block_index), visit);
       estimate.trials.push_back(0);
     }
     estimate.trials.back() += static_cast<double>(trials.size());
@@ -277,6 +284,40 @@ std::optional<scene::FingerShares> shares(const protocol::Survey& survey, const 
   return scene::finger_shares(rig, {*least, *most});
 }
 
+/// Says that scenes ask more of the model than the rig's parameters are known for.
+void note_needless_tolerances(const Protocol& protocol, Check& check) {
+  constexpr double far_below = 0.1;
+  const double level_sd_dB = check.finger ? check.finger->level_sd_dB : 0;
+  double boundary_sd_mm = 0, boundary_mm = std::numeric_limits<double>::infinity(), level_dB = boundary_mm;
+  std::set<std::string> scenes;
+  for (const auto& sight : check.survey.sights) {
+    const auto& allowed = protocol.scenes.at(sight.scene).tolerance;
+    if (allowed.boundary_mm && *allowed.boundary_mm < far_below * sight.uncertainty_mm) {
+      boundary_sd_mm = std::max(boundary_sd_mm, sight.uncertainty_mm);
+      boundary_mm = std::min(boundary_mm, *allowed.boundary_mm);
+      scenes.insert(sight.scene);
+    }
+    if (allowed.level_dB && *allowed.level_dB < far_below * level_sd_dB) {
+      level_dB = std::min(level_dB, *allowed.level_dB);
+      scenes.insert(sight.scene);
+    }
+  }
+  if (scenes.empty()) return;
+  core::Phrase compared{"", "", {}};
+  if (boundary_sd_mm > 0)
+    compared.values.push_back(phrase("problem.needless_boundary", {plain(core::number(boundary_mm, 3)),
+                                                                   plain(core::number(boundary_sd_mm, 2))}));
+  if (std::isfinite(level_dB)) {
+    if (!compared.values.empty()) compared.values.push_back(plain(", "));
+    compared.values.push_back(phrase(
+        "problem.needless_level", {plain(core::number(level_dB, 3)), plain(core::number(level_sd_dB, 2))}));
+  }
+  check.notes.push_back(
+      {{protocol.path, 0, 0},
+       phrase("problem.needless", {std::move(compared), plain(fmt::format("{}", fmt::join(scenes, ", ")))}),
+       phrase("problem.needless_allowed")});
+}
+
 std::vector<core::Problem> language_notes(const Protocol& protocol) {
   std::vector<core::Problem> notes;
   for (const auto& language : protocol.languages) {
@@ -419,6 +460,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
     warn_of_runs(protocol->path, check);
     if (check.problems.empty()) {
       if (options.finger) check.finger = shares(check.survey, *rig);
+      note_needless_tolerances(*protocol, check);
       if (options.sound) check.sound = loudest(check.survey, *rig, stop, options.steps);
       // if the work was stopped early, this upper limit may not cover all scenes
       if (finish.stop_requested()) check.sound.reset();

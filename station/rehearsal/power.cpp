@@ -128,14 +128,17 @@ class Truths {
 
   void add_fits(const GeneratingValues& generating, const simulation::Observer& observer,
                 const std::vector<SessionOutcome>& outcomes) {
-    for (const auto& [condition, options] : outcomes.front().fits) {
-      const auto truth = generating.fit(condition, options, observer);
-      const auto source = source_of("fit", condition);
-      const bool two_sided = options.guess == analysis::Guess::tied_to_lapse;
-      add(source, two_sided ? "PSE" : "threshold", truth.threshold);
-      add(source, spread_name(options), truth.slope);
-      add(source, "75 % point", truth.level_75);
-    }
+    std::set<std::string> added;
+    for (const auto& outcome : outcomes)  // of groups, each person has only some of the conditions
+      for (const auto& [condition, options] : outcome.fits) {
+        if (!added.insert(condition).second) continue;
+        const auto truth = generating.fit(condition, options, observer);
+        const auto source = source_of("fit", condition);
+        const bool two_sided = options.guess == analysis::Guess::tied_to_lapse;
+        add(source, two_sided ? "PSE" : "threshold", truth.threshold);
+        add(source, spread_name(options), truth.slope);
+        add(source, "75 % point", truth.level_75);
+      }
   }
 
   void add_differences(const GeneratingValues& generating, const simulation::Observer& observer,

@@ -24,9 +24,9 @@ Points observed(const NamedFit& named, int series, const std::string& name) {
   points.name = name;
   for (const auto& point : named.fit.data) {
     if (point.level == analysis::kNoise) continue;
-    const auto interval = analysis::wilson(point.positive, point.trials);
+    const auto interval = analysis::wilson(point.sum(), point.trials);
     points.x.push_back(point.level);
-    points.y.push_back(static_cast<double>(point.positive) / point.trials);
+    points.y.push_back(point.sum() / point.trials);
     points.low.push_back(interval.low);
     points.high.push_back(interval.high);
     points.weight.push_back(point.trials);
@@ -55,7 +55,7 @@ Line curve(const NamedFit& named, int series, const Axis& axis, const std::strin
 /// Returns the proportion of "yes" answers in trials without a signal.
 std::optional<double> false_alarms(const NamedFit& named) {
   for (const auto& point : named.fit.data)
-    if (point.level == analysis::kNoise) return static_cast<double>(point.positive) / point.trials;
+    if (point.level == analysis::kNoise) return point.sum() / point.trials;
   return std::nullopt;
 }
 
@@ -146,7 +146,7 @@ std::optional<Chart> psychometric_chart(const std::vector<const NamedFit*>& fits
   if (forced)
     for (const auto* named : fits)
       for (const auto& point : named->fit.data)
-        panel.y.low = std::min(panel.y.low, analysis::wilson(point.positive, point.trials).low - 0.03);
+        panel.y.low = std::min(panel.y.low, analysis::wilson(point.sum(), point.trials).low - 0.03);
   for (std::size_t i = 0; i < fits.size(); ++i)
     if (const auto& band = fits[i]->intervals; !band.band_level.empty())
       panel.layers.push_back(Band{band.band_level, band.band_low, band.band_high, static_cast<int>(i), ""});
@@ -427,7 +427,7 @@ std::optional<Figure> quantile_probability_figure(const Summary& summary) {
   std::vector<double> times{0};
   for (const auto& entry : summary.trade.instructions) {
     if (!entry.check) continue;
-    Chart chart{or_default(entry.instruction, "all trials"), {}, {}, {}, false};
+    Chart chart{name_of(entry.instruction), {}, {}, {}, false};
     for (std::size_t q = 0; q < analysis::kPredictedQuantiles.size(); ++q) {
       Points points;
       std::vector<std::pair<double, double>> predicted;
@@ -627,6 +627,74 @@ std::optional<Figure> macro_figure(const Summary& summary) {
   Figure figure;
   figure.title = "Sensitivity against time over the conditions";
   figure.chart_width_px = 560;
+  figure.caption = of_answers(summary) + " " + words("figure.caption_trade");
+  figure.charts.push_back(std::move(chart));
+  return figure;
+}
+
+std::optional<Figure> roc_figure(const Summary& summary) {
+  if (summary.rocs.empty()) return std::nullopt;
+  const Words words(summary.data.language);
+  Figure figure;
+  figure.title = "Receiver operating characteristic";
+  figure.chart_width_px = 420, figure.chart_height_px = 420;
+  figure.caption = words("figure.caption_roc");
+  std::string last;
+  for (const auto& entry : summary.rocs) {
+    if (figure.charts.empty() || entry.condition != last) {
+      figure.charts.push_back(
+          {or_default(entry.condition, words("figure.all_trials")), {"False alarms", 0, 1}, {"Hits", 0, 1}, {}});
+      last = entry.condition;
+    }
+    auto& layers = figure.charts.back().layers;
+    Line line;
+    Points points;
+    line.series = points.series = static_cast<int>(layers.size() / 2);
+    line.name = entry.level ? with_minus(core::number(*entry.level, 4)) : "all";
+    for (const auto& point : entry.roc.points) {
+      line.x.push_back(point.false_alarms), line.y.push_back(point.hits);
+      points.x.push_back(point.false_alarms), points.y.push_back(point.hits);
+    }
+    layers.push_back(std::move(line));
+    layers.push_back(std::move(points));
+  }
+  return figure;
+}
+
+std::optional<Figure> signal_figure(const Summary& summary) {
+  const Words words(summary.data.language);
+  Chart chart{"", {}, {}, {}};
+  std::vector<double> times{0}, heights{0};
+  int series = 0;
+  for (const auto& curve : summary.curves) {
+    Points points;
+    Line line;
+    points.series = line.series = series++;
+    points.name = line.name = or_default(curve.condition, words("figure.all_trials"));
+    for (const auto& point : curve.points) {
+      if (!point.d_prime) continue;
+      points.x.push_back(point.time_s), points.y.push_back(point.d_prime->value);
+      points.low.push_back(point.d_prime->interval.low), points.high.push_back(point.d_prime->interval.high);
+      times.push_back(point.time_s);
+      heights.insert(heights.end(), {point.d_prime->interval.low, point.d_prime->interval.high});
+    }
+    const double last_s = *std::max_element(times.begin(), times.end());
+    if (curve.asymptote && curve.rate_per_s && curve.intercept_s)
+      for (int i = 0; i <= 200; ++i) {
+        line.x.push_back(1.05 * last_s * i / 200);
+        line.y.push_back(analysis::d_prime_at(curve.asymptote->value, curve.rate_per_s->value,
+                                              curve.intercept_s->value, line.x.back()));
+      }
+    if (!line.x.empty()) chart.layers.push_back(line);
+    chart.layers.push_back(points);
+  }
+  if (times.size() < 2) return std::nullopt;
+  chart.x = report::fitted("Time from response zero to the answer (s)", times, 0.06);
+  chart.y = report::fitted(words("figure.sensitivity"), heights, 0.08);
+  Figure figure;
+  figure.title = "Sensitivity over time";
+  figure.chart_width_px = 560;
+  figure.caption = words("figure.caption_signal");
   figure.charts.push_back(std::move(chart));
   return figure;
 }

@@ -2,8 +2,9 @@
 
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/psychometric_posterior.hpp"
-#include "station/report/html.hpp"
+#include "station/report/document.hpp"
 #include "station/report/json_parts.hpp"
+#include "station/report/measures.hpp"
 
 namespace turnpoint::report {
 
@@ -56,7 +57,7 @@ Json fit_json(const NamedFit& named, const SessionData& data) {
   json["levels"] = Json::array();  // a noise trial has no level, so its level is null
   for (const auto& point : named.fit.data)
     json["levels"].push_back(
-        {{"level", value(point.level)}, {"trials", point.trials}, {"positive", point.positive}});
+        {{"level", value(point.level)}, {"trials", point.trials}, {"positive", value(point.sum())}});
   auto statements = named.fit.statements;
   statements.insert(statements.end(), named.intervals.statements.begin(), named.intervals.statements.end());
   json["statements"] = value(statements);
@@ -78,19 +79,9 @@ Json instruction_json(const analysis::InstructionResult& entry) {
   Json json{{"instruction", entry.instruction},     {"presented", entry.presented},
             {"answered", entry.answered},           {"timeouts", entry.timeouts},
             {"anticipations", entry.anticipations}, {"excluded", entry.excluded}};
-  json["proportion_correct"] = value(entry.proportion_correct);
+  for (const auto& row : kSpeedAndAccuracy) json[row.key] = value(entry.*row.value);
   json["deadline_s"] = value(entry.deadline_s);
-  json["median_response_time_s"] = value(entry.median_s);
-  json["d_prime"] = value(entry.d_prime);
-  json["boundary"] = value(entry.boundary);
-  json["nondecision_s"] = value(entry.nondecision_s);
-  json["contaminants"] = value(entry.contaminants);
-  json["drift"] = value(entry.drift);
-  json["lisas_s"] = value(entry.lisas_s);
-  json["inverse_efficiency_s"] = value(entry.inverse_efficiency_s);
-  json["post_error_slowing_s"] = value(entry.post_error_s);
-  json["repetition"] = value(entry.repetition);
-  json["late_boundary"] = value(entry.late_boundary);
+  json["effective_draws"] = value(entry.effective_draws);
   json["deciles_s"] = entry.times ? Json(entry.times->deciles_s) : Json(nullptr);
   json["difficulties"] = Json::array();
   for (const auto& cell : entry.cells)
@@ -140,16 +131,14 @@ Json boundaries_json(const std::vector<analysis::AtBoundary>& values) {
 Json finger_json(const std::optional<analysis::Finger>& finger) {
   if (!finger) return nullptr;
   Json json{{"conditions", Json::array()}};
-  for (const auto& entry : finger->conditions)
-    json["conditions"].push_back({{"condition", entry.condition},
-                                  {"trials", entry.trials},
-                                  {"measured", entry.measured},
-                                  {"felt", entry.felt},
-                                  {"normal_N", value(entry.normal_N)},
-                                  {"speed_mm_s", value(entry.speed_mm_s)},
-                                  {"mu_low", value(entry.mu_low)},
-                                  {"mu_high", value(entry.mu_high)},
-                                  {"felt_minus_planned_mm", value(entry.shift_mm)}});
+  for (const auto& entry : finger->conditions) {
+    Json condition{{"condition", entry.condition},
+                   {"trials", entry.trials},
+                   {"measured", entry.measured},
+                   {"felt", entry.felt}};
+    for (const auto& row : kFinger) condition[row.key] = value(entry.*row.value);
+    json["conditions"].push_back(std::move(condition));
+  }
   json["felt_minus_planned_mm"] = boundaries_json(finger->boundaries.shift_mm);
   json["mu_low"] = boundaries_json(finger->boundaries.mu_low);
   json["mu_high"] = boundaries_json(finger->boundaries.mu_high);
@@ -259,9 +248,13 @@ Json side_json(const analysis::SideSettings& side) {
   return {{"settings", side.settings}, {"mean", value(side.mean)}, {"sd", value(side.sd)}};
 }
 
+std::string in_english(const std::string& text) { return text; }
+std::string in_english(const core::Phrase& phrase) { return core::say(phrase, "en"); }
+
+template <class Fact>
 Json facts_json(const std::vector<Fact>& facts) {
   Json json = Json::object();
-  for (const auto& [name, text] : facts) json[name] = text;
+  for (const auto& [name, text] : facts) json[in_english(name)] = in_english(text);
   return json;
 }
 
@@ -274,10 +267,11 @@ std::string to_json(const Summary& summary) {
             {"level_unit", data.level_unit}, {"choices", data.choices}};
   json["measures"] = meanings_json(data);
   json["facts"] = facts_json(data.facts);
-  json["station"] = facts_json(in_english(data.health));
+  json["station"] = facts_json(data.health);
   const auto& n = summary.outcomes;
-  json["trials"] = {{"presented", n.presented},         {"answered", n.answered}, {"timeouts", n.timeouts},
-                    {"anticipations", n.anticipations}, {"aborted", n.aborted},   {"faults", n.faults}};
+  json["trials"] = {{"presented", n.presented}, {"answered", n.answered},           {"unsure", n.unsure},
+                    {"timeouts", n.timeouts},   {"anticipations", n.anticipations}, {"aborted", n.aborted},
+                    {"faults", n.faults}};
   json["fits"] = Json::array();
   for (const auto& named : summary.fits) json["fits"].push_back(fit_json(named, data));
   for (const auto& settings : summary.settings)

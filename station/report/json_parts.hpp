@@ -6,13 +6,16 @@
 
 #include "station/analysis/estimate.hpp"
 #include "station/analysis/psychometric_fit.hpp"
-#include "station/report/session_data.hpp"
+#include "station/report/study.hpp"
 
 namespace turnpoint::report {
 
 // Functions that convert numbers and intervals to JSON. JSON has no NaN and no infinity; both become null.
 
 using Json = nlohmann::ordered_json;
+
+/// The report of a study. Its tables in CSV are those of this document.
+Json json_of(const Study& study);
 
 inline Json value(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 inline Json value(const std::optional<double>& number) { return number ? value(*number) : Json(nullptr); }

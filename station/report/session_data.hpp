@@ -67,13 +67,6 @@ struct ThresholdCurve {
 using Fact = std::pair<std::string, std::string>;
 /// A fact in a language that is chosen later.
 using SpokenFact = std::pair<core::Phrase, core::Phrase>;
-/// The facts as a file says them.
-inline std::vector<Fact> in_english(const std::vector<SpokenFact>& facts) {
-  std::vector<Fact> said;
-  for (const auto& [name, text] : facts) said.emplace_back(core::say(name, "en"), core::say(text, "en"));
-  return said;
-}
-
 /// The measured vibration of a trial's stimuli, compared with the plan.
 struct MeasuredTrial {
   int trial_index = 0;
@@ -123,6 +116,8 @@ struct SessionData : LevelAnalysis {
   /// false for a single-interval task without right answers, such as ratings; the report then leaves out
   /// accuracy
   bool scored = true;
+  bool unsure = false;     ///< true if the participant may be unsure instead of guessing
+  bool payoff = false;     ///< true if the protocol gives points for answers
   bool signalled = false;  ///< true if a response signal asks for the answers, and so decides when they come
   /// parts of the report that the protocol chooses; if empty, the report has all parts that suit the design
   std::optional<std::vector<std::string>> show;

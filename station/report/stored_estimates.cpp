@@ -9,6 +9,7 @@
 
 #include "station/procedure/continuation.hpp"
 #include "station/procedure/description.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/report/stored_trials.hpp"
@@ -49,9 +50,9 @@ std::optional<std::vector<Learned>> replay(const std::vector<core::TrialRow>& tr
       replayed.record(procedure::Answer::none);
       continue;
     }
-    const bool one = spec.tracks.empty() ? row.correct.value_or(false) : row.response == spec.tracks;
-    replayed.record(one ? procedure::Answer::one : procedure::Answer::zero);
-    learned.push_back({&row, one});
+    const auto answer = protocol::learned_from(spec, row.response.value_or(""), row.correct);
+    replayed.record(answer);
+    learned.push_back({&row, answer == procedure::Answer::one});
   }
   return learned;
 }

@@ -59,6 +59,7 @@ analysis::TrialRecord record_of(const core::TrialRow& row, const core::BlockStar
   record.right_choice = index_of(row.correct_response, protocol);
   record.response = index_of(row.response, protocol);
   record.correct = row.correct;
+  record.unsure = row.response == protocol::kUnsure && !protocol.task.unsure.empty();
   if (protocol.task.present) record.present = protocol::holds(*protocol.task.present, factors_of(row));
   if (row.response &&
       (protocol.task.kind == protocol::TaskKind::adjustment || protocol::judges(protocol.task)))
@@ -67,6 +68,8 @@ analysis::TrialRecord record_of(const core::TrialRow& row, const core::BlockStar
   record.confidence = row.confidence;
   record.outcome = row.outcome;
   record.response_time_s = row.response_time_s;
+  record.duration_s = row.duration_s;
+  record.points = row.points;
   record.deadline_s = row.deadline_s;
   const auto factors = factors_of(row);
   record.anticipation_s = protocol::evaluate(protocol.timing.anticipation_s, factors);
@@ -268,6 +271,8 @@ void add_trials(const std::vector<core::BlockRecord>& blocks, const protocol::Pr
   data.scored = protocol::scored(protocol.task);
   data.alternatives = std::max(2, static_cast<int>(protocol.task.choices.size()));
   data.deciding = deciding_in(protocol.task.kind);
+  data.unsure = !protocol.task.unsure.empty();
+  data.payoff = protocol.payoff.has_value();
   data.signalled = protocol.timing.signal.has_value();
   for (const auto& choice : protocol.task.choices) data.choices.push_back(choice.id);
   data.show = protocol.analysis.show;

@@ -137,6 +137,8 @@ void add_measures(const Summary& summary, StudyPerson& person) {
     measures.add(entry.instruction, "drift", "s = 0.1", entry.drift);
     measures.add(entry.instruction, "LISAS", "s", entry.lisas_s);
     measures.add(entry.instruction, "inverse efficiency", "s", entry.inverse_efficiency_s);
+    measures.add(entry.instruction, "points a trial", "points", entry.points);
+    measures.add(entry.instruction, "points a minute", "points/min", entry.points_per_minute);
     if (data.scored) measures.add(entry.instruction, "post-error slowing", "s", entry.post_error_s);
     if (data.scored) measures.add(entry.instruction, "repetition of answers", "", entry.repetition);
     measures.add(entry.instruction, "boundary, late minus early in a block", "s = 0.1", entry.late_boundary);
@@ -204,7 +206,7 @@ double known_guess(const NamedFit& named) {
   if (named.fit.options.guess == analysis::Guess::fixed) return named.fit.options.guess_value;
   if (named.fit.options.guess == analysis::Guess::tied_to_lapse) return 0;
   for (const auto& point : named.fit.data)
-    if (point.level == analysis::kNoise) return (point.positive + 0.5) / (point.trials + 1.0);
+    if (point.level == analysis::kNoise) return (point.sum() + 0.5) / (point.trials + 1.0);
   return named.fit.parameters ? named.fit.parameters->guess : 0;
 }
 
@@ -342,6 +344,8 @@ void finish_study(Study& study) {
   std::stable_sort(measures.begin(), measures.end(),
                    [&place](const PersonMeasure& a, const PersonMeasure& b) { return place(a) < place(b); });
   study.means = analysis::group_means(measures);
+  if (study.means.empty())
+    study.statements.push_back({"no-measures", core::phrase("statement.no_measures")});
   const auto& groups = study.groups_of_conditions;
   std::erase_if(measures, [](const PersonMeasure& one) {  // where figures put their points; nothing to compare
     return one.measure.starts_with(kBinTime) || one.measure.starts_with(kLagTime);

@@ -102,8 +102,7 @@ std::vector<std::string> rules_in_words(const protocol::Exclusion& rules);
 /// excluded.
 void finish_study(Study& study);
 
-/// Returns the report as one self-contained page, or as one JSON document without NaN.
-std::string to_html(const Study& study);
+/// Returns the report as one JSON document without NaN.
 std::string to_json(const Study& study);
 
 std::optional<Figure> group_curve_figure(const Study& study);
@@ -115,7 +114,7 @@ std::optional<Figure> group_trade_figure(const Study& study);
 std::optional<Figure> group_course_figure(const Study& study);
 
 /// A table that becomes a CSV file with one header row.
-struct Table {
+struct CsvTable {
   std::string name;  ///< name of the CSV file
   std::string csv;
 };
@@ -125,7 +124,7 @@ std::string csv_number(double value);
 std::string csv_number(const std::optional<double>& value);
 /// Tidy tables for other programs: answers.csv (one row for each participant, condition and level),
 /// measures.csv, effects.csv, estimates.csv (the procedures' own estimates), participants.csv and groups.csv.
-std::vector<Table> study_tables(const Study& study);
+std::vector<CsvTable> study_tables(const Study& study);
 /// The header and the rows of trials.csv: one row for each experimental trial of a participant.
 std::string trial_table_header();
 std::string trial_table_rows(const StudyPerson& person, const SessionData& data);

@@ -53,6 +53,18 @@ Json person_json(const StudyPerson& person) {
   return json;
 }
 
+const char* function_name(core::Function function) {
+  switch (function) {
+    case core::Function::weibull:
+      return "weibull";
+    case core::Function::normal:
+      return "normal";
+    case core::Function::logistic:
+      break;
+  }
+  return "logistic";
+}
+
 Json group_json(const GroupFit& group) {
   Json json{{"condition", group.condition}, {"positive", group.positive}, {"fit", nullptr}};
   auto statements = group.result.statements;
@@ -65,7 +77,12 @@ Json group_json(const GroupFit& group) {
                          {"threshold", value(person.threshold)},
                          {"slope", person.threshold ? value(person.parameters.slope) : Json(nullptr)},
                          {"shrinkage", value(person.shrinkage)}});
-    json["fit"] = {{"threshold", value(fit->threshold)},
+    double guess = 0;
+    for (const auto& person : fit->persons)
+      guess += person.parameters.guess / static_cast<double>(fit->persons.size());
+    json["fit"] = {{"function", function_name(fit->options.function)},
+                   {"guess", value(guess)},
+                   {"threshold", value(fit->threshold)},
                    {"slope", value(fit->slope)},
                    {"threshold_sd", value(fit->threshold_sd)},
                    {"lapse", value(fit->lapse)},
@@ -85,7 +102,7 @@ Json group_json(const GroupFit& group) {
 
 }  // namespace
 
-std::string to_json(const Study& study) {
+Json json_of(const Study& study) {
   Json json{{"title", study.settings.title}, {"run_mode", study.settings.run_mode}};
   for (const auto& [name, text] : study.facts) json["facts"][name] = text;
   json["measures"] = meanings_json(study.settings);
@@ -121,7 +138,11 @@ std::string to_json(const Study& study) {
                                {"corrected_p", value(effect.corrected_p)},
                                {"between_groups", effect.between_groups}});
   json["statements"] = value(study.statements);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+  return json;
+}
+
+std::string to_json(const Study& study) {
+  return json_of(study).dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace turnpoint::report

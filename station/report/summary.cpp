@@ -61,7 +61,7 @@ NamedFit fit_of(const SessionData& data, const std::string& name, const std::vec
   result.name = name;
   std::vector<analysis::LevelCount> counts;
   if (data.design == Design::forced_choice) {
-    counts = analysis::count_correct(trials);
+    counts = analysis::count_correct(trials, data.alternatives);
     result.positive = "correct";
   } else {
     const bool noise = has_noise(data.design);
@@ -93,6 +93,7 @@ void hide(const SessionData& data, analysis::Trade& trade) {
   for (auto& entry : trade.instructions) {
     if (!shows(data, "ez")) {
       entry.boundary.reset(), entry.nondecision_s.reset(), entry.contaminants.reset(), entry.drift.reset();
+      entry.effective_draws.reset();
       entry.check.reset();
       for (auto& cell : entry.cells) cell.drift.reset();
       std::erase_if(entry.statements, [](const auto& said) { return said.code.starts_with("diffusion-"); });
@@ -233,9 +234,9 @@ std::vector<NamedFit> fits_of(const SessionData& data) {
       data.design == Design::forced_choice || data.design == Design::two_sided || has_noise(data.design);
   if (!data.parts.empty() || !fitted || data.thresholds_differ) return fits;
   const auto instructions = analysis::conditions_of(data.trials, data.conditions);
-  if (instructions.size() < 2)
-    return {
-        fit_of(data, instructions.empty() || data.name.empty() ? "" : instructions.front(), data.trials, 0)};
+  // A participant of a group has one of several conditions, which keeps its name.
+  const bool one = data.name.empty() && data.conditions.size() < 2 && instructions.size() < 2;
+  if (one || instructions.empty()) return {fit_of(data, "", data.trials, 0)};
   for (const auto& instruction : instructions) {
     std::vector<TrialRecord> part;
     std::copy_if(data.trials.begin(), data.trials.end(), std::back_inserter(part),
@@ -300,7 +301,7 @@ core::Phrase describe_intervals(const NamedFit& named, const SessionData& data) 
 bool shows(const SessionData& data, const std::string& part) {
   if (data.show) return std::find(data.show->begin(), data.show->end(), part) != data.show->end();
   if (part == "response-signal") return true;
-  if (part == "ez") return data.choices.size() <= 2 && !data.signalled;
+  if (part == "ez") return data.choices.size() <= 2 && !data.signalled && !data.unsure;
   return part != "dprime" || data.design == Design::yes_no || data.design == Design::ratings ||
          !data.deciding.empty();
 }

@@ -9,13 +9,22 @@
 
 namespace turnpoint::report {
 
+/// The name of a condition, or "all trials" if there is only one condition.
+inline std::string name_of(const std::string& condition) {
+  return condition.empty() ? core::text("figure.all_trials", "en") : condition;
+}
+
+/// With a typographic minus sign.
+inline std::string with_minus(std::string number) {
+  return number.starts_with('-') ? "\u2212" + number.substr(1) : number;
+}
+
 /// Formats an estimate with the digits that its interval justifies, as tables show it, and with a typographic minus
 /// sign. Without an interval it has three digits.
 inline std::string in_digits(double value, const analysis::Interval* interval) {
-  auto text = interval == nullptr
-                  ? core::number(value, 3)
-                  : core::estimated(value, core::uncertainty(value, interval->low, interval->high));
-  return text.starts_with('-') ? "\u2212" + text.substr(1) : text;
+  return with_minus(interval == nullptr
+                        ? core::number(value, 3)
+                        : core::estimated(value, core::uncertainty(value, interval->low, interval->high)));
 }
 
 /// Says the words of figures and tables in one language.

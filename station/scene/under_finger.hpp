@@ -35,6 +35,8 @@ UnderFinger finger_figures(const physics::Surface& surface, const physics::Frict
 /// tone's last maximum along the surface. The two values are the smallest and the largest over the tones.
 struct FingerShares {
   double least = 1, most = 0;
+  /// the larger standard deviation of the level there, from the rig's uncertain parameters; 0 if none has one
+  double level_sd_dB = 0;
 };
 
 /// Returns the fractions of the displacement that remain under a finger, for tones of these frequencies;

@@ -31,11 +31,12 @@ bool answers_item(const protocol::Item& item, const Input& input) {
 }  // namespace
 
 Interludes::Interludes(const Setup& setup, const Pages& pages, const trial::Director& director,
-                       OperatorGate& gate, Stage& stage, SimulatedParticipant* participant,
-                       store::SessionLog& log, Player player)
+                       const Scores& scores, OperatorGate& gate, Stage& stage,
+                       SimulatedParticipant* participant, store::SessionLog& log, Player player)
     : setup_(setup),
       pages_(pages),
       director_(director),
+      scores_(scores),
       gate_(gate),
       stage_(stage),
       participant_(participant),
@@ -49,22 +50,6 @@ void Interludes::restore(const Earlier& earlier) {
     standing_.insert(standing_.end(), event->answers.begin(), event->answers.end());
   for (const auto& event : earlier.events)
     if (event.kind == core::kDoneEvent) done_.insert(event.value);
-  for (const auto& block : earlier.blocks)
-    for (const auto& trial : block.trials)
-      score(block.start.block_index, block.start.attempt, block.start.name, trial);
-}
-
-void Interludes::score(int block_index, int attempt, const std::string& block, const core::TrialRow& trial) {
-  const bool missed = trial.outcome == core::Outcome::timeout || trial.outcome == core::Outcome::anticipation;
-  if (trial.type == core::TrialType::warmup ||
-      !(missed ? trial.correct_response.has_value() : trial.correct.has_value()))
-    return;
-  auto& score = scores_[block_index];
-  if (score.attempt != attempt) score = {};
-  score.block = block;
-  score.attempt = attempt;
-  ++score.trials;
-  score.right += !missed && *trial.correct ? 1 : 0;
 }
 
 protocol::Answers Interludes::answers() const {
@@ -74,13 +59,7 @@ protocol::Answers Interludes::answers() const {
       for (const auto& item : interlude.items)
         if (interlude.name == row.questionnaire && item.id == row.item)
           all[interlude.name + "." + item.id] = protocol::answer_value(item, row.answer);
-  std::map<std::string, std::pair<int, int>> sums;
-  for (const auto& [index, score] : scores_) {
-    auto& [right, trials] = sums[score.block];
-    right += score.right, trials += score.trials;
-  }
-  for (const auto& [block, sum] : sums)
-    all[block + ".accuracy"] = static_cast<double>(sum.first) / sum.second;
+  for (const auto& [block, accuracy] : scores_.accuracies()) all[block + ".accuracy"] = accuracy;
   return all;
 }
 

@@ -24,8 +24,9 @@ std::optional<int> answer_of(const std::string& button, const protocol::Task& ta
   const auto& choices = task.choices;
   for (std::size_t i = 0; i < choices.size(); ++i)
     if (choices[i].id == button) return static_cast<int>(i);
+  const auto answers = static_cast<int>(choices.size()) + (task.unsure.empty() ? 0 : 1);
   const int place = button == "left" ? 0 : button == "right" ? 1 : button == "third" ? 2 : -1;
-  return place >= 0 && place < static_cast<int>(choices.size()) ? std::optional(place) : std::nullopt;
+  return place >= 0 && place < answers ? std::optional(place) : std::nullopt;
 }
 
 }  // namespace

@@ -24,7 +24,9 @@ using core::FaultKind;
 
 /// The content of the participant's screen. The session decides what it contains; a display only draws it.
 enum class PageKind {
-  /// the block's text or its speed or accuracy instruction, and a Continue button
+  /// the block's text or its speed or accuracy instruction, and a Continue button; or after the block what
+  /// was
+  /// achieved in it
   instructions,
   cue,  ///< get ready: shows where to slide the finger, and the mark of the question
   /// free exploration, or interval number `interval` of `intervals`; answers are accepted if `answers_open`

@@ -1,23 +1,18 @@
 #include "station/session/pages.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <map>
 
 #include "station/core/number.hpp"
 #include "station/core/texts.hpp"
+#include "station/procedure/procedure.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/interludes.hpp"
 #include "station/scene/planner.hpp"
 
 namespace turnpoint::session {
-
-core::Phrase parameter_name(const std::string& parameter) {
-  static const std::map<std::string, const char*> known{
-      {"threshold", "report.threshold"}, {"pse", "report.pse"},     {"slope", "report.slope"},
-      {"spread", "report.spread"},       {"lapse", "report.lapse"}, {"criterion", "report.criterion"},
-      {"gradient", "report.gradient"},   {"floor", "report.floor"}};
-  const auto found = known.find(parameter);
-  return found == known.end() ? core::plain(parameter) : core::Phrase{found->second, "", {}};
-}
 
 namespace {
 
@@ -66,6 +61,26 @@ std::vector<std::string> interval_names(protocol::TaskKind kind) {
   return {};
 }
 
+/// Keeps the order of a number's parts in a text that is written from right to left.
+std::string isolated(const std::string& number) { return "\u2068" + number + "\u2069"; }
+
+/// What points are worth, as pages write it.
+std::string amount(double points, const protocol::Payoff& payoff) {
+  const auto number = fmt::format("{:.{}f}", std::fabs(points * payoff.worth), payoff.decimals);
+  const bool negative = points < 0 && number.find_first_not_of("0.") != std::string::npos;
+  return (negative ? "\u2212" : "") + number;
+}
+
+std::string in_words(const protocol::Goal& goal, const std::string& language) {
+  std::string words;
+  const auto add = [&](const char* key, const std::string& value) {
+    words += (words.empty() ? "" : "\n") + core::say(core::phrase(key, {core::plain(value)}), language);
+  };
+  if (goal.accuracy_above) add("goal_right", core::number(100 * *goal.accuracy_above, 4));
+  if (goal.median_time_below_s) add("goal_time", core::number(*goal.median_time_below_s, 4));
+  return words;
+}
+
 }  // namespace
 
 Pages::Pages(const Setup& setup) : setup_(setup) {}
@@ -108,6 +123,54 @@ Page Pages::instructions(const protocol::Block& block, const trial::Director& di
   }
   const auto question = text(setup_.protocol.task.question);
   page.text += (page.text.empty() ? "" : "\n\n") + question;
+  if (const auto* goal = goal_of(block)) page.text += "\n\n" + in_words(*goal, setup_.language);
+  return page;
+}
+
+/// The goal of a block; null if it has none.
+const protocol::Goal* Pages::goal_of(const protocol::Block& block) const {
+  const auto found = setup_.protocol.instructions.find(instruction_of(block));
+  return found != setup_.protocol.instructions.end() && found->second.goal ? &*found->second.goal : nullptr;
+}
+
+std::string Pages::score_in_words(double points) const {
+  const auto& payoff = *setup_.protocol.payoff;
+  const auto worth = core::plain(amount(points, payoff));
+  if (payoff.text.empty()) return core::say(core::phrase("points", {worth}), setup_.language);
+  auto words = text(payoff.text);
+  words.replace(words.find("%1"), 2, worth.words);
+  return words;
+}
+
+void Pages::add_points(Page& page, double points, std::optional<double> score) const {
+  page.text += "  " + isolated(std::string(points > 0 ? "+" : "") + amount(points, *setup_.protocol.payoff));
+  if (score) page.text += "\n" + score_in_words(*score);
+}
+
+std::optional<Page> Pages::block_over(const protocol::Block& block, const BlockScore& score, double points,
+                                      const trial::Director& director) const {
+  const auto* goal = goal_of(block);
+  if (block.kind != protocol::BlockKind::trials || score.trials == 0 ||
+      (goal == nullptr && block.feedback != protocol::Feedback::block))
+    return std::nullopt;
+  auto page = blank(PageKind::instructions, &block, &director);
+  page.title = core::text("block_over", setup_.language);
+  page.instruction.clear();
+  page.length_mm = 0;  // the page shows no surface
+  const auto accuracy = score.accuracy(), time_s = score.median_time_s();
+  const auto line = [&](const char* key, std::vector<core::Phrase> values = {}) {
+    page.text +=
+        (page.text.empty() ? "" : "\n") + core::say(core::phrase(key, std::move(values)), setup_.language);
+  };
+  line("block_right", {core::plain(core::number(std::round(100 * *accuracy)))});
+  if (time_s) line("block_time", {core::plain(fmt::format("{:.2f}", *time_s))});
+  if (goal != nullptr) {
+    const bool met = (!goal->accuracy_above || *accuracy > *goal->accuracy_above) &&
+                     (!goal->median_time_below_s || (time_s && *time_s < *goal->median_time_below_s));
+    page.text += "\n" + in_words(*goal, setup_.language);
+    line(met ? "goal_met" : "goal_missed");
+  }
+  if (setup_.protocol.payoff && !block.practice) page.text += "\n" + score_in_words(points);
   return page;
 }
 
@@ -132,6 +195,7 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
   page.answers_open = phase == Phase::response || (phase == Phase::stimulus && explored);
   for (const auto& choice : task.choices)
     page.answers.push_back({choice.id, task.rating ? choice.id : text(choice.label)});
+  if (!task.unsure.empty()) page.answers.push_back({protocol::kUnsure, text(task.unsure)});
   for (const auto& anchor : task.anchors)
     page.answers.at(static_cast<std::size_t>(anchor.at) - 1).caption = text(anchor.text);
   if (task.value && page.answers_open) add_value(page, *task.value);
@@ -256,6 +320,10 @@ Page Pages::end(const Summary& summary, const trial::Director& director) const {
   page.resumable = summary.status == core::SessionStatus::interrupted;
   // at the end the exact total is known; with adaptive procedures it was an estimate before
   if (whole) page.trials_total = page.trials_done;
+  if (summary.points) {
+    page.text = core::text(page.resumable ? "stopped_text" : "thanks_text", setup_.language) + "\n\n" +
+                score_in_words(*summary.points);
+  }
   const auto add = [&page](const char* key, const std::string& value) {
     page.summary.push_back({{key, "", {}}, value});
   };
@@ -264,8 +332,9 @@ Page Pages::end(const Summary& summary, const trial::Director& director) const {
   add("report.too_early", std::to_string(summary.anticipations));
   add("report.void", std::to_string(summary.voided));
   if (summary.accuracy) add("report.right", core::number(100 * *summary.accuracy, 3) + " %");
+  if (summary.points) add("report.score", core::number(*summary.points, 6));
   for (const auto& e : summary.estimates)
-    page.summary.push_back({{"", e.procedure + ", ", {parameter_name(e.parameter)}}, in_words(e)});
+    page.summary.push_back({{"", e.procedure + ", ", {procedure::parameter_name(e.parameter)}}, in_words(e)});
   for (const auto& end : summary.early_ends) add("report.ended_early", core::say(end, setup_.language));
   return page;
 }

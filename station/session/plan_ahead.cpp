@@ -129,8 +129,10 @@ PlanAhead::Planned PlanAhead::plan(const trial::TrialSpec& trial, double drift) 
       const double rove_dB = is_buzz ? 0 : trial.rove_dB[i];
       scenes.push_back(planner_.plan(protocol::resolve(protocol_, name, trial.factors, rove_dB)));
     }
-    for (auto& made : scenes)
+    for (auto& made : scenes) {
+      planner_.add_level_uncertainty(made);
       for (auto& tone : made.tones) tone.frequency_Hz *= 1 + drift;
+    }
   }
   planned.bursts = bursts_of(trial, planned.plans);
   return planned;
@@ -148,6 +150,7 @@ scene::DrivePlan PlanAhead::plan_strokes(const trial::TrialSpec& trial) {
   const double reference_m =
       scene::mean_displacement_m(planner_, plan, {1e-3 * strokes.from_mm, 1e-3 * strokes.to_mm});
   auto made = scene::scaled(planner_, plan, 1e-6 * *trial.level / reference_m);
+  planner_.add_level_uncertainty(made);
   scene::refuse_beyond_limits(rig_, made);
   return made;
 }

@@ -79,6 +79,8 @@ void replay(trial::Director& director, const core::TrialRow& trial, const protoc
   if (trial.response)
     for (std::size_t i = 0; i < protocol.task.choices.size(); ++i)
       if (protocol.task.choices[i].id == *trial.response) end.response = static_cast<int>(i);
+  if (trial.response == protocol::kUnsure && !protocol.task.unsure.empty())
+    end.response = static_cast<int>(protocol.task.choices.size());
   if ((spec->slider || protocol.task.value) && trial.response) {
     const auto value = core::read_number(*trial.response);
     if (!value) mismatch("resume.no_number", {plain(*trial.response)});
@@ -87,6 +89,7 @@ void replay(trial::Director& director, const core::TrialRow& trial, const protoc
   }
   director.record(end);
   if (director.state_hash() != trial.state_hash) mismatch("resume.state");
+  director.spend(trial.duration_s);
 }
 
 /// Checks that the simulated observer gives the stored answer, because a session must not mix
@@ -100,9 +103,11 @@ void check_observer(const Setup& setup, const simulation::Respondent& observer,
     return;
   const auto reply = observer.answer(trial::question_of(spec, setup.protocol, stored.session.start.seed));
   const auto& choices = setup.protocol.task.choices;
-  const auto answer = reply.value    ? std::optional(core::exact(*reply.value))
-                      : reply.choice ? std::optional(choices[static_cast<std::size_t>(*reply.choice)].id)
-                                     : std::nullopt;
+  const auto answer = reply.value     ? std::optional(core::exact(*reply.value))
+                      : !reply.choice ? std::nullopt
+                      : *reply.choice < static_cast<int>(choices.size())
+                          ? std::optional(choices[static_cast<std::size_t>(*reply.choice)].id)
+                          : std::optional<std::string>(protocol::kUnsure);
   if (answer == trial.response && reply.confidence == trial.confidence &&
       std::fabs(reply.response_time_s - *trial.response_time_s) < tolerance_s)
     return;

@@ -113,6 +113,7 @@ void add_scene(core::TrialRow& row, const scene::DrivePlan& plan, const Placed& 
     tone.model = physics::name(plan.model);
     tone.error_bound_mm = 1e3 * plan.error_bound_m;
     tone.uncertainty_mm = 1e3 * plan.uncertainty_m;
+    tone.level_uncertainty_dB = plan.tones[t].level_sd_dB;
     tone.reason = plan.reason;
     tone.onset_frame = placed.onset_frame;
     tone.length_frames = placed.length_frames;

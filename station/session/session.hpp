@@ -72,6 +72,7 @@ struct Summary {
   std::uint64_t seed = 0;
   int blocks = 0, trials = 0, answered = 0, timeouts = 0, anticipations = 0, voided = 0;
   std::optional<double> accuracy;  ///< proportion correct of scored, answered, experimental trials
+  std::optional<double> points;    ///< the participant's score; empty if the protocol gives no points
   double duration_s = 0;           ///< duration of the session on its own clock
   int xruns = 0;
   /// number of trigger codes that were sent; of codes that were sent but not found in the captured signal;

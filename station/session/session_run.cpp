@@ -44,13 +44,14 @@ SessionRun::SessionRun(const Setup& setup, trial::Director director, store::Sess
       director_(std::move(director)),
       pages_(setup),
       gate_(setup, pages_, director_, *stage_, log_, display),
-      interludes_(setup, pages_, director_, gate_, *stage_, participant, log_,
+      interludes_(setup, pages_, director_, scores_, gate_, *stage_, participant, log_,
                   [this](const protocol::Example& example, Page page) {
                     return play_example(example, std::move(page));
                   }),
       drift_(setup, *stage_, log_),
       guide_(setup.protocol.sensing) {
   interludes_.restore(earlier);
+  scores_.add(earlier.blocks);
   summary_.session_id = log_.session().session_id;
   summary_.participant = setup.participant;
   summary_.protocol_id = setup.protocol.id;
@@ -126,6 +127,9 @@ Flow SessionRun::leave_block() {
   }
   if (director_.block()->kind == protocol::BlockKind::friction_table && finish_friction_table() == Flow::stop)
     return Flow::stop;
+  if (const auto page = pages_.block_over(*director_.block(), scores_.of(director_.block_index()),
+                                          scores_.points(), director_))
+    if (gate_.show_and_wait(*page, 0) == Flow::stop) return Flow::stop;
   ++summary_.blocks;
   director_.finish_block();
   return Flow::go_on;
@@ -144,6 +148,7 @@ void SessionRun::finish(core::SessionStatus status, const std::string& reason) {
   summary_.reason = reason;
   finish_triggers();
   summary_.duration_s = static_cast<double>(stage_->now_ns() - started_ns_) * 1e-9;
+  if (setup_.protocol.payoff) summary_.points = scores_.points();
   if (scored_ > 0) summary_.accuracy = static_cast<double>(right_) / scored_;
   gate_.keep([&] { log_.finish(status, reason); });
   summary_.checksum = log_.session().checksum;
@@ -196,6 +201,7 @@ Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
   keep_raw(trial);
   gate_.keep([&] { log_.append(trial.row); });
   count(spec, trial.row);
+  director_.spend(trial.row.duration_s);
   if (const auto share = drift_.correction(trial_index())) {
     plans_.set_drift(*share);  // a trial that is already planned is planned again
     stage_->set_drift(*share);
@@ -480,7 +486,7 @@ void SessionRun::count(const trial::TrialSpec& spec, const core::TrialRow& row) 
       ++summary_.voided;
       break;
   }
-  interludes_.score(spec.block_index, spec.attempt, director_.block()->name, row);
+  scores_.add(trial::block_start(*director_.block(), spec.block_index, spec.attempt), row);
   if (spec.type == core::TrialType::experimental && row.correct) ++scored_, right_ += *row.correct ? 1 : 0;
 }
 
@@ -499,6 +505,12 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
   if (trial.slider && adjusting) pages_.add_slider(page, *trial.spec.slider, trial.slider->setting());
   if (phase == trial::Phase::late && trial.machine.result().outcome == core::Outcome::fault)
     page.text = pages_.movement(trial.row.finger.sensing);
+  const bool judged = phase == trial::Phase::feedback || phase == trial::Phase::late;
+  if (judged && director_.block() != nullptr && director_.block()->feedback == protocol::Feedback::trial)
+    if (const auto points = trial::points_of(trial.machine.result(), trial.spec, setup_.protocol))
+      pages_.add_points(
+          page, *points,
+          director_.block()->practice ? std::nullopt : std::optional(scores_.points() + *points));
   if (trial.spec.strokes && phase == trial::Phase::feedback)
     page.text = pages_.movement(trial.row.finger.sensing);
   hold_bars(phase, trial);

@@ -133,6 +133,7 @@ class SessionRun {
   trial::Director director_;
   Pages pages_;
   OperatorGate gate_;
+  Scores scores_;
   Interludes interludes_;
   Summary summary_;
   int examples_ = 0;  ///< examples presented so far

@@ -301,6 +301,12 @@ Reply Observer::answer(const Question& q) const {
     const bool found = passage.upper && u * upper < share_right(upper, q);
     const int right = q.correct.value_or(any);
     reply.choice = found ? right : (right + 1 + other) % q.answers;
+    // All wrong answers are guesses, and of the right ones as many as guesses happen to find.
+    if (q.unsure && q.correct) {
+      const double share = share_right(upper, q), lucky = (1 - share) / std::max(1, q.answers - 1);
+      const bool guessed = !found || draws.uniform() * share < lucky;
+      if (guessed && draws.uniform() < p.unsure) reply.choice = q.answers;
+    }
   } else if (q.rating) {
     const double seems = sensitivity(q) + felt;
     int rating = 0;
@@ -362,6 +368,7 @@ void check(const Parameters& p) {
   require(p.scatter >= 0, "scatter must be 0 or more");
   require(p.lapse >= 0 && p.lapse <= 1 && p.anticipation >= 0 && p.anticipation <= 1,
           "lapse and anticipation must be probabilities from 0 to 1");
+  require(p.unsure >= 0 && p.unsure <= 1, "unsure must be a proportion from 0 to 1");
   require(p.bound > 0 && p.residual_s >= 0 && p.travel_s >= 0,
           "bound must be above 0, and residual and travel 0 or more");
   require(p.drift_sd >= 0 && p.start_range >= 0 && p.start_range < 1,
@@ -389,6 +396,7 @@ constexpr Key kKeys[] = {{"threshold", nullptr, &Parameters::threshold, true},
                          {"bias", &Parameters::bias, nullptr, true},
                          {"criterion", &Parameters::criterion, nullptr, true},
                          {"scatter", &Parameters::scatter, nullptr, false},
+                         {"unsure", &Parameters::unsure, nullptr, false},
                          {"bound", &Parameters::bound, nullptr, false},
                          {"residual", &Parameters::residual_s, nullptr, false},
                          {"travel", &Parameters::travel_s, nullptr, false},

@@ -54,6 +54,9 @@ struct Parameters {
   double residual_range_s = 0;
   /// SD of the judgements; if the answers are numbers (magnitude estimation), of their decimal logarithm
   double scatter = 0.1;
+  /// fraction of the guesses that the observer admits, where a question allows it: answers that would be
+  /// right only by chance
+  double unsure = 0.5;
   double anticipation = 0;  ///< fraction of trials answered before anything can be felt
 };
 
@@ -121,6 +124,8 @@ struct Question {
   Finding finding = Finding::weibull;   ///< for `right_answer`: how the observer finds the right answer
   std::vector<double> categories = {};  ///< for `category`: the level for which each answer stands
   int answers = 2;
+  /// for `right_answer`: true if the observer may say that it would guess; `choice` is then `answers`
+  bool unsure = false;
   bool rating = false;  ///< true if the answers are the points of a scale, from low to high levels
   Middle middle = Middle::criterion;
   std::optional<ValueQuestion> value;  ///< set if the answer is a number

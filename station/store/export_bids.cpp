@@ -34,7 +34,7 @@ std::string bids_sidecar(const SessionStart& start, const std::vector<Column>& c
 
 /// Returns the columns of trials.csv. Onset and duration are called stimulus_onset and stimulus_duration,
 /// because BIDS reserves the short names for tables of events.
-ExportColumns bids_trial_columns(const std::vector<std::string>& factors);
+ExportColumns bids_trial_columns(const std::vector<ExportedFactor>& factors);
 std::vector<Column> bids_participant_columns();
 std::vector<Column> bids_event_columns();
 
@@ -128,7 +128,7 @@ std::string bids_sidecar(const SessionStart& start, const std::vector<Column>& c
   return json.dump(2) + "\n";
 }
 
-ExportColumns bids_trial_columns(const std::vector<std::string>& factors) {
+ExportColumns bids_trial_columns(const std::vector<ExportedFactor>& factors) {
   auto columns = trial_columns(factors);
   for (auto& [column, cell] : columns)
     if (column.name == "onset" || column.name == "duration") column.name = "stimulus_" + column.name;

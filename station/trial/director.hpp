@@ -33,6 +33,10 @@ struct TrialSpec {
   /// such a trial is then the displacement in um; 0 means that the surface is at rest.
   std::optional<protocol::Strokes> strokes;
   double iti_s = 0, foreperiod_s = 0;
+  struct Delay {
+    double wrong = 0, late = 0, early = 0;
+  };
+  Delay delay_s = {};  ///< what the pause after the trial is longer by (protocol::Delay)
   /// length (s) of the interval if the trial is an example; empty: the length that the task gives
   std::optional<double> length_s = {};
   double deadline_s = 0, anticipation_s = 0;
@@ -90,6 +94,9 @@ class Director {
   std::optional<TrialSpec> next();
   /// Records the result of the trial that next() returned last.
   void record(const TrialEnd& end);
+  /// Adds the duration of the trial that was recorded last to the time of its block, which may end the block.
+  /// Void trials and warm-up trials do not count. A trial that next() has already returned is given up then.
+  void spend(double trial_s);
   /// Closes a finished block: advances to the next block, or repeats practice that was not passed.
   void finish_block();
   /// Starts another attempt at the current block.

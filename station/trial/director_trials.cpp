@@ -39,6 +39,7 @@ void Director::State::set_times(TrialSpec& spec) const {
     return protocol::evaluate(expression, spec.factors);
   };
   spec.anticipation_s = set(timing.anticipation_s);
+  spec.delay_s = {set(timing.delay_s.wrong), set(timing.delay_s.late), set(timing.delay_s.early)};
   if (timing.signal) {
     spec.signal_s = spec.anticipation_s = set(timing.signal->after_s);
     spec.deadline_s = *spec.signal_s + timing.signal->window_s;
@@ -263,6 +264,7 @@ std::optional<TrialSpec> Director::State::make() {
   if (now() == nullptr) return std::nullopt;
   current_procedure = no_procedure;
   if (now()->kind != protocol::BlockKind::trials) return strokes_trial();
+  if (time_is_up()) return std::nullopt;
   if (warmups > 0) return warmup_trial();
   if (!practice_levels.empty()) return practice_trial();
   if (now()->trials && shown >= *now()->trials) return std::nullopt;

@@ -75,6 +75,7 @@ simulation::Question question_of(const TrialSpec& spec, const protocol::Protocol
   question.default_threshold = protocol::middle_level(protocol, level);
   set_second(spec, protocol, level, question);
   const auto& task = protocol.task;
+  question.unsure = !task.unsure.empty();
   if (task.confidence) question.confidence = static_cast<int>(task.confidence->labels.size());
   if (protocol::judges(task)) {
     question.decides = simulation::Decides::presence;

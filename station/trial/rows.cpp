@@ -12,9 +12,10 @@ std::optional<double> seconds(const std::optional<std::int64_t>& ns) {
 }
 
 std::string choice_id(const protocol::Protocol& protocol, int index) {
-  const auto& choices = protocol.task.choices;
-  return index >= 0 && index < static_cast<int>(choices.size()) ? choices[static_cast<std::size_t>(index)].id
-                                                                : "";
+  const auto& task = protocol.task;
+  const auto count = static_cast<int>(task.choices.size());
+  if (index >= 0 && index < count) return task.choices[static_cast<std::size_t>(index)].id;
+  return index == count && !task.unsure.empty() ? protocol::kUnsure : "";
 }
 
 /// Returns the "response" to store for a trial without a question: a word for how the finger moved.
@@ -72,7 +73,33 @@ void fill_result(core::TrialRow& row, const Result& result, const TrialSpec& spe
   row.extra_touches = result.extra_touches;
   row.xruns = result.xruns;
   if (!spec.correct) row.correct.reset();
+  row.points = points_of(result, spec, protocol);
   if (!result.response) row.response_time_quality = "n/a";
+}
+
+std::optional<double> points_of(const Result& result, const TrialSpec& spec,
+                                const protocol::Protocol& protocol) {
+  if (!protocol.payoff || spec.strokes || spec.type == core::TrialType::warmup) return std::nullopt;
+  const auto& payoff = *protocol.payoff;
+  const auto value = [&](const protocol::Linear& points) { return protocol::evaluate(points, spec.factors); };
+  switch (result.outcome) {
+    case Outcome::answered:
+      break;
+    case Outcome::timeout:
+      return value(payoff.late);
+    case Outcome::anticipation:
+      return value(payoff.early);
+    case Outcome::aborted:
+    case Outcome::fault:
+      return std::nullopt;
+  }
+  if (!spec.correct) return std::nullopt;
+  if (!result.correct)  // the participant did not want to guess
+    return protocol.task.unsure.empty() ? std::nullopt : std::optional(value(payoff.unsure));
+  if (!*result.correct) return value(payoff.wrong);
+  const auto time_s = seconds(result.response_time_ns);
+  const bool fast = payoff.fast && time_s && *time_s < value(payoff.fast->below_s);
+  return value(payoff.right) + (fast ? value(payoff.fast->points) : 0);
 }
 
 }  // namespace turnpoint::trial

@@ -153,11 +153,16 @@ Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& bloc
   plan.feedback_ns = block.feedback == protocol::Feedback::trial ? ns(kFeedback_s) : 0;
   plan.late_ns = ns(kLate_s);
   plan.iti_ns = ns(spec.iti_s);
+  plan.wrong_delay_ns = ns(spec.delay_s.wrong);
+  plan.late_delay_ns = ns(spec.delay_s.late);
+  plan.early_delay_ns = ns(spec.delay_s.early);
   plan.answers = protocol.task.kind == protocol::TaskKind::adjustment
                      ? 1
                      : static_cast<int>(protocol.task.choices.size());
+  if (!protocol.task.unsure.empty()) plan.unsure = plan.answers++;
   plan.correct = spec.correct;
   if (spec.strokes) {
+    plan.unsure.reset();
     plan.answers = 2;  // the two possible "answers": the movement was right or wrong
     if (block.kind == protocol::BlockKind::training) plan.feedback_ns = ns(kLate_s);
     return plan;

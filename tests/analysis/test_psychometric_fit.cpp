@@ -47,6 +47,47 @@ TEST_CASE("The maximum-likelihood fit of the reference data gives the known para
   CHECK(fit.statements.empty());
 }
 
+TEST_CASE("An unsure answer counts as the share of a right one that a guess would be", "[analysis]") {
+  std::vector<TrialRecord> trials(6);
+  for (auto& trial : trials) trial.level = -10;
+  trials[0].correct = true, trials[1].correct = false;
+  trials[2].unsure = trials[3].unsure = true;
+  trials[4].outcome = Outcome::timeout;
+  trials[5].unsure = true, trials[5].type = TrialType::practice;
+  const auto two = count_correct(trials), three = count_correct(trials, 3);
+  REQUIRE(two.size() == 1);
+  CHECK(two[0].trials == 4);
+  CHECK(two[0].sum() == 2);
+  CHECK(two[0].positive == 1);
+  CHECK(three[0].sum() == Approx(1 + 2.0 / 3));
+
+  // An observer who admits all guesses gives the same fit as one who makes them, with less scatter.
+  const Psychometric truth{-18, 2, 0.5, 0};
+  double guessed = 0, admitted = 0;
+  const int runs = 40;
+  for (int run = 0; run < runs; ++run) {
+    rnd::Draws draws({7, rnd::Stream::observer, run, 0, 0});
+    std::vector<LevelCount> forced, unforced;
+    for (const double level : {-30.0, -25.0, -21.0, -18.0, -15.0, -11.0}) {
+      const double knows = 2 * probability(Function::weibull, Scale::linear, truth, level) - 1;
+      LevelCount a{level, 30, 0}, b{level, 30, 0};
+      for (int i = 0; i < 30; ++i) {
+        const bool known = draws.uniform() < knows, lucky = draws.uniform() < 0.5;
+        a.positive += known || lucky ? 1 : 0;
+        b.positive += known ? 1 : 0;
+        b.admitted += known ? 0 : 0.5;
+      }
+      forced.push_back(a), unforced.push_back(b);
+    }
+    const auto one = fit_psychometric(forced, {}), other = fit_psychometric(unforced, {});
+    REQUIRE((one.parameters && other.parameters));
+    guessed += one.parameters->threshold / runs;
+    admitted += other.parameters->threshold / runs;
+  }
+  CHECK(guessed == Approx(truth.threshold).margin(0.7));
+  CHECK(admitted == Approx(truth.threshold).margin(0.4));
+}
+
 TEST_CASE("Degenerate data give a statement instead of a number", "[analysis]") {
   const auto refused = [](std::vector<LevelCount> data, const std::string& code) {
     const auto fit = fit_psychometric(data, {});
@@ -200,6 +241,40 @@ TEST_CASE("A bootstrap depends only on its seed and stream", "[analysis]") {
   CHECK_THROWS_AS(bootstrap(fit, {10, 0.95, 1, 0, 0}), std::invalid_argument);
 }
 
+TEST_CASE("An interval ends where no function with that threshold is likely enough", "[analysis]") {
+  // With the threshold held, a steep and a shallow function are each a maximum of these likelihoods.
+  FitOptions three, detection;
+  three.scale = detection.scale = Scale::log10;
+  three.guess_value = 1.0 / 3;
+  detection.guess = Guess::fitted, detection.guess_high = 0.9;
+  const std::vector<std::pair<FitOptions, std::vector<LevelCount>>> sessions{
+      {three,
+       {{0.049, 18, 7}, {0.089, 18, 6}, {0.137, 18, 14}, {0.253, 18, 14}, {0.421, 18, 16}, {0.708, 18, 18}}},
+      {detection, {{kNoise, 24, 6}, {0.048, 12, 4}, {0.115, 12, 3}, {0.283, 12, 9}, {0.699, 12, 12}}}};
+  for (const auto& [options, data] : sessions) {
+    const auto fit = fit_psychometric(data, options);
+    REQUIRE(fit.parameters);
+    const auto drawn = bootstrap(fit, {200, 0.95, 3, 0, 0});
+    for (const double end : {drawn.threshold->interval.low, drawn.threshold->interval.high}) {
+      double least = 1e9;
+      for (double slope = 0.3; slope < 30; slope *= 1.03)
+        for (const double lapse : {0.0, 0.02, 0.04, 0.06})
+          for (int g = 0; g < (options.guess == Guess::fitted ? 45 : 1); ++g) {
+            const double guess = options.guess == Guess::fitted ? 0.02 * g + 0.01 : options.guess_value;
+            double cost = 0;
+            for (const auto& point : data) {
+              const double p = point.level == kNoise ? guess
+                                                     : probability(options.function, options.scale,
+                                                                   {end, slope, guess, lapse}, point.level);
+              cost -= point.positive * std::log(p) + (point.trials - point.positive) * std::log1p(-p);
+            }
+            least = std::min(least, cost);
+          }
+      CHECK(2 * (least - fit.negative_log_likelihood) > 3.84);
+    }
+  }
+}
+
 TEST_CASE("The fit agrees with psignifit 4.3 on the same data", "[analysis]") {
   // Results of psignifit 4.3 (Python) for 2AFC with the sigmoids weibull and norm, default priors and the
   // maximum a posteriori. `threshold` is the 50 % point and `width` the 5-95 % range of the sigmoid; `low`
@@ -299,12 +374,15 @@ TEST_CASE("Trials without a signal determine the rate of false alarms", "[analys
   CHECK(posterior.intervals.guess->interval.high < 0.5);
 }
 
-TEST_CASE("an interval that ends at a bound says so, even if the best curve at the bound itself is hard to find", "[analysis]") {
+TEST_CASE(
+    "an interval that ends at a bound says so, even if the best curve at the bound itself is hard to find",
+    "[analysis]") {
   FitOptions options;
   options.function = Function::weibull;
   options.scale = Scale::log10;
   const auto fit = fit_psychometric(
-      {{0.051, 19, 4}, {0.087, 19, 14}, {0.137, 19, 11}, {0.243, 19, 16}, {0.432, 19, 19}, {0.68, 19, 18}}, options);
+      {{0.051, 19, 4}, {0.087, 19, 14}, {0.137, 19, 11}, {0.243, 19, 16}, {0.432, 19, 19}, {0.68, 19, 18}},
+      options);
   const auto drawn = bootstrap(fit, {});
   // with this steep a slope the likelihood is still only 0.6 below its maximum
   REQUIRE(drawn.slope);

@@ -268,13 +268,80 @@ class Outputs(HelpExamples):
     def bytes_of(self, *names):
         return {name: open(os.path.join(self.folder, name), "rb").read() for name in names}
 
-    def test_every_option_that_names_an_output_is_tried(self):
-        known = {(words[0], words[words.index(word) - 1] if word in ("@", "wav:@") else "")
-                 for words in self.WRITERS for word in words if "@" in word}
-        tried_elsewhere = {("export", "--out"), ("figures", "--out"), ("preview", "--out"), ("power", "--out")}   # folders
+    # Options that name a folder to write to, and the names that they write there.
+    FOLDERS = [
+        (["report", "--db", "lab.sqlite", "--participant", "P01", "--out", "page.html", "--figures", "@"], ".svg"),
+        (["report", "--db", "lab.sqlite", "--study", "--protocol", "friction-2ifc", "--out", "page.html", "--figures", "@"], ".svg"),
+        (["report", "--db", "lab.sqlite", "--study", "--protocol", "friction-2ifc", "--out", "page.html", "--tables", "@"], ".csv"),
+        (["export", "--db", "lab.sqlite", "--out", "@"], ".csv"),
+        (["figures", "--out", "@"], ".svg"),
+        (["preview", "demo", "--out", "@"], ".svg"),
+        (["power", "demo", "--observers", "2", "--out", "@"], ".json"),   # nothing is estimated: it has no figure
+        (["power", "boundary-constant", "--observers", "2", "--intervals", "0", "--out", "@"], ".svg"),
+        (["help", "--man", "@"], ".1"),
+    ]
+    # Every other option and argument that names a file or a folder: what is read, and what has tests of its own. A database
+    # is opened by SQLite; backup, withdraw and push write into folders of databases, which tests/store and tests/faults try.
+    READ = {"--calibration", "--rig", "--db", "--against", "--join", "--estimator", "--response", "--boundaries", "--friction",
+            "--sound", "--vibrometer", "--accelerometer", "--folder", "--protocols", "--data", "--backups"}
+    ELSEWHERE = {("backup", "--dir"), ("export", "--sign"), ("push", "--received"), ("push", "--certificates")}
+
+    def test_every_option_that_names_a_file_is_known(self):
+        lines = self.WRITERS + [words for words, _ in self.FOLDERS]
+        tried = {(words[0], words[i - 1]) for words in lines for i, word in enumerate(words) if "@" in word}
         for name in self.names:
-            for option in re.findall(r"^  (--(?:[a-z]+-)?(?:out|plot|plots)) ", self.helps[name], re.MULTILINE):
-                self.assertIn((name, option), known | tried_elsewhere, "add it to WRITERS")
+            for option, kind in re.findall(r"^  (--[a-z-]+)((?: |,|=)[^\n]*)$", self.helps[name], re.MULTILINE):
+                of_file = re.match(r" (?:[A-Z]+=)?(?:FILE|FOLDER|RIG|PROGRAM)\b", kind) or re.search(r"wav:FILE|=FILE", kind)
+                if of_file and option not in self.READ:
+                    self.assertIn((name, option), tried | self.ELSEWHERE, "add it to WRITERS, FOLDERS or, if it is read, to READ")
+
+    def test_no_folder_of_output_loses_a_database_or_an_input(self):
+        for words, ending in self.FOLDERS:
+            with self.subTest(words=words):
+                folder = os.path.join(self.folder, "folder")
+                shutil.rmtree(folder, ignore_errors=True)
+                words = [word.replace("@", "folder") for word in words]
+                status, out, err = run(words, self.folder)
+                self.assertEqual(status, 0, out + err)
+                written = sorted(name for name in os.listdir(folder) if name.endswith(ending))
+                inside = [os.path.relpath(os.path.join(at, name), folder) for at, _, names in os.walk(folder) for name in names
+                          if name.endswith(ending)]
+                victim = (written or sorted(inside))[0]
+                # a database under that name, a link to the database that is read, and a pipe that nobody reads
+                for make in (lambda path: shutil.copy(os.path.join(self.folder, "lab.sqlite"), path),
+                             lambda path: os.symlink("/proc/self/cwd/lab.sqlite", path),
+                             lambda path: os.link(os.path.join(self.folder, "lab.sqlite"), path), os.mkfifo, os.mkdir):
+                    path = os.path.join(folder, victim)
+                    shutil.rmtree(path) if os.path.isdir(path) else os.unlink(path)
+                    before = self.bytes_of("lab.sqlite")
+                    make(path)
+                    status, out, err = run(words, self.folder)
+                    self.assertIn(status, (1, 2), f"{words} {victim}: {out}{err}")
+                    self.assertNotRegex(err, NOT_FOR_PEOPLE)
+                    self.assertEqual(self.bytes_of("lab.sqlite"), before)
+
+    def test_no_other_way_to_an_input_is_a_way_around(self):
+        os.mkdir(os.path.join(self.folder, "folder"))
+        shutil.copy(os.path.join(SOURCE, "protocols/programs/right_answers.py"), os.path.join(self.folder, "mine.py"))
+        shutil.copy(os.path.join(SOURCE, "deploy/rigs/simulated.toml"), os.path.join(self.folder, "plate.toml"))
+        for name in ("lab.sqlite", "friction.csv", "mine.py", "plate.toml"):
+            os.symlink(name, os.path.join(self.folder, "soft-" + name))
+            os.link(os.path.join(self.folder, name), os.path.join(self.folder, "hard-" + name))
+        victims = self.bytes_of("lab.sqlite", "friction.csv", "mine.py", "plate.toml")
+        report = ["report", "--db", "lab.sqlite", "--participant", "P02"]
+        for words, victim in (([*report, "--out", "@"], "lab.sqlite"),
+                              ([*report, "--estimator", "program:mine.py,limit_s=60", "--out", "@"], "mine.py"),
+                              (["calibrate", "--rig", "plate.toml", "--friction", "friction.csv", "--out", "@"], "plate.toml"),
+                              (["calibrate", "--rig", "plate.toml", "--friction", "friction.csv", "--out", "@"], "friction.csv"),
+                              (["map", "--rig", "plate.toml", "--boundary", "150", "--budget", "--plot", "@"], "plate.toml")):
+            for way in ("{}", "./{}", "folder/../{}", "soft-{}", "hard-{}", "/proc/self/cwd/{}", "/proc/self/fd/3", "/dev/fd/3"):
+                with self.subTest(words=words, way=way):
+                    target = way.format(victim)
+                    line = " ".join([PROGRAM, *(word.replace("@", target) for word in words)]) + f" 3<{victim}"
+                    status, out, err = run(line, self.folder)
+                    self.assertEqual(self.bytes_of(*victims), victims)
+                    self.assertEqual(status, 2, out + err)
+                    self.assertNotRegex(err, NOT_FOR_PEOPLE)
 
     def test_no_output_replaces_a_database_or_an_input(self):
         os.mkdir(os.path.join(self.folder, "folder"))
@@ -365,8 +432,20 @@ class Outputs(HelpExamples):
         rig = os.path.join(SOURCE, "deploy/rigs/simulated.toml")
         shutil.copy(rig, os.path.join(self.folder, "plate.toml"))
         self.assertEqual(run(["calibrate", "--rig", "plate.toml", "--friction", "friction.csv"], self.folder)[0], 0)
-        status, out, err = run(["plan", "demo", "--rig", "plate.toml", "--scene", "edge"], self.folder)
+        # also if nothing else was measured, and if somebody names the file
+        self.write("sound.csv", b"frequency_Hz,level_dB\n25000,60\n30000,60\n")
+        for option, name in (("--friction", "friction.csv"), ("--sound", "sound.csv")):
+            made = self.path_of_calibration(option, name)
+            for words in (["plan", "demo", "--scene", "edge"], ["check", "demo", "--sessions", "0"],
+                          ["run", "demo", "--db", "used.sqlite", "--participant", "P01", "--observer", "sim"]):
+                status, out, err = run([*words, "--rig", "plate.toml", "--calibration", made], self.folder)
+                self.assertEqual(status, 0, out + err)
+
+    def path_of_calibration(self, option, name):
+        made = f"{name}.toml"
+        status, out, err = run(["calibrate", "--rig", "plate.toml", option, name, "--out", made], self.folder)
         self.assertEqual(status, 0, out + err)
+        return made
 
 
 class Locales(Folder):

@@ -65,7 +65,8 @@ class Clock(unittest.TestCase):
             self.assertIn(" 0 changed", self.call("verify", "--db", name))
 
     def test_the_hour_that_comes_twice_in_autumn_is_told_apart(self):
-        twice = datetime.datetime(2026, 10, 25, 0, 30, tzinfo=datetime.timezone.utc)  # 02:30 in Berlin, and again an hour later
+        # 02:30 in Berlin, and again an hour later; in the middle of the minute, because an offset is whole seconds
+        twice = datetime.datetime(2026, 10, 25, 0, 30, 30, tzinfo=datetime.timezone.utc)
         started = []
         for hours in (0, 1):
             there = (twice + datetime.timedelta(hours=hours)).timestamp()

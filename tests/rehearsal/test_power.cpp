@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string_view>
 
@@ -206,6 +208,16 @@ TEST_CASE("a fit finds the observer's own threshold and slope", "[power]") {
   const auto sides = rehearsal::power(shipped("boundary-constant"), options("sim:threshold=6,lapse=0.02", 3));
   CHECK(*find(sides, "fit", "PSE").truth == 0);
   CHECK(*find(sides, "fit", "spread").truth == Approx(6 / 0.6744897501960817));
+}
+
+TEST_CASE("the fits of every group have a truth", "[power]") {
+  std::ifstream file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/friction-2ifc.toml");
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  text += "\n[[factor]]\nname = \"training\"\nlevels = [\"trained\", \"none\"]\ndraw = \"per-participant\"\n"
+          "\n[analysis]\nby = \"training\"\n";
+  const auto power = rehearsal::power(protocol::parse(text, "groups.toml"), options("sim:threshold=-18", 4));
+  REQUIRE(find(power, "fit trained", "threshold").truth);
+  CHECK(find(power, "fit trained", "threshold").truth == find(power, "fit none", "threshold").truth);
 }
 
 TEST_CASE("slopes and spreads are summarised by median and quartiles, and their bias is that of the median",

@@ -4,7 +4,7 @@
 
 #include "station/core/read_file.hpp"
 #include "station/rehearsal/rehearsal.hpp"
-#include "station/report/html.hpp"
+#include "station/report/document.hpp"
 #include "station/report/stored_estimates.hpp"
 #include "station/report/stored_trials.hpp"
 #include "tests/support/catch.hpp"

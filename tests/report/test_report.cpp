@@ -1,13 +1,14 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "station/core/number.hpp"
 #include "station/report/chart.hpp"
-#include "station/report/figures.hpp"
+#include "station/report/document.hpp"
 #include "station/report/figure_files.hpp"
-#include "station/report/html.hpp"
+#include "station/report/figures.hpp"
 #include "station/report/words.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/diffusion.hpp"
@@ -233,6 +234,17 @@ TEST_CASE("A forced-choice session in dB has its threshold and 75 % point in the
   keep("staircase.svg", shown(trace_figure(summary)));
 }
 
+TEST_CASE("A participant of a group has the threshold of that condition", "[report]") {
+  auto data = staircase_session();
+  data.conditions = {"trained", "untrained"};
+  for (auto& trial : data.trials) trial.instruction = "untrained";
+  const auto fits = fits_of(data);
+  REQUIRE(fits.size() == 1);
+  CHECK(fits[0].name == "untrained");
+  data.conditions = {"untrained"};
+  CHECK(fits_of(data).at(0).name.empty());
+}
+
 TEST_CASE("If the answers determined the levels, the report states the posterior and its prior", "[report]") {
   auto data = staircase_session();
   data.prior = analysis::Prior{-40, 3, 0.25, 16, 0.25};
@@ -387,7 +399,7 @@ TEST_CASE("The label of a threshold has the digits of the table and the height o
 
 TEST_CASE("Every figure of a report has a caption that says whose trials it shows and how many", "[report]") {
   const auto summary = summarise(speed_accuracy(28));
-  const auto figures = figures_of(summary);
+  const auto figures = figures_of(document(summary));
   REQUIRE(figures.size() >= 4);
   for (const auto& [name, figure] : figures) {
     INFO(name << ": " << figure.caption);
@@ -395,6 +407,18 @@ TEST_CASE("Every figure of a report has a caption that says whose trials it show
     CHECK(figure.caption.find(" trials.") != std::string::npos);
   }
   CHECK(psychometric_figure(summary)->caption.find("95 %") != std::string::npos);
+}
+
+TEST_CASE("A number of a report has the digits that its interval determines, and says what is not determined",
+          "[report]") {
+  using Shown = std::pair<std::string, std::string>;
+  const double endless = std::numeric_limits<double>::infinity();
+  CHECK(in_known_digits({-0.51234}) == Shown("\u22120.512", ""));
+  CHECK(in_known_digits({-0.51234, analysis::Interval{-0.71, -0.31}}) ==
+        Shown("\u22120.512", "[\u22120.710, \u22120.310]"));
+  CHECK(in_known_digits({2, analysis::Interval{1, 3}, 3, true, true}).second == "[\u2264 1.00, \u2265 3.00]");
+  CHECK(in_known_digits({2, analysis::Interval{1, endless}}).second == "[1.00, not determined]");
+  CHECK(in_known_digits({2, analysis::Interval{1, endless}, 3, false, false, true}).second == "[1, \u221e]");
 }
 
 TEST_CASE("A curve ends where its band ends", "[report]") {

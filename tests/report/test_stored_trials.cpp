@@ -6,7 +6,7 @@
 
 #include "station/core/toml.hpp"
 #include "station/protocol/conditions.hpp"
-#include "station/report/html.hpp"
+#include "station/report/document.hpp"
 #include "tests/report/simulated_report.hpp"
 #include "tests/support/catch.hpp"
 
@@ -462,4 +462,53 @@ TEST_CASE("one key, always right and always wrong: there is a report with reason
       for (const auto& fit : report["fits"])
         if (fit["threshold"].is_null()) CHECK_FALSE(fit["statements"].empty());
     }
+}
+
+TEST_CASE("A report of a payoff has the points a trial and a minute of each condition, and their differences",
+          "[report]") {
+  const auto paid = replaced(replaced(shipped("speed-accuracy"), "[timing]\n",
+                                      "[payoff]\nright = 10\nwrong = -10\nlate = -20\n\n[timing]\n"),
+                             "anticipation_s = 0.150", "anticipation_s = 0.150\ndelay_s = { wrong = 2.0 }");
+  const auto data = data_of(paid);
+  const auto json = report_of(data);
+  REQUIRE(json["instructions"].size() == 2);
+  for (const auto& entry : json["instructions"]) {
+    double points = 0, minutes = 0, trials = 0;
+    for (const auto& trial : data.trials)
+      if (trial.type == analysis::TrialType::experimental && trial.instruction == entry["instruction"])
+        points += trial.points.value(), minutes += trial.duration_s / 60, ++trials;
+    CHECK(entry["points"]["value"].get<double>() == Approx(points / trials));
+    CHECK(entry["points_per_minute"]["value"].get<double>() == Approx(points / minutes));
+    CHECK(entry["points_per_minute"]["interval"]["low"].get<double>() < points / minutes);
+  }
+  int differences = 0;
+  for (const auto& difference : json["differences"]) {
+    if (difference["measure"] != "points a minute") continue;
+    ++differences;
+    CHECK(difference["estimate"]["value"].get<double>() ==
+          Approx(json["instructions"][1]["points_per_minute"]["value"].get<double>() -
+                 json["instructions"][0]["points_per_minute"]["value"].get<double>()));
+  }
+  CHECK(differences == 1);
+  const auto html = report::to_html(report::summarise(data));
+  CHECK(html.find("Points a minute, of trials with their pauses") != std::string::npos);
+  const auto unpaid = report::to_html(report::summarise(data_of(shipped("speed-accuracy"))));
+  CHECK(unpaid.find("Points a") == std::string::npos);
+}
+
+TEST_CASE("A report of an unforced choice counts unsure answers and fits no diffusion", "[report]") {
+  const auto data = data_of(shipped("friction-unforced"), "sim:lapse=0,unsure=0.9");
+  double unsure = 0, right = 0;
+  for (const auto& trial : data.trials)
+    if (trial.type == analysis::TrialType::experimental)
+      unsure += trial.unsure ? 1 : 0, right += trial.correct.value_or(false) ? 1 : 0;
+  REQUIRE(unsure > 3);
+  const auto json = report_of(data);
+  CHECK(json["trials"]["unsure"] == unsure);
+  double positive = 0;
+  for (const auto& level : json["fits"][0]["levels"]) positive += level["positive"].get<double>();
+  CHECK(positive == Approx(right + 0.5 * unsure));
+  CHECK(json["instructions"][0]["boundary"].is_null());
+  const auto html = report::to_html(report::summarise(data));
+  CHECK(html.find("<tr><th>Unsure</th>") != std::string::npos);
 }

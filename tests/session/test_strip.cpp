@@ -88,7 +88,7 @@ TEST_CASE("the report has friction along the strip, which rises at the planned b
   CHECK(std::get<report::Rule>(chart->layers.front()).at == 0);
   CHECK(data.repeats.empty());
   SECTION("the operator sees what the sensors measured") {
-    CHECK(sensors.facts.at("Finger") == "ok");
+    CHECK(sensors.facts.at("The finger") == "ok");
     CHECK(sensors.facts.at("Normal force").find("N, SD") != std::string::npos);
     CHECK(sensors.facts.count("Pick-up, level") == 1);
     CHECK(sensors.facts.count("Zero of the cells") == 1);
@@ -106,6 +106,6 @@ TEST_CASE("the report counts the trials that were presented again, by level", "[
     CHECK(at.presented == 2);
     CHECK(at.repeated == 1);
   }
-  CHECK(sensors.facts.at("Finger") == "slow");
+  CHECK(sensors.facts.at("The finger") == "slow");
   CHECK(sensors.facts.at("Speed").find("asked for 200 to 300 mm/s") != std::string::npos);
 }

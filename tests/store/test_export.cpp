@@ -36,7 +36,7 @@ const char* const kHeader =
     "outcome,response_time,decision_time,movement_time,response_zero,response_time_quality,response_offset_s,"
     "deadline,xruns,extra_touches,threshold_est,threshold_sd,seed,station_id,calibration_id,software_version,"
     "response_zero_onset,trial_duration,proof,proof_cause,drive_ratio_db,drive_residual_db,onset_error_us,"
-    "confidence,confidence_time,"
+    "confidence,confidence_time,points,"
     "sensing,contact_s,strokes,normal_n,normal_sd_n,normal_in_window,speed_mm_s,speed_in_window,mu_low,"
     "mu_high,boundary_felt_mm,boundary_se_mm,lag_mm,tare_mn,mu,silence_db,silence_tone_db,"
     "columns_version";
@@ -62,7 +62,8 @@ TEST_CASE("trials.csv has all fixed columns in order, and the factors at their p
       "P01," + id + ",1,simulated,two-boundaries,1.2.0," + std::string(64, 'a') +
           ",0,main,speed,0,0,1,0,experimental,staircase,n/a,n/a,-12.5,dB,0.30000000000000004,speed,150.25,"
           "30123.4567890123,2.5,mode,first,second,0,answered,0.4375,n/a,n/a,go_cue,simulated,0,2,0,0,-10,1.5,"
-          "20240229,bench-a,n/a,0.1.0,2,3.5,flagged,level,-0.75,-55,12.5,1,0.75,ok,2.25,9,0.5,0.0625,0.875,"
+          "20240229,bench-a,n/"
+          "a,0.1.0,2,3.5,flagged,level,-0.75,-55,12.5,1,0.75,2.5,ok,2.25,9,0.5,0.0625,0.875,"
           "80.5,0.6875,0.25,0.8125,150.5,0.375,0.625,-1.5,0.625,-57.5,-82.25,2");
   CHECK(sample::contains(lines[5], ",mode,first,n/a,n/a,timeout,n/a,n/a,n/a,go_cue,n/a,"));
 }

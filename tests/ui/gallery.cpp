@@ -162,9 +162,25 @@ void add_trials(std::vector<Exhibit>& all, const Words& words) {
   all.push_back({"feedback-right", feedback});
   feedback.correct = false;
   all.push_back({"feedback-wrong", feedback});
+  const auto said = [&](const char* key, const char* value = "") {
+    return core::say(core::phrase(key, {core::plain(value)}), words.language);
+  };
+  feedback.text = said("wrong") + "  \u221210\n" + said("points", "1240");
+  all.push_back({"feedback-points", feedback});
   feedback.correct.reset();
   feedback.text = words.pick("Too slow", "Zu langsam", "遅すぎました");
   all.push_back({"too-slow", feedback});
+  Page over = base(words, PageKind::instructions);
+  over.title = said("block_over");
+  over.length_mm = 0;
+  for (const auto& [key, value] : {std::pair{"block_right", "83"},
+                                   {"block_time", "0.55"},
+                                   {"goal_right", "85"},
+                                   {"goal_time", "0.6"},
+                                   {"goal_missed", ""},
+                                   {"points", "120"}})
+    over.text += (over.text.empty() ? "" : "\n") + said(key, value);
+  all.push_back({"block-over", over});
 }
 
 void add_faults(std::vector<Exhibit>& all, const Words& words) {

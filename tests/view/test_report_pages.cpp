@@ -1,6 +1,7 @@
 // Tests the report of a session on the screen: its tables, its figures, and their language.
 #include "station/report/svg.hpp"
 #include "station/view/live_facts.hpp"
+#include "station/view/report_data.hpp"
 #include "station/view/report_pages.hpp"
 #include "station/view/scene_figures.hpp"
 #include "tests/support/catch.hpp"
@@ -16,6 +17,13 @@ const report::Figure* figure_in(const view::ReportPages& pages, const std::strin
   return nullptr;
 }
 
+std::string value_of(const view::ReportPages& pages, const std::string& label, const char* language = "en") {
+  for (const auto& section : pages.sections)
+    for (const auto& [name, value] : section.facts)
+      if (core::say(name, language) == label) return core::say(value, language);
+  return "";
+}
+
 }  // namespace
 
 TEST_CASE("the report on the screen has the numbers and figures of the speed-accuracy trade-off",
@@ -24,10 +32,33 @@ TEST_CASE("the report on the screen has the numbers and figures of the speed-acc
   session::Inputs inputs;
   const auto summary = session::run(session::prepare(demo_in(folder)), nullptr, inputs);
   const auto pages = view::report_pages(summary.database, summary.session_id);
-  CHECK(value_of(pages.outcomes, "Presented") == "10");
-  CHECK_FALSE(value_of(pages.speed_accuracy, "proportion right").empty());
+  CHECK(value_of(pages, "Presented") == "10");
+  CHECK_FALSE(value_of(pages, "Proportion correct (0 to 1)").empty());
   CHECK(figure_in(pages, "levels") != nullptr);
-  CHECK_FALSE(pages.health.empty());
+  CHECK(core::say(pages.sections.back().heading, "en") == "The station");
+}
+
+TEST_CASE("each number of the report on the screen stands on its page as well", "[operator]") {
+  const TemporaryFolder folder;
+  session::Inputs inputs;
+  const auto stored = session::run(session::prepare(demo_in(folder)), nullptr, inputs);
+  const auto summary = report::summarise(view::report_data(stored.database, stored.session_id));
+  const auto page = report::to_html(summary);
+  int intervals = 0;
+  for (const auto& section : view::report_pages(summary).sections) {
+    CHECK(page.find(">" + report::escaped(core::say(section.heading, "en")) + "</h2>") != std::string::npos);
+    for (const auto& [name, value] : section.facts) {
+      const auto text = core::say(value, "en");
+      const auto at = text.find(" [");
+      INFO(core::say(name, "en") << ": " << text);
+      if (at == std::string::npos) continue;
+      ++intervals;
+      const auto end = text.find(']', at) + 1;
+      CHECK(page.find(text.substr(0, at) + " <span class=\"soft\">" + text.substr(at + 1, end - at - 1) +
+                      "</span>" + text.substr(end)) != std::string::npos);
+    }
+  }
+  CHECK(intervals > 2);
 }
 
 TEST_CASE("tables and figures of the report on the screen are in the language of the operator",
@@ -44,8 +75,8 @@ TEST_CASE("tables and figures of the report on the screen are in the language of
     return svg.finish();
   };
   const auto german = view::report_pages(summary.database, summary.session_id, "de");
-  CHECK(value_of(german.outcomes, "Dargeboten") == "10");
-  CHECK_FALSE(value_of(german.speed_accuracy, "Anteil richtig").empty());
+  CHECK(value_of(german, "Dargeboten", "de") == "10");
+  CHECK_FALSE(value_of(german, "Anteil richtig (0 bis 1)", "de").empty());
   CHECK(svg_of(german, "levels").find("Durchgang (Nummer in der Sitzung)") != std::string::npos);
   CHECK(svg_of(german, "levels").find("Trial") == std::string::npos);
   CHECK(svg_of(german, "response-times").find("Reaktionszeit (s)") != std::string::npos);
@@ -59,20 +90,25 @@ TEST_CASE("remarks and facts about the station in a report are said in the langu
   session::Inputs inputs;
   const auto summary = session::run(session::prepare(demo_in(folder)), nullptr, inputs);
   const auto pages = view::report_pages(summary.database, summary.session_id, "de");
-  CHECK_FALSE(pages.statements.empty());
-  for (const auto& statement : pages.statements) {
-    INFO(core::say(statement, "en"));
-    CHECK(core::say(statement, "de") != core::say(statement, "en"));
-  }
-  CHECK(pages.health.size() > 15);
-  for (const auto& [name, text] : pages.health) CHECK(core::say(name, "de") != core::say(name, "en"));
+  bool remarked = false;
+  for (const auto& section : pages.sections)
+    for (const auto& statement : section.statements) {
+      INFO(core::say(statement, "en"));
+      CHECK(core::say(statement, "de") != core::say(statement, "en"));
+      remarked = true;
+    }
+  CHECK(remarked);
+  const auto& station = pages.sections.back();
+  CHECK(core::say(station.heading, "de") == "Station");
+  CHECK(station.facts.size() > 15);
+  for (const auto& [name, text] : station.facts) CHECK(core::say(name, "de") != core::say(name, "en"));
 }
 
 TEST_CASE("the report on the screen has the finger's forces and friction, if force cells recorded",
           "[operator]") {
   report::Summary summary;
   summary.data.design = report::Design::ratings;
-  CHECK(view::report_pages(summary).forces.empty());
+  CHECK(value_of(view::report_pages(summary), "speed: Speed (mm/s)").empty());
   CHECK(figure_in(view::report_pages(summary), "finger") == nullptr);
   std::vector<analysis::FingerTrial> trials;
   for (int i = 0; i < 4; ++i) {
@@ -81,8 +117,8 @@ TEST_CASE("the report on the screen has the finger's forces and friction, if for
   }
   summary.finger = analysis::finger(trials, {});
   const auto pages = view::report_pages(summary);
-  CHECK(value_of(pages.forces, "speed: speed").find("81.5 [") == 0);
-  CHECK(value_of(pages.forces, "speed: felt \u2212 planned boundary").find(" mm") != std::string::npos);
+  CHECK(value_of(pages, "speed: Speed (mm/s)").find("81.5 [") == 0);
+  CHECK(value_of(pages, "speed: Felt minus planned boundary (mm)").find(" [") != std::string::npos);
   CHECK(figure_in(pages, "finger") != nullptr);
   CHECK(figure_in(pages, "friction") != nullptr);
 }

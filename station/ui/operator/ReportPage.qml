@@ -115,22 +115,28 @@ Rectangle {
                 id: sheet
                 width: scroll.width
                 spacing: look.unit
-                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("operator.trials"); facts: root.report.outcomes; labelShare: 0.5 }
-                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.speed_accuracy"); facts: root.report.trade; labelShare: 0.5 }
-                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.fit"); facts: root.report.fit; labelShare: 0.5 }
-                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.finger"); facts: root.report.forces; labelShare: 0.5 }
                 Repeater {
-                    model: root.report.statements
-                    PlainText {
+                    model: root.report.sections
+                    Column {
+                        id: section
                         required property var modelData
+                        readonly property Texts words: texts
                         width: sheet.width
-                        text: "• " + texts.say(modelData)
-                        color: look.ink
-                        font.pixelSize: look.textSmall
-                        wrapMode: Text.Wrap
+                        spacing: look.unit
+                        FactTable { width: parent.width; theme: look; texts: section.words; heading: section.words.say(section.modelData.heading); facts: section.modelData.facts; labelShare: 0.5 }
+                        Repeater {
+                            model: section.modelData.statements
+                            PlainText {
+                                required property var modelData
+                                width: section.width
+                                text: "• " + texts.say(modelData)
+                                color: look.ink
+                                font.pixelSize: look.textSmall
+                                wrapMode: Text.Wrap
+                            }
+                        }
                     }
                 }
-                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.station"); facts: root.report.health; labelShare: 0.5 }
             }
         }
         ScrollCue { theme: look; place: scroll }

@@ -101,7 +101,7 @@ void SessionRunner::run() {
     // The session is complete and stored, even if its report cannot be made.
     view::ReportPages pages;
     pages.title = core::text("report.none", language_);
-    pages.statements = {core::phrase_of(error)};
+    pages.sections = {{{}, {}, {core::phrase_of(error)}}};
     report_.take(pages);
   }
   Q_EMIT over();

@@ -1,0 +1,51 @@
+#pragma once
+#include <optional>
+
+#include "station/analysis/finger.hpp"
+#include "station/analysis/trade.hpp"
+
+namespace turnpoint::report {
+
+// What a report shows of each condition: declared once, for its tables and its JSON.
+
+template <class Of>
+struct Measure {
+  const char* key;    ///< in JSON
+  const char* title;  ///< of its row: a text of the catalogues, or English words
+  std::optional<analysis::Estimate> Of::*value;
+  const char* difference = "";  ///< the name of its difference between conditions; "" if it has none
+  const char* part = "";  ///< the part of the report (shows()) to which it belongs; "" if every report has it
+  bool brief = false;     ///< as in Cell
+};
+
+using Result = analysis::InstructionResult;
+inline constexpr Measure<Result> kSpeedAndAccuracy[] = {
+    {"proportion_correct", "report.proportion_right", &Result::proportion_correct, "proportion correct", "",
+     true},
+    {"median_response_time_s", "figure.median_time", &Result::median_s, "median response time", "", true},
+    {"d_prime", "Sensitivity d\u2032 over all levels (standard deviations)", &Result::d_prime, "d'"},
+    {"boundary", "report.boundary", &Result::boundary, "boundary", "ez"},
+    {"nondecision_s", "report.nondecision", &Result::nondecision_s, "time outside the decision", "ez"},
+    {"drift", "Drift v, mean over difficulties (1/s, s = 0.1)", &Result::drift, "drift", "ez"},
+    {"contaminants", "Share of trials that were no decision (0 to 1)", &Result::contaminants, "", "ez"},
+    {"lisas_s", "LISAS (s)", &Result::lisas_s, "LISAS", "lisas"},
+    {"inverse_efficiency_s", "report.inverse_efficiency", &Result::inverse_efficiency_s, "inverse efficiency",
+     "ies"},
+    {"points", "Points a trial", &Result::points, "points a trial", "points"},
+    {"points_per_minute", "Points a minute, of trials with their pauses", &Result::points_per_minute,
+     "points a minute", "points"},
+    {"post_error_slowing_s", "Slower after an error than before it (s)", &Result::post_error_s},
+    {"repetition", "Answers that repeat the last answer, more than right ones would (share)",
+     &Result::repetition},
+    {"late_boundary", "Boundary, second half of the blocks \u2212 first half (s = 0.1)",
+     &Result::late_boundary, "", "ez"}};
+
+using Touched = analysis::FingerCondition;
+inline constexpr Measure<Touched> kFinger[] = {
+    {"normal_N", "figure.normal_force", &Touched::normal_N, "", "", true},
+    {"speed_mm_s", "figure.speed", &Touched::speed_mm_s, "", "", true},
+    {"mu_low", "report.friction_smooth", &Touched::mu_low, "", "", true},
+    {"mu_high", "report.friction_rough", &Touched::mu_high, "", "", true},
+    {"felt_minus_planned_mm", "figure.felt", &Touched::shift_mm, "", "", true}};
+
+}  // namespace turnpoint::report
