@@ -93,7 +93,9 @@ void widen(TaperForm& form, double by) {
   if (auto* linear = std::get_if<LinearTaper>(&form)) linear->half_width_m += by;
   if (auto* exponential = std::get_if<ExponentialTaper>(&form)) exponential->half_width_m += by;
   if (auto* table = std::get_if<TabulatedTaper>(&form)) {
-    for (TaperPoint& point : table->points) point.half_width_m += by;
+    // where the strip would close, it stays a hundredth as wide
+    for (TaperPoint& point : table->points)
+      point.half_width_m = std::max(point.half_width_m + by, 0.01 * point.half_width_m);
   }
 }
 

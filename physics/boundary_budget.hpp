@@ -36,9 +36,8 @@ Surface changed(Surface surface, Parameter parameter, double by);
 
 // The derivative of a boundary's position with respect to a parameter (m per SI unit) at constant frequency.
 // `boundary_m` is the boundary's position at that frequency. For every definition of the boundary, taper and
-// plate theory, the result agrees with solving again on changed surfaces to 1 % of the largest derivative.
-// It is 0 for the quality factor.
-// Takes microseconds (plate theory elastic: 0.1 s).
+// plate theory, the result agrees with solving again on changed surfaces to 1 % of the largest derivative. It
+// is 0 for the quality factor. Takes microseconds (plate theory elastic: 0.1 s).
 double boundary_derivative(const Surface& surface, Parameter parameter, double frequency_Hz,
                            double boundary_m);
 

@@ -145,7 +145,7 @@ Json to_json(const rehearsal::Check& check, const std::string& signal) {
       {"share_under_finger", check.finger
                                  ? Json{json_number(check.finger->least), json_number(check.finger->most)}
                                  : Json(nullptr)},
-      {"level_uncertainty_dB", check.finger ? json_number(check.finger->level_sd_dB) : Json(nullptr)},
+      {"level_uncertainty_dB", json_number(check.finger ? check.finger->level_sd_dB : std::nullopt)},
       {"sound", json_sound(check.sound)},
       {"models", check.survey.models},
       {"combinations", check.survey.combinations},
@@ -263,10 +263,10 @@ void print(std::ostream& out, const rehearsal::Check& check, const std::string& 
                "Finger: it leaves {} % of the displacement at the last maxima of the lowest and the highest "
                "tone; {}\n",
                between(check.finger->least, check.finger->most),
-               check.finger->level_sd_dB > 0
+               check.finger->level_sd_dB
                    ? fmt::format("the level there is uncertain by {} dB (one standard deviation)",
-                                 number(check.finger->level_sd_dB, 2))
-                   : std::string("the rig file states no standard deviations"));
+                                 number(*check.finger->level_sd_dB, 2))
+                   : std::string("how uncertain the level there is, the rig file does not say"));
   fmt::print(out, "Boundaries: model error at most {} mm, {}\n", number(extremes.error_bound_mm, 2),
              uncertainty_in_words(1e-3 * extremes.uncertainty_mm));
   fmt::print(out, "Sound: {}\n",

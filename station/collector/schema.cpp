@@ -58,7 +58,7 @@ std::string create_table(const CollectedTable& table) {
   return fmt::format("CREATE TABLE IF NOT EXISTS turnpoint.{} (\n{}\n);\n", table.name, lines);
 }
 
-/// Returns the SQL that adds the columns which an older version of the collector did not have.
+/// Returns the SQL that describes the columns.
 std::string comments(const CollectedTable& table) {
   std::string sql;
   for (const auto& column : table.columns) {
@@ -568,6 +568,7 @@ CREATE OR REPLACE FUNCTION turnpoint.return_places(protocol text, places json) R
 LANGUAGE plpgsql SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS $fn$
 DECLARE mine text := turnpoint.own_station();
 BEGIN
+  PERFORM turnpoint.note_hold();
   DELETE FROM turnpoint.lease t WHERE t.protocol_id = protocol AND t.station_id = mine
     AND t.sequence_index IN (SELECT value::bigint FROM json_array_elements_text(places))
     AND NOT EXISTS (SELECT FROM turnpoint.enrolment e WHERE e.protocol_id = protocol

@@ -60,7 +60,8 @@ void read_references(Database& database, CollectedTable& table) {
     reference.to.push_back(rows.text(3));
   }
   for (auto& [id, reference] : references)
-    if (reference.table != "participant") table.references.push_back(std::move(reference));
+    if (reference.table != "participant")  // is not collected
+      table.references.push_back(std::move(reference));
 }
 
 /// Adds the columns' descriptions, and returns the columns that the checksum chain covers, in the order in

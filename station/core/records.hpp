@@ -147,8 +147,8 @@ struct ToneRow {
   /// amplitude at the pick-up relative to the plan, and its phase relative to the calibration; empty if the
   /// tone was not measured
   std::optional<double> measured_dB, measured_phase_deg;
-  std::optional<double>
-      level_uncertainty_dB;  ///< empty if no parameter of the surface has a standard deviation
+  /// standard deviation of the level that the rig's parameters cause; empty if the rig does not say theirs
+  std::optional<double> level_uncertainty_dB;
 };
 
 /// The channels of a signal: one number per channel and point.

@@ -287,7 +287,7 @@ std::optional<scene::FingerShares> shares(const protocol::Survey& survey, const 
 /// Says that scenes ask more of the model than the rig's parameters are known for.
 void note_needless_tolerances(const Protocol& protocol, Check& check) {
   constexpr double far_below = 0.1;
-  const double level_sd_dB = check.finger ? check.finger->level_sd_dB : 0;
+  const double level_sd_dB = check.finger ? check.finger->level_sd_dB.value_or(0) : 0;
   double boundary_sd_mm = 0, boundary_mm = std::numeric_limits<double>::infinity(), level_dB = boundary_mm;
   std::set<std::string> scenes;
   for (const auto& sight : check.survey.sights) {

@@ -33,17 +33,24 @@ SurfaceFit surface_fit(const physics::BoundaryFit& fit) {
 /// Throws if boundaries contradict each other or the rig, and the fit could not leave out the wrong ones.
 void require_agreement(const physics::BoundaryFit& fit, const std::vector<BoundaryPoint>& points) {
   if (fit.left_out) return;
+  constexpr std::ptrdiff_t most = 10;
+  const auto all = std::count(fit.outliers.begin(), fit.outliers.end(), true);
   std::string named;
+  std::ptrdiff_t count = 0;
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (fit.outliers[i])
+    if (fit.outliers[i] && ++count <= most)
       named += fmt::format("{}{} mm at {} Hz", named.empty() ? "" : ", ",
                            core::number(1e3 * points[i].boundary_m), core::number(points[i].frequency_Hz));
+  if (all > most) named += fmt::format(", ... ({} in all)", all);
   if (!named.empty()) throw core::Refusal(core::phrase("series.contradict", {core::plain(named)}));
 }
 
 }  // namespace
 
 BoundaryFit fit_boundaries(const Rig& rig, const std::string& edge, std::vector<BoundaryPoint> points) {
+  if (points.size() > kMostBoundaries)
+    throw core::UsageError(fmt::format("{} boundaries are too many for the fit; give at most {}",
+                                       points.size(), kMostBoundaries));
   try {
     physics::MapOptions options;
     options.edge = physics::parse_edge(edge);

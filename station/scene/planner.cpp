@@ -390,8 +390,8 @@ void Planner::add_level_uncertainty(DrivePlan& plan) {
     if (is_new) {
       const double frequency_Hz = std::exp(step * std::log1p(kLevelStep));
       const auto at_m = physics::tone_info(surface(), frequency_Hz).last_peak_m;
-      const double sd_dB = at_m ? physics::level_uncertainty(surface(), frequency_Hz, *at_m).total_dB : 0;
-      if (sd_dB > 0) found->second = sd_dB;
+      const auto level = at_m ? level_of(surface(), frequency_Hz, *at_m, Parts::left_out) : std::nullopt;
+      if (level) found->second = level->total_dB;
     }
     tone.level_sd_dB = found->second;
   }

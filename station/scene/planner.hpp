@@ -42,7 +42,7 @@ struct DrivenTone {
   /// peak displacement at the tone's last maximum, or the largest peak displacement if there is no maximum
   double displacement_m = 0;
   double gain = 0;
-  /// standard deviation of the level at the last maximum; set by Planner::add_level_uncertainty
+  /// standard deviation of the level at the last maximum; see level_of(), set by add_level_uncertainty()
   std::optional<double> level_sd_dB;
 };
 
@@ -95,8 +95,7 @@ struct UnderFinger {
   /// finger
   double free_friction = 1, friction = 1;
   /// What the rig's uncertain parameters do to the highest tone's level at `finger_m`, and the 95 % interval
-  /// of the friction under the finger there if the levels of all tones move with it. Empty if no parameter of
-  /// the surface has a standard deviation.
+  /// of the friction under the finger there if the levels of all tones move with it; see level_of().
   std::optional<physics::LevelBudget> level;
   double friction_low = 1, friction_high = 1;
   double lowest_friction = 1;  ///< lowest relative friction that the finger meets at any position
@@ -134,8 +133,8 @@ class Planner {
   /// on a thick plate.
   std::optional<double> nearest_resonance_Hz(const DrivePlan& plan, double frequency_Hz);
 
-  /// Sets `level_sd_dB` of all tones from the standard deviations in the rig file, if there are any. It is
-  /// computed at frequencies that are 0.5 % apart, once for each: some 15 ms, on a thick plate 30 ms.
+  /// Sets `level_sd_dB` of all tones. It is computed at frequencies that are 0.5 % apart, once for each: some
+  /// 15 ms, on a thick plate 30 ms.
   void add_level_uncertainty(DrivePlan& plan);
 
   /// Computes the plan's scene under a finger. Takes some 100 ms; on a thick plate 1 s per tone.

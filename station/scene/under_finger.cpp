@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <stdexcept>
 
 #include "physics/field.hpp"
 
@@ -128,6 +129,17 @@ std::optional<FingerShift> finger_shift(const rig::Rig& rig, double frequency_Hz
   return shift;
 }
 
+std::optional<physics::LevelBudget> level_of(const physics::Surface& surface, double frequency_Hz,
+                                             double at_m, Parts parts) {
+  try {
+    auto level = parts == Parts::wanted ? physics::level_budget(surface, frequency_Hz, at_m)
+                                        : physics::level_uncertainty(surface, frequency_Hz, at_m);
+    if (level.total_dB > 0) return level;
+  } catch (const std::invalid_argument&) {  // a surface that is so far from the planned one cannot exist
+  }
+  return std::nullopt;
+}
+
 UnderFinger finger_figures(const physics::Surface& surface, const physics::FrictionMap& friction,
                            const rig::Rig& rig, physics::Model field_model, const DrivePlan& plan) {
   UnderFinger under;
@@ -156,16 +168,15 @@ UnderFinger finger_figures(const physics::Surface& surface, const physics::Frict
   under.lowest_friction = *std::min_element(pressed.begin(), pressed.end());
   under.friction_low = under.friction_high = under.friction;
   if (!plan.tones.empty()) {
-    auto level = physics::level_budget(surface, plan.tones.front().frequency_Hz, under.finger_m);
     const auto friction_at = [&](double level_dB) {
       const auto moved =
           felt(loaded, friction, rig.friction.fingertip_m, finger, std::pow(10.0, level_dB / 20));
       return nearest(loaded.x_m, moved, under.finger_m);
     };
-    if (!level.parts.empty()) {
-      under.friction_low = friction_at(level.high_dB);
-      under.friction_high = friction_at(level.low_dB);
-      under.level = std::move(level);
+    under.level = level_of(surface, plan.tones.front().frequency_Hz, under.finger_m, Parts::wanted);
+    if (under.level) {
+      under.friction_low = friction_at(under.level->high_dB);
+      under.friction_high = friction_at(under.level->low_dB);
     }
   }
   under.profile_x_m = loaded.x_m, under.profile_friction = pressed;
@@ -189,8 +200,8 @@ std::optional<FingerShares> finger_shares(const rig::Rig& rig, const std::vector
     if (!peak_m) continue;
     const double share = physics::finger_load(surface, frequency_Hz, {*peak_m}, finger)[0].share(finger);
     if (!shares) shares = FingerShares{};
-    shares->level_sd_dB =
-        std::max(shares->level_sd_dB, physics::level_uncertainty(surface, frequency_Hz, *peak_m).total_dB);
+    if (const auto level = level_of(surface, frequency_Hz, *peak_m, Parts::left_out))
+      shares->level_sd_dB = std::max(shares->level_sd_dB.value_or(0), level->total_dB);
     shares->least = std::min(shares->least, share), shares->most = std::max(shares->most, share);
   }
   return shares;

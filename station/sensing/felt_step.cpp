@@ -91,6 +91,11 @@ double soft_l1(const Step& step, const std::vector<Bin>& bins, double scale) {
   return sum;
 }
 
+/// The weight of a bin in the soft-L1 loss.
+double weight_of(const Step& step, const Bin& bin, double scale) {
+  return 1 / std::sqrt(1 + std::pow(step.miss(bin) / scale, 2));
+}
+
 /// Minimises the soft-L1 loss by Gauss-Newton steps with reweighting and Levenberg damping.
 Step refine(Step step, const std::vector<Bin>& bins, double scale) {
   double loss = soft_l1(step, bins, scale), damping = 1e-3;
@@ -98,11 +103,10 @@ Step refine(Step step, const std::vector<Bin>& bins, double scale) {
     Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
     Eigen::Vector4d right = Eigen::Vector4d::Zero();
     for (const Bin& bin : bins) {
-      const double miss = step.miss(bin);
       const auto by = step.derivatives(bin.position_mm);
-      const double weight = 1 / std::sqrt(1 + std::pow(miss / scale, 2));
+      const double weight = weight_of(step, bin, scale);
       normal += weight * by * by.transpose();
-      right += weight * miss * by;
+      right += weight * step.miss(bin) * by;
     }
     normal.diagonal() *= 1 + damping;
     normal.diagonal().array() += 1e-12;
@@ -156,11 +160,10 @@ std::vector<Bin> usable(const FrictionProfile& profile, int direction) {
 /// the part that the scatter of the strokes explains. It may be negative by chance.
 double shape_variance(const Step& step, const std::vector<Bin>& bins, double felt_mm, double scale,
                       std::optional<double> level) {
-  const auto weight = [&](const Bin& bin) { return 1 / std::sqrt(1 + std::pow(step.miss(bin) / scale, 2)); };
   Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
   for (const Bin& bin : bins) {
     const auto by = step.derivatives(bin.position_mm);
-    normal += weight(bin) * by * by.transpose();
+    normal += weight_of(step, bin, scale) * by * by.transpose();
   }
   normal.diagonal().array() += 1e-12;
   const Eigen::LDLT<Eigen::Matrix4d> solver(normal);
@@ -173,7 +176,7 @@ double shape_variance(const Step& step, const std::vector<Bin>& bins, double fel
   double variance = 0;
   for (const Bin& bin : bins) {
     const auto by = step.derivatives(bin.position_mm);
-    const double w = weight(bin), moved_by = w * by.dot(by_parameters);
+    const double w = weight_of(step, bin, scale), moved_by = w * by.dot(by_parameters);
     // the part of the bin's error that the fit follows, so that it is not in what the fit misses
     const double followed = std::min(most_followed, w * by.dot(solver.solve(by)));
     variance += moved_by * moved_by * (std::pow(step.miss(bin), 2) / (1 - followed) - bin.se * bin.se);

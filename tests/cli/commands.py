@@ -424,9 +424,10 @@ class Outputs(HelpExamples):
         self.write("falling.csv", b"frequency_Hz,boundary_mm,sd_mm\n26000,175,1\n30000,147,1\n36000,124,1\n")
         self.write("precise.csv", b"frequency_Hz,boundary_mm,sd_mm\n27000,180,1\n31000,160,1e-200\n36000,140,1\n")
         self.write("vague.csv", b"frequency_Hz,boundary_mm,sd_mm\n27000,180,1e9\n31000,160,1\n")
+        self.write("many.csv", b"frequency_Hz,boundary_mm,sd_mm\n" + 1001 * b"30000,147,1\n")
         self.write("sound.csv", b"frequency_Hz,level_dB\n0,60\n30000,60\n")
-        for option, name, says in (("--boundaries", "falling.csv", "contradict"), ("--boundaries", "precise.csv", "1e-9"),
-                                   ("--boundaries", "vague.csv", "1e-9"), ("--sound", "sound.csv", "sound level")):
+        for option, name, says in (("--boundaries", "falling.csv", "175 mm at 26000 Hz, "), ("--boundaries", "precise.csv", "1e-9"),
+                                   ("--boundaries", "vague.csv", "1e-9"), ("--boundaries", "many.csv", "at most 1000"), ("--sound", "sound.csv", "sound level")):
             self.refused(["calibrate", "--rig", "simulated", option, name, "--out", "refused.toml"], says)
             self.assertFalse(os.path.exists(os.path.join(self.folder, "refused.toml")))
         rig = os.path.join(SOURCE, "deploy/rigs/simulated.toml")

@@ -214,6 +214,20 @@ TEST_CASE("the uncertainty of a level agrees with the scatter of random surfaces
   CHECK(level_budget(known, 30e3, 0.1).parts.empty());
 }
 
+TEST_CASE("the quality factor moves a boundary by less than a twentieth of what the other parameters do",
+          "[physics]") {
+  Surface thick = plate();
+  thick.theory = PlateTheory::mindlin;
+  for (const Surface& s : {plate(), thick, membrane(LinearTaper{0.03, 0.1})})
+    for (const char* text : {"peak", "p50", "p10", "friction=0.7"}) {
+      const double x = solved_m(s, text, 30e3);
+      CAPTURE(text, s.quality_factor, x);
+      for (const double by : {-0.25, 0.25})
+        CHECK(std::abs(solved_m(changed(s, Parameter::quality_factor, by * s.quality_factor), text, 30e3) -
+                       x) < 0.05 * boundary_budget(s, 30e3, x).total_m);
+    }
+}
+
 TEST_CASE("a budget lists first the parameter whose measurement helps most", "[physics]") {
   Surface s = plate();
   const BoundaryBudget budget = boundary_budget(s, 30e3, solved_m(s, "p50", 30e3));

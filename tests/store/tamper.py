@@ -239,6 +239,7 @@ def main():
         shutil.copy(start, path)
         if verify():
             sys.exit("tamper: the unchanged database does not verify")
+        before = content(start)
         while made < options.changes:
             for ending in ("-wal", "-shm"):
                 if os.path.exists(path + ending):
@@ -258,7 +259,7 @@ def main():
                     os.replace(kept + ending, path + ending)
             if what is None:
                 continue
-            before, after = content(start), content(path)
+            after = content(path)
             if before == after:
                 sys.exit(f"tamper: nothing was changed by {what}")
             if what.split()[0] in ("UPDATE", "INSERT", "DELETE", "EXCHANGE") and before["sqlite_schema"] != after["sqlite_schema"]:
