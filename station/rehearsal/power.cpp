@@ -54,10 +54,13 @@ class Truths {
   Truths(const protocol::Protocol& protocol, const PowerOptions& options,
          const std::vector<SessionOutcome>& outcomes) {
     const simulation::Observer observer(options.observer);
-    for (const auto& spec : protocol.procedures)
+    // a procedure may run in blocks with different boundaries, and then converges on no one level
+    for (const auto& spec : protocol.procedures) {
+      if (!options.cautions.empty()) break;
       for (const auto& [parameter, value] : true_parameters(protocol, spec, observer))
         for (int number = 1; number <= protocol::session_count(protocol); ++number)
           add("procedure " + spec.name + session_suffix(protocol, number), parameter, value);
+    }
     for (const auto& spec : protocol.procedures)
       if (spec.kind == procedure::Kind::adjustment)
         for (const auto& condition : with_none(protocol::analysed_conditions(protocol)))

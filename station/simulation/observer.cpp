@@ -232,17 +232,18 @@ double Observer::drift(const Question& q) const {
   return half_logit / parameters_.bound;
 }
 
-double Observer::bound(double deadline_s) const {
-  if (deadline_s <= 0) return parameters_.bound;
+double Observer::bound(const Question& q) const {
+  if (q.caution) return *q.caution * parameters_.bound;
+  if (q.deadline_s <= 0 || q.signal_s) return parameters_.bound;
   // Without drift, the proportion of decisions later than t is P(T > t) <= 4/pi exp(-pi^2 t / (8 bound^2)).
   // The bound is chosen so that this is 4 %.
-  const double left_s = std::max(0.02, deadline_s - nondecision_s() - 0.5 * parameters_.residual_range_s);
+  const double left_s = std::max(0.02, q.deadline_s - nondecision_s() - 0.5 * parameters_.residual_range_s);
   return std::min(parameters_.bound, std::sqrt(0.35 * left_s));
 }
 
 double Observer::upper(const Question& q, double drift) const {
-  if (q.signal_s) return upper_by(drift, parameters_.bound, *q.signal_s);
-  return upper_probability(drift, bound(q.deadline_s), parameters_.start_range);
+  if (q.signal_s) return upper_by(drift, bound(q), *q.signal_s);
+  return upper_probability(drift, bound(q), parameters_.start_range);
 }
 
 double Observer::latency_s(const Question& q) const {
@@ -291,7 +292,7 @@ Reply Observer::answer(const Question& q) const {
   const double start = p.start_range * (2 * draws.uniform() - 1);
   const double pull = drift(q) + p.drift_sd * draws.normal();
   const auto passage = q.signal_s ? Passage{draws.uniform() < upper(q, pull), *q.signal_s}
-                                  : first_passage(pull, bound(q.deadline_s), start, draws);
+                                  : first_passage(pull, bound(q), start, draws);
   Reply reply;
   if (q.decides == Decides::right_answer) {
     // With three or more answers, and in ABX, fewer answers are right than with two intervals. So some walks
@@ -406,8 +407,8 @@ constexpr Key kKeys[] = {{"threshold", nullptr, &Parameters::threshold, true},
                          {"anticipation", &Parameters::anticipation, nullptr, false}};
 
 const Key* key_of(const std::string& name) {
-  const auto* found = std::find_if(std::begin(kKeys), std::end(kKeys),
-                                   [&name](const Key& key) { return name == key.name; });
+  const auto* found =
+      std::find_if(std::begin(kKeys), std::end(kKeys), [&name](const Key& key) { return name == key.name; });
   return found == std::end(kKeys) ? nullptr : found;
 }
 
@@ -429,7 +430,8 @@ void read_list(const std::string& list, const char* option, const std::string& a
     double value = 0;
     const char* first = part.data() + (equals == std::string::npos ? part.size() : equals + 1);
     const auto [last, error] = std::from_chars(first, part.data() + part.size(), value);
-    if (found == nullptr || error != std::errc{} || last != part.data() + part.size() || !std::isfinite(value))
+    if (found == nullptr || error != std::errc{} || last != part.data() + part.size() ||
+        !std::isfinite(value))
       throw core::UsageError(std::string(option) + ": \"" + part + "\" is not understood; write " + allowed);
     take(*found, value);
     at = end == std::string::npos ? end : end + 1;

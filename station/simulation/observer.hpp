@@ -65,8 +65,8 @@ struct Parameters {
 Parameters parse(const std::string& text);
 
 /// How much people differ in the parameters of an observer, by their names in parse(). The standard deviation
-/// of `threshold`, `gradient`, `floor`, `bias` and `criterion` is in their own unit, that of all others is the
-/// standard deviation of the natural logarithm.
+/// of `threshold`, `gradient`, `floor`, `bias` and `criterion` is in their own unit, that of all others is
+/// the standard deviation of the natural logarithm.
 using Spread = std::map<std::string, double>;
 
 /// Reads `threshold=0.03,bound=0.15,residual=0.1`. Throws core::UsageError.
@@ -134,6 +134,9 @@ struct Question {
   /// deadline of the answer; 0 if there is none. If time is short, the observer decides sooner and makes more
   /// errors
   double deadline_s = 0;
+  /// If set, the observer's decision boundaries lie so many times as far apart as Parameters::bound says,
+  /// whatever the deadline is. The drift stays, so the observer trades speed for accuracy.
+  std::optional<double> caution = {};
   /// If set, a signal asks for the answer at this time. The observer then gives the answer on which it has
   /// decided or, if it has not decided yet, the answer to which the evidence points so far. Because the
   /// answer is prepared, the observer then needs only half of its residual time, and the time to move; less
@@ -180,9 +183,9 @@ class Observer {
   /// Returns the probability that answer() gives `choice`. Lapses are included, anticipations are not.
   double share(const Question& question, int choice) const;
   Reply answer(const Question& question) const;
-  /// Returns the bound for this deadline (0: none), in square roots of a second. If time is short, the bound
+  /// Returns the bound for this question's deadline, in square roots of a second. If time is short, the bound
   /// is so low that only 4 % of the decisions come too late, even if nothing can be felt.
-  double bound(double deadline_s) const;
+  double bound(const Question& question) const;
   /// Returns the mean non-decision time, in s.
   double nondecision_s() const { return parameters_.residual_s + parameters_.travel_s; }
   /// Returns the mean time from the response signal to the answer, in s.

@@ -882,6 +882,20 @@ class LongWork(Folder):
         self.refused_in_one_sentence([*words[:7], "threshold=0.1"], "write sim:threshold=")
         self.refused_in_one_sentence([*words[:7], "bonud=0.1"], "\"bonud=0.1\" is not understood")
 
+    def test_an_observer_who_earns_the_most_is_joined_from_parts(self):
+        words = ["power", "reward-rate", "--observers", "4", "--intervals", "0", "--reward"]
+        for part in ("1", "2"):
+            self.write(f"reward{part}.json", run([*words, "--part", f"{part}/2"], self.folder)[1].encode())
+        whole = json.loads(run([*words, "--json"], self.folder)[1])
+        self.assertEqual(json.loads(run(["power", "--join", "reward1.json", "reward2.json", "--json"], self.folder)[1]), whole)
+        text = run(["power", "--join", "reward1.json", "reward2.json"], self.folder)[1]
+        self.assertEqual([one["block"] for one in whole["rewards"]], ["main, penalty 0 s", "main, penalty 1.5 s"])
+        for one in whole["rewards"]:
+            self.assertLess(0.9 * one["own"]["points_per_minute"], one["best"]["points_per_minute"])
+            self.assertIn(f"  {one['block']}: ", text)
+        self.refused_in_one_sentence(["power", "--join", "reward1.json", "reward2.json", "--reward"], "--reward cannot be used with --join")
+        self.refused_in_one_sentence(["power", "boundary-constant", "--reward"], "gives no points")
+
     def part(self, name, number, *more):
         status, out, err = run([*STUDY, "--part", number, *more], self.folder)
         self.assertEqual(status, 0, err)

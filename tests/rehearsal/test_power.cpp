@@ -12,6 +12,7 @@
 #include "station/core/usage_error.hpp"
 #include "station/rehearsal/parallel.hpp"
 #include "station/rehearsal/rehearsal.hpp"
+#include "station/rehearsal/reward.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -21,6 +22,8 @@ namespace {
 protocol::Protocol shipped(const std::string& name) {
   return protocol::load(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
 }
+
+std::string source_of_shipped(const std::string& name) { return shipped(name).source; }
 
 const rehearsal::Recovery& find(const rehearsal::Power& power, std::string_view source,
                                 std::string_view parameter) {
@@ -442,4 +445,78 @@ TEST_CASE("a procedure with a criterion recovers the observer's criterion, where
     }
     CHECK(find(power, "fit", "threshold").estimates.size() > 20);
   }
+}
+
+// Bogacz et al. 2006: with drift v and bounds b away from the start, a decision takes (b / v) tanh(v b) s and is right
+// with probability 1 / (1 + exp(-2 v b)).
+TEST_CASE("the observer who maximises the reward has the boundaries of the closed form", "[power][reward]") {
+  auto text = source_of_shipped("reward-rate");
+  const auto replaced = [](std::string& in, const std::string& what, const std::string& by) {
+    REQUIRE(in.find(what) != std::string::npos);
+    in.replace(in.find(what), what.size(), by);
+  };
+  replaced(text, "deadline_s = 2.0", "deadline_s = 30.0");
+  replaced(text, "explore_s = 4.0", "explore_s = 32.0");
+  const auto protocol = protocol::parse(text, "reward-rate.toml");
+  for (const double threshold : {0.1, 0.25}) {
+    const auto study = options("sim:lapse=0,threshold=" + std::to_string(threshold), 1);
+    const auto rewards = rehearsal::best_rewards(protocol, study);
+    REQUIRE(rewards.size() == 2);
+    simulation::Question question;
+    question.decides = simulation::Decides::side, question.level = 0.2;
+    const simulation::Observer observer(study.observer);
+    const double drift = observer.drift(question), own_bound = study.observer.bound;
+    for (const auto& reward : rewards) {
+      const double delay_s = reward.block.find("1.5") == std::string::npos ? 0 : 1.5;
+      const auto right = [&](double bound) { return 1 / (1 + std::exp(-2 * drift * bound)); };
+      const auto decision_s = [&](double bound) { return bound / drift * std::tanh(drift * bound); };
+      // what a trial takes besides the decision and the delay, from what the observer's own boundaries earn
+      const double rest_s = 60 * right(own_bound) / reward.own.points_per_minute - decision_s(own_bound) -
+                            delay_s * (1 - right(own_bound));
+      const auto rate = [&](double bound) {
+        return 60 * right(bound) / (rest_s + decision_s(bound) + delay_s * (1 - right(bound)));
+      };
+      double best = 0.01;
+      for (double bound = 0.01; bound < 4; bound += 0.001)
+        if (rate(bound) > rate(best)) best = bound;
+      CAPTURE(threshold, reward.block, rest_s, best / own_bound);
+      CHECK_FALSE(reward.at_end);
+      CHECK(reward.caution == Approx(best / own_bound).epsilon(0.2));
+      CHECK(rate(reward.caution * own_bound) > 0.99 * rate(best));
+      CHECK(reward.best.points_per_minute == Approx(rate(best)).epsilon(0.03));
+      CHECK(reward.own.right == Approx(right(own_bound)).margin(0.02));
+    }
+    CHECK(rewards[1].caution > rewards[0].caution);  // delays make care pay
+    // the study's observer has these boundaries, and his sessions earn more
+    auto maximises = study;
+    maximises.observers = maximises.interval_sessions = 8;
+    maximises.cautions = rehearsal::cautions_of(rewards);
+    const auto power = rehearsal::power(protocol, maximises);
+    const auto& boundary = find(power, "diffusion penalty 1.5 s", "boundary");
+    CHECK(*boundary.truth == Approx(0.2 * rewards[1].caution * own_bound));
+    CHECK(boundary.mean == Approx(*boundary.truth).epsilon(0.15));
+  }
+}
+
+TEST_CASE("where guessing at once or endless care pays, the search says that it ended there, and without points it "
+          "refuses",
+          "[power][reward]") {
+  auto text = source_of_shipped("reward-rate");
+  const auto place = text.find("right = 1\n");
+  REQUIRE(place != std::string::npos);
+  const auto with = [&](const std::string& points) {
+    auto changed = text;
+    changed.replace(place, 10, points + "\n");
+    return rehearsal::best_rewards(protocol::parse(changed, "reward-rate.toml"), options("sim:threshold=0.1", 1));
+  };
+  const auto equal = with("right = 1\nwrong = 1\nlate = -5");
+  REQUIRE(equal.size() == 2);
+  CHECK(equal[0].at_end);
+  CHECK(equal[0].caution == Approx(rehearsal::kLeastCaution));
+  CHECK_FALSE(equal[1].at_end);  // here a wrong answer costs time
+  for (const auto& reward : with("right = 0\nwrong = -100\nlate = 0")) {
+    CHECK(reward.at_end);
+    CHECK(reward.caution == Approx(rehearsal::kMostCaution));
+  }
+  CHECK_THROWS_AS(rehearsal::best_rewards(shipped("friction-2ifc"), options("sim", 1)), core::UsageError);
 }
