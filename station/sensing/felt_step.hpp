@@ -31,8 +31,7 @@ struct FeltStep {
 /// (jackknife), and assumes the same variance in both directions. What all strokes share is the shape of the
 /// step, which is not quite that of the fit: what the fit misses in the bins, as far as the strokes do not
 /// explain it by their scatter, counts as an error of each bin. Errors of the calibration of the force cells
-/// are in neither part. deploy/rigs/README.md says how often the interval
-/// holds.
+/// are in neither part. deploy/rigs/README.md says how often the interval holds.
 ///
 /// The result is empty with fewer than three strokes, without strokes in both directions, if a boundary is
 /// not inside the bins, if friction does not rise through the level, or if the height of the step is not
