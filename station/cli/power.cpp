@@ -398,7 +398,9 @@ void print(std::ostream& out, const rehearsal::Power& power) {
   fmt::print(out, "{}{} simulated sessions, on average {} trials and {} minutes each{}\n", power.observers,
              power.observers < power.asked ? fmt::format(" of {}", power.asked) : "", number(power.trials, 4),
              number(power.minutes, 3),
-             power.accuracy ? fmt::format(", {} % right", number(100 * *power.accuracy, 3)) : "");
+             power.accuracy
+                 ? fmt::format(", {} % of the scored answers right", number(100 * *power.accuracy, 3))
+                 : "");
   if (power.people > 0)
     fmt::print(out, "{} studies of {} people each, analysed as turnpoint report --study does\n",
                power.observers / power.people, power.people);

@@ -185,6 +185,44 @@ void check_counts(AdviceList& advice, const std::variant<Block, Sequence>& part)
         phrase("have the break after fewer trials"));
 }
 
+/// Compares the points of the answer "unsure" with those of a guess, for which it stands in the analysis.
+/// People who win by it say it of what they have felt, too, and people who lose by it guess.
+void check_unsure_points(AdviceList& advice, const Payoff& payoff) {
+  const auto& protocol = advice.protocol;
+  const bool stated = advice.places.has("payoff.unsure");
+  if (protocol.task.unsure.empty()) {
+    if (stated)
+      advice.add("payoff.unsure", phrase("\"unsure\" has no effect: the task has no such answer"),
+                 phrase("set \"unsure\" in [task], or leave it out here"));
+    return;
+  }
+  const auto* key = stated                              ? "payoff.unsure"
+                    : advice.places.has("payoff.wrong") ? "payoff.wrong"
+                                                        : "payoff.right";
+  const double p = chance(protocol);
+  std::vector<const Linear*> points{&payoff.right, &payoff.wrong, &payoff.unsure};
+  if (payoff.fast) points.push_back(&payoff.fast->points);
+  for (const auto& factors : corners(points, protocol.factors)) {
+    const auto of = [&](const Linear& worth) { return evaluate(worth, factors); };
+    const double right = of(payoff.right), wrong = of(payoff.wrong), unsure = of(payoff.unsure);
+    const double guess = p * right + (1 - p) * wrong;
+    const double fast = guess + p * std::max(0.0, payoff.fast ? of(payoff.fast->points) : 0.0);
+    const double rounding = 1e-9 * (std::fabs(right) + std::fabs(wrong) + std::fabs(unsure));
+    const bool more = unsure > fast + rounding;
+    if (!more && unsure > guess - rounding) continue;
+    const auto worth = plain(number(unsure, 3)), of_guess = plain(number(more ? fast : guess, 3));
+    return advice.add(
+        key,
+        more ? phrase("an \"unsure\" answer is worth %1 points, more than a guess (%2 on average): it pays "
+                      "to give it although one has felt something",
+                      {worth, of_guess})
+             : phrase("an \"unsure\" answer is worth %1 points, less than a guess (%2 on average): it pays "
+                      "to guess instead",
+                      {worth, of_guess}),
+        phrase("points for \"unsure\" that a guess wins on average: %1", {of_guess}));
+  }
+}
+
 /// Compares the points of trials with each other: whether it pays to be right, and to answer at all.
 void check_payoff(AdviceList& advice) {
   const auto& protocol = advice.protocol;
@@ -206,6 +244,7 @@ void check_payoff(AdviceList& advice) {
   if (payoff.fast && of(payoff.fast->points).second <= 0)
     advice.add("payoff.fast", phrase("a fast answer is not worth more than a slow one"),
                phrase("points above 0"));
+  check_unsure_points(advice, payoff);
 }
 
 /// Warns of a block whose procedures may end before its time is up.
@@ -213,8 +252,7 @@ void check_lasting(AdviceList& advice, const std::variant<Block, Sequence>& part
   const auto& block = block_of(part);
   const auto trials = most_trials(advice.protocol, block);
   if (!block.lasts_s || !trials) return;
-  constexpr double cue_s = 0.8;  // each trial begins with it
-  const double shortest_s = cue_s + shortest_deadline_s + advice.protocol.timing.iti_s.low;
+  const double shortest_s = quick_trial_s(advice.protocol, shortest_deadline_s);
   if (*trials * shortest_s < *block.lasts_s)
     advice.add(key_of(part, "lasts_s"),
                phrase("the %1 trials of the block can be over before %2 s",

@@ -128,6 +128,9 @@ inline bool in_stimulus(const ResponseSignal& signal) {
   return signal.by == ResponseSignal::By::tone || signal.by == ResponseSignal::By::buzz;
 }
 
+/// How long the page shows the get-ready cue, the feedback, and the message after a late answer.
+inline constexpr double kCue_s = 0.8, kFeedback_s = 0.8, kLate_s = 1.0;
+
 /// What the pause before the next trial is longer by, after a trial that was not right.
 struct Delay {
   Linear wrong, late, early;
@@ -217,7 +220,7 @@ struct Block {
   std::vector<double> levels;  ///< the fixed levels, presented in shuffled order
   std::optional<int> trials;
   /// The block ends with the trial in which its trials have lasted this long together, pauses between them
-  /// included. Breaks and void trials do not count.
+  /// included. Breaks, waits that the rig's limits impose, and void trials do not count.
   std::optional<double> lasts_s;
   Feedback feedback = Feedback::none;
   bool practice = false;

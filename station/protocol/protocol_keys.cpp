@@ -340,7 +340,7 @@ Keys trials(bool of_block) {
       number(
           "lasts_s", {10, 7200, Ends::closed, "s"},
           "the block ends with the trial in which its trials, with the pauses between them, have lasted this "
-          "long; breaks and void trials do not count")
+          "long; breaks, waits that the rig's limits impose, and void trials do not count")
           .without_it("until the procedures end"),
       word("feedback", {"none", "trial", "block"},
            "when the participant learns what was right: never, after each trial, after the block")

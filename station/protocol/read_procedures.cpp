@@ -227,7 +227,7 @@ void add_family(const Value& table, const std::string& name, std::vector<Spec> f
 }
 
 /// Tells the procedure how often a guess is right, if the participant may be unsure instead of guessing.
-void check_unsure(TableReader& reader, Spec& spec, const Reading& reading) {
+void read_unsure_rate(TableReader& reader, Spec& spec, const Reading& reading) {
   const auto& task = reading.protocol.task;
   if (task.unsure.empty() || task.choices.empty()) return;
   spec.guess_rate = 1.0 / static_cast<double>(task.choices.size());
@@ -250,7 +250,7 @@ Spec read_procedure(const Value& table, const Reading& reading, core::Findings& 
   const auto* factor = read_numeric_factor(reader, "level", reading);
   if (factor) spec.level = factor->name;
   procedure::description(spec.kind).read(reader, spec);
-  check_unsure(reader, spec, reading);
+  read_unsure_rate(reader, spec, reading);
   if (procedure::follows_answers(spec)) procedure::read_runs(reader, spec);
   check_max_run(reader, spec, reading);
   check_second(table, spec, reading, findings);

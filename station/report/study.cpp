@@ -210,9 +210,13 @@ double known_guess(const NamedFit& named) {
   return named.fit.parameters ? named.fit.parameters->guess : 0;
 }
 
-/// The same answers, counted by the other of two choices.
+/// The same answers, counted by the other of two choices. A guess that was not made would have chosen either
+/// in half of the cases.
 std::vector<analysis::LevelCount> turned(std::vector<analysis::LevelCount> counts) {
-  for (auto& point : counts) point.positive = point.trials - point.positive;
+  for (auto& point : counts) {
+    const int unsure = static_cast<int>(std::lround(2 * point.admitted));
+    point.positive = point.trials - unsure - point.positive;
+  }
   return counts;
 }
 

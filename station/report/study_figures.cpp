@@ -47,7 +47,7 @@ Points answers_of(const Study& study, const GroupFit& group, int series) {
         if (point.level == analysis::kNoise || point.trials == 0) continue;
         auto& level = levels[point.level];
         level.trials += point.trials;
-        level.shares.push_back(static_cast<double>(point.positive) / point.trials);
+        level.shares.push_back(point.sum() / point.trials);
       }
     }
   Points points;

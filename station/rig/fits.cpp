@@ -10,6 +10,7 @@
 #include "physics/boundary_budget.hpp"
 #include "physics/boundary_fit.hpp"
 #include "station/core/least_squares.hpp"
+#include "station/core/median.hpp"
 #include "station/core/number.hpp"
 #include "station/core/texts.hpp"
 #include "station/core/usage_error.hpp"
@@ -190,9 +191,7 @@ std::optional<double> quality_of(const std::vector<Resonance>& resonances) {
   if (resonances.empty()) return std::nullopt;
   std::vector<double> values;
   for (const Resonance& resonance : resonances) values.push_back(resonance.quality_factor);
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+  return core::median(values);
 }
 
 namespace {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "station/protocol/answers.hpp"
 #include "station/session/rows.hpp"
 #include "station/store/error.hpp"
 
@@ -21,12 +22,9 @@ constexpr std::int64_t kReading_ns = 500'000'000;
 /// answer. Otherwise the left button chooses the first answer, the right button the second, and the third
 /// button the third.
 std::optional<int> answer_of(const std::string& button, const protocol::Task& task) {
-  const auto& choices = task.choices;
-  for (std::size_t i = 0; i < choices.size(); ++i)
-    if (choices[i].id == button) return static_cast<int>(i);
-  const auto answers = static_cast<int>(choices.size()) + (task.unsure.empty() ? 0 : 1);
+  if (const auto named = protocol::answer_index(task, button)) return named;
   const int place = button == "left" ? 0 : button == "right" ? 1 : button == "third" ? 2 : -1;
-  return place >= 0 && place < answers ? std::optional(place) : std::nullopt;
+  return place >= 0 && place < protocol::answer_count(task) ? std::optional(place) : std::nullopt;
 }
 
 }  // namespace

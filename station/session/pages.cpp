@@ -137,9 +137,7 @@ std::string Pages::score_in_words(double points) const {
   const auto& payoff = *setup_.protocol.payoff;
   const auto worth = core::plain(amount(points, payoff));
   if (payoff.text.empty()) return core::say(core::phrase("points", {worth}), setup_.language);
-  auto words = text(payoff.text);
-  words.replace(words.find("%1"), 2, worth.words);
-  return words;
+  return core::say(core::phrase(text(payoff.text), {worth}), setup_.language);
 }
 
 void Pages::add_points(Page& page, double points, std::optional<double> score) const {

@@ -1,7 +1,8 @@
 #include "station/session/scores.hpp"
 
-#include <algorithm>
 #include <utility>
+
+#include "station/core/median.hpp"
 
 namespace turnpoint::session {
 
@@ -11,25 +12,23 @@ std::optional<double> BlockScore::accuracy() const {
 
 std::optional<double> BlockScore::median_time_s() const {
   if (times_s.empty()) return std::nullopt;
-  auto sorted = times_s;
-  std::sort(sorted.begin(), sorted.end());
-  const auto middle = sorted.size() / 2;
-  return sorted.size() % 2 == 1 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
+  return core::median(times_s);
+}
+
+void Scores::begin(const core::BlockStart& block) {
+  const auto found = scores_.find(block.block_index);
+  if (found != scores_.end() && found->second.attempt == block.attempt) return;
+  // if a session starts again, so do the blocks after this one
+  scores_.erase(scores_.lower_bound(block.block_index), scores_.end());
+  auto& score = scores_[block.block_index];
+  score.block = block.name, score.practice = block.practice, score.attempt = block.attempt;
 }
 
 void Scores::add(const core::BlockStart& block, const core::TrialRow& trial) {
   const bool missed = trial.outcome == core::Outcome::timeout || trial.outcome == core::Outcome::anticipation;
   const bool judged = trial.correct_response && (missed || trial.outcome == core::Outcome::answered);
   if (trial.type == core::TrialType::warmup || (!judged && !trial.points)) return;
-  auto& score = scores_[block.block_index];
-  if (score.attempt != block.attempt) {
-    score = {};
-    // if a session starts again, so do the blocks after this one
-    scores_.erase(scores_.upper_bound(block.block_index), scores_.end());
-  }
-  score.block = block.name;
-  score.practice = block.practice;
-  score.attempt = block.attempt;
+  auto& score = scores_.at(block.block_index);
   score.points += trial.points.value_or(0);
   if (!judged) return;
   ++score.trials;
@@ -38,8 +37,10 @@ void Scores::add(const core::BlockStart& block, const core::TrialRow& trial) {
 }
 
 void Scores::add(const std::vector<core::BlockRecord>& blocks) {
-  for (const auto& block : blocks)
+  for (const auto& block : blocks) {
+    begin(block.start);
     for (const auto& trial : block.trials) add(block.start, trial);
+  }
 }
 
 BlockScore Scores::of(int block_index) const {

@@ -8,8 +8,8 @@
 
 namespace turnpoint::session {
 
-/// What the participant has achieved in a block, as the pass mark of practice counts it: a trial that was not
-/// answered in time is wrong. Void, warm-up and unscored trials are left out.
+/// What the participant has achieved in a block, as the pass mark of practice counts it: missed, early and
+/// unsure answers count as not right. Void, warm-up and unscored trials are left out.
 struct BlockScore {
   std::string block;
   bool practice = false;
@@ -25,6 +25,10 @@ struct BlockScore {
 /// counts.
 class Scores {
  public:
+  /// Begins an attempt at a block, or goes on with the attempt that was begun last. A new attempt replaces
+  /// the one before it, and the blocks after it.
+  void begin(const core::BlockStart& block);
+  /// Adds a trial of an attempt that was begun.
   void add(const core::BlockStart& block, const core::TrialRow& trial);
   void add(const std::vector<core::BlockRecord>& blocks);
 

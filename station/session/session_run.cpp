@@ -100,8 +100,9 @@ Flow SessionRun::run_parts() {
 
 Flow SessionRun::run_block() {
   const auto block = *director_.block();
-  gate_.keep(
-      [&] { log_.begin_block(trial::block_start(block, director_.block_index(), director_.attempt())); });
+  const auto start = trial::block_start(block, director_.block_index(), director_.attempt());
+  gate_.keep([&] { log_.begin_block(start); });
+  scores_.begin(start);
   const auto first = next_trial();
   if (!first) return gate_.stop_asked() ? Flow::stop : leave_block();
   plans_.begin(*first);

@@ -78,12 +78,9 @@ void Director::State::learn(const TrialEnd& end) {
       end.outcome == core::Outcome::answered)
     return procedures[index]->record_setting(*end.setting);
   auto answer = procedure::Answer::none;
-  if (end.outcome == core::Outcome::answered && end.response) {
-    const auto& choices = protocol.task.choices;
-    const auto chosen = static_cast<std::size_t>(*end.response);
-    answer = protocol::learned_from(
-        *specs[index], chosen < choices.size() ? choices[chosen].id : protocol::kUnsure, end.correct);
-  }
+  if (end.outcome == core::Outcome::answered && end.response)
+    answer =
+        protocol::learned_from(*specs[index], protocol::answer_id(protocol.task, *end.response), end.correct);
   procedures[index]->record(answer);
 }
 
@@ -94,13 +91,7 @@ bool Director::State::time_is_up() const { return now()->lasts_s && spent_s >= *
 /// long as a quick answer takes.
 double Director::State::trial_s() const {
   constexpr double quick_s = 0.5;
-  if (trial > 0 && spent_s > 0) return spent_s / trial;
-  const auto& task = protocol.task;
-  const double gaps = static_cast<double>(std::max<std::size_t>(1, task.intervals.size()) - 1);
-  const double stimuli_s = protocol::explored(task)
-                               ? (task.foreperiod_s ? task.foreperiod_s->high : 0)
-                               : task.duration_s.value_or(0) * (gaps + 1) + task.gap_s.value_or(0) * gaps;
-  return kCue_s + stimuli_s + quick_s + 0.5 * (protocol.timing.iti_s.low + protocol.timing.iti_s.high);
+  return trial > 0 && spent_s > 0 ? spent_s / trial : protocol::quick_trial_s(protocol, quick_s);
 }
 
 int Director::State::block_expected(const Block& b) const {

@@ -33,10 +33,6 @@ struct TrialSpec {
   /// such a trial is then the displacement in um; 0 means that the surface is at rest.
   std::optional<protocol::Strokes> strokes;
   double iti_s = 0, foreperiod_s = 0;
-  struct Delay {
-    double wrong = 0, late = 0, early = 0;
-  };
-  Delay delay_s = {};  ///< what the pause after the trial is longer by (protocol::Delay)
   /// length (s) of the interval if the trial is an example; empty: the length that the task gives
   std::optional<double> length_s = {};
   double deadline_s = 0, anticipation_s = 0;

@@ -39,7 +39,6 @@ void Director::State::set_times(TrialSpec& spec) const {
     return protocol::evaluate(expression, spec.factors);
   };
   spec.anticipation_s = set(timing.anticipation_s);
-  spec.delay_s = {set(timing.delay_s.wrong), set(timing.delay_s.late), set(timing.delay_s.early)};
   if (timing.signal) {
     spec.signal_s = spec.anticipation_s = set(timing.signal->after_s);
     spec.deadline_s = *spec.signal_s + timing.signal->window_s;

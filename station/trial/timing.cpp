@@ -137,7 +137,7 @@ std::int64_t simulated_done_ns(const SimulatedTimes& times, const TrialSpec& spe
 
 Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec) {
   Timing plan;
-  plan.cue_ns = ns(kCue_s);
+  plan.cue_ns = ns(protocol::kCue_s);
   plan.watermark_ns = core::kWatermark_ns;
   for (const auto& interval : interval_times(protocol, spec)) {
     IntervalTiming timed{ns(interval.length_s), {}};
@@ -150,24 +150,25 @@ Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& bloc
   plan.deadline_ns = ns(spec.deadline_s);
   plan.anticipation_ns = ns(spec.anticipation_s);
   if (spec.signal_s) plan.signal_ns = ns(*spec.signal_s);
-  plan.feedback_ns = block.feedback == protocol::Feedback::trial ? ns(kFeedback_s) : 0;
-  plan.late_ns = ns(kLate_s);
+  plan.feedback_ns = block.feedback == protocol::Feedback::trial ? ns(protocol::kFeedback_s) : 0;
+  plan.late_ns = ns(protocol::kLate_s);
   plan.iti_ns = ns(spec.iti_s);
-  plan.wrong_delay_ns = ns(spec.delay_s.wrong);
-  plan.late_delay_ns = ns(spec.delay_s.late);
-  plan.early_delay_ns = ns(spec.delay_s.early);
-  plan.answers = protocol.task.kind == protocol::TaskKind::adjustment
-                     ? 1
-                     : static_cast<int>(protocol.task.choices.size());
-  if (!protocol.task.unsure.empty()) plan.unsure = plan.answers++;
   plan.correct = spec.correct;
   if (spec.strokes) {
-    plan.unsure.reset();
     plan.answers = 2;  // the two possible "answers": the movement was right or wrong
-    if (block.kind == protocol::BlockKind::training) plan.feedback_ns = ns(kLate_s);
+    if (block.kind == protocol::BlockKind::training) plan.feedback_ns = ns(protocol::kLate_s);
     return plan;
   }
-  if (protocol.task.confidence) plan.confidence = static_cast<int>(protocol.task.confidence->labels.size());
+  const auto& task = protocol.task;
+  const auto delay_ns = [&](const protocol::Linear& delay_s) {
+    return ns(protocol::evaluate(delay_s, spec.factors));
+  };
+  plan.wrong_delay_ns = delay_ns(protocol.timing.delay_s.wrong);
+  plan.late_delay_ns = delay_ns(protocol.timing.delay_s.late);
+  plan.early_delay_ns = delay_ns(protocol.timing.delay_s.early);
+  plan.answers = task.kind == protocol::TaskKind::adjustment ? 1 : protocol::answer_count(task);
+  plan.unsure = protocol::answer_index(task, protocol::kUnsure);
+  if (task.confidence) plan.confidence = static_cast<int>(task.confidence->labels.size());
   return plan;
 }
 

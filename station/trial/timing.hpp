@@ -11,9 +11,6 @@
 
 namespace turnpoint::trial {
 
-/// How long the page shows the get-ready cue, the feedback, and the message after a late answer.
-inline constexpr double kCue_s = 0.8, kFeedback_s = 0.8, kLate_s = 1.0;
-
 /// The moment from which response times of a trial are counted. In a block in which the finger only strokes
 /// the surface, it is the end of the interval, because the movement is judged then.
 core::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& spec);

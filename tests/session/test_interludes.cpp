@@ -10,6 +10,7 @@
 #include "station/session/resume.hpp"
 #include "station/store/verify.hpp"
 #include "tests/session/live_room.hpp"
+#include "tests/session/screen.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -116,15 +117,6 @@ session::Setup visit(const TemporaryFolder& folder) {
   return setup;
 }
 
-/// Simulates a crash: it throws an exception after a number of pages.
-struct Cut : session::Display {
-  int pages;
-  explicit Cut(int n) : pages(n) {}
-  void show(const session::Page&) override {
-    if (--pages == 0) throw std::runtime_error("the plug was pulled");
-  }
-};
-
 }  // namespace
 
 TEST_CASE("a questionnaire branches, Back withdraws an answer, and every answer is stored", "[session]") {
@@ -229,7 +221,7 @@ TEST_CASE("a session killed at any question goes on with the next one", "[sessio
   for (int page = 1; page <= 12; ++page) {
     INFO("killed at page " << page);
     request.database = folder / ("cut" + std::to_string(page) + ".sqlite");
-    Cut cut(page);
+    Screen cut(page);
     try {
       session::run(session::prepare(request), &cut, inputs);
     } catch (const std::runtime_error&) {

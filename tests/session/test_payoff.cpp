@@ -18,6 +18,7 @@
 #include "station/session/session.hpp"
 #include "station/simulation/observer.hpp"
 #include "station/store/read.hpp"
+#include "tests/session/screen.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -98,21 +99,6 @@ block = { procedures = ["levels"], lasts_s = )" +
          lasts_s + ", instruction = \"quick\", feedback = \"" + feedback + "\" }\n";
 }
 
-struct Screen : session::Display {
-  std::vector<session::Page> pages;
-  int cut = 0;  ///< the page at which the process dies; 0: none
-  void show(const session::Page& page) override {
-    pages.push_back(page);
-    if (cut > 0 && static_cast<int>(pages.size()) == cut) throw std::runtime_error("the plug was pulled");
-  }
-  std::vector<session::Page> titled(const std::string& title) const {
-    std::vector<session::Page> found;
-    for (const auto& page : pages)
-      if (page.title == title) found.push_back(page);
-    return found;
-  }
-};
-
 struct Station {
   TemporaryFolder folder;
   std::string database = folder / "points.sqlite", protocol = folder / "points.toml";
@@ -130,10 +116,6 @@ struct Station {
   }
 };
 
-}  // namespace
-
-namespace {
-
 /// What the protocol above says that a trial is worth.
 double worth(const core::TrialRow& row) {
   const double cost = std::get<double>(row.factors.at("cost"));
@@ -150,6 +132,17 @@ double worth(const core::TrialRow& row) {
 session::Summary run(const session::Setup& setup, Screen& screen) {
   session::Inputs inputs;
   return session::run(setup, &screen, inputs);
+}
+
+/// Pulls the plug at this page, and goes on with the session by the policy.
+session::Summary run_cut(const Station& station, const std::string& observer, int page,
+                         const std::string& policy, Screen& rest) {
+  Screen cut(page);
+  CHECK_THROWS(run(station.setup(observer), cut));
+  std::ostringstream messages;
+  const auto again = session::prepare_resume({station.database, "", policy, true}, messages);
+  REQUIRE(again);
+  return run(*again, rest);
 }
 
 constexpr const char* kCareless = "sim:threshold=6,anticipation=0.25,bound=1.2";
@@ -268,20 +261,40 @@ TEST_CASE("a session that is cut in a block of a fixed time goes on with its tim
   for (const int page : {40, 75, static_cast<int>(screen.pages.size()) - 12}) {
     INFO("cut at page " << page);
     const Station station(protocol_text());
-    Screen cut;
-    cut.cut = page;
-    CHECK_THROWS(run(station.setup(kCareless), cut));
-    std::ostringstream messages;
-    auto again = session::prepare_resume({station.database, "", "resume", true}, messages);
-    REQUIRE(again);
     Screen rest;
-    const auto summary = run(*again, rest);
+    const auto summary = run_cut(station, kCareless, page, "resume", rest);
     CHECK(summary.status == core::SessionStatus::completed);
     const auto found = trials(station, summary);
     REQUIRE(found.size() == rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) CHECK(found[i].points == rows[i].points);
     CHECK(summary.points == expected.points);
     CHECK(rest.pages.back().text == screen.pages.back().text);
+  }
+}
+
+TEST_CASE("a block or a session that starts again gives no points for what was abandoned", "[session]") {
+  for (const auto* policy : {"block", "restart"}) {
+    double abandoned = 0;
+    for (const int page : {60, 75}) {
+      INFO(policy << ", cut at page " << page);
+      const Station station(protocol_text());
+      Screen rest;
+      const auto summary = run_cut(station, kCareless, page, policy, rest);
+      CHECK(summary.status == core::SessionStatus::completed);
+      double all = 0;
+      std::map<int, std::pair<int, double>> blocks;  // the newest attempt and its points
+      for (const auto& block : store::read_session(station.database, summary.session_id).blocks) {
+        auto& [attempt, points] = blocks[block.start.block_index];
+        if (block.start.attempt > attempt) attempt = block.start.attempt, points = 0;
+        for (const auto& row : block.trials)
+          if (!block.start.practice && row.points) points += *row.points, all += *row.points;
+      }
+      double newest = 0;
+      for (const auto& [index, block] : blocks) newest += block.second;
+      CHECK(summary.points == Approx(newest));
+      abandoned += std::fabs(all - newest);
+    }
+    CHECK(abandoned > 0);
   }
 }
 
@@ -341,17 +354,48 @@ TEST_CASE("scores leave out voids and warm-ups, take the newest attempt, and sta
   warmup.type = core::TrialType::warmup;
   const core::BlockStart practice{0, 0, "practice", "", true}, first{1, 0, "main", "", false},
       second{2, 0, "main", "", false};
+  scores.begin(practice);
   for (const auto& row : {right, late, fault, warmup}) scores.add(practice, row);
   CHECK(scores.of(0).accuracy() == 0.5);
   CHECK(scores.of(0).median_time_s() == 0.5);
   CHECK(scores.points() == 0);
-  scores.add(first, right), scores.add(first, late), scores.add(second, right);
+  scores.begin(first), scores.add(first, right), scores.add(first, late);
+  scores.begin(second), scores.add(second, right);
   CHECK(scores.points() == 3);
   CHECK(scores.accuracies().at("main") == Approx(2.0 / 3));
   CHECK_FALSE(scores.of(7).accuracy());
-  scores.add({1, 1, "main", "", false}, right);
+  scores.begin(second);  // after a resume: goes on
+  CHECK(scores.points() == 3);
+  // a new attempt has no points before its first trial
+  const core::BlockStart again{1, 1, "main", "", false};
+  scores.begin(again);
+  CHECK(scores.points() == 0);
+  scores.add(again, right);
   CHECK(scores.points() == 2);
   CHECK(scores.of(2).trials == 0);
+  // so do blocks as they were stored, in the order in which they ran
+  session::Scores stored;
+  stored.add(
+      {{practice, {right}}, {first, {right}}, {second, {right, right}}, {{0, 1, "practice", "", true}, {}}});
+  CHECK(stored.points() == 0);
+  CHECK(stored.accuracies().empty());
+}
+
+TEST_CASE("missed, early and unsure answers count as not right, in a block's score as for its goal",
+          "[session]") {
+  session::Scores scores;
+  const core::BlockStart main{0, 0, "main", "", false};
+  scores.begin(main);
+  core::TrialRow row;
+  row.correct_response = "a";
+  for (const auto outcome : {core::Outcome::timeout, core::Outcome::anticipation, core::Outcome::answered}) {
+    row.outcome = outcome;  // the answer is "unsure": neither right nor wrong
+    scores.add(main, row);
+  }
+  row.correct = true;
+  scores.add(main, row);
+  CHECK(scores.of(0).trials == 4);
+  CHECK(scores.of(0).accuracy() == 0.25);
 }
 
 namespace {
@@ -406,6 +450,7 @@ stop = { trials = 60 }
 [[block]]
 name = "main"
 procedures = ["staircase"]
+feedback = "block"
 )";
 }
 
@@ -430,6 +475,12 @@ TEST_CASE("people who do not want to guess may say so, and the level steps as af
     const double step = !row.correct ? 2 : *row.correct ? -2 : 6;
     if (i + 1 < rows.size()) CHECK(*rows[i + 1].level == std::clamp(*row.level + step, 2.0, 40.0));
   }
+  const auto right =
+      std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row.correct == true; });
+  const auto over = screen.titled("End of this part");
+  REQUIRE(over.size() == 1);
+  CHECK(over.front().text.find(fmt::format(
+            "Correct: {:.0f}", 100.0 * static_cast<double>(right) / static_cast<double>(rows.size()))) == 0);
   CHECK(answers["unsure"] > 5);
   CHECK(answers["first"] > 5);
   CHECK(answers["second"] > 5);
@@ -444,14 +495,10 @@ TEST_CASE("people who do not want to guess may say so, and the level steps as af
 TEST_CASE("a session with unsure answers goes on after a crash as if nothing had happened", "[session]") {
   constexpr const char* kObserver = "sim:threshold=9,lapse=0,unsure=0.8";
   const Station whole(unforced_text()), station(unforced_text());
-  Screen screen, cut, rest;
+  Screen screen, rest;
   const auto expected = store::read_session(whole.database, run(whole.setup(kObserver), screen).session_id);
-  cut.cut = 200;
-  CHECK_THROWS(run(station.setup(kObserver), cut));
-  std::ostringstream messages;
-  auto again = session::prepare_resume({station.database, "", "resume", true}, messages);
-  REQUIRE(again);
-  const auto found = store::read_session(station.database, run(*again, rest).session_id);
+  const auto found =
+      store::read_session(station.database, run_cut(station, kObserver, 200, "resume", rest).session_id);
   REQUIRE(found.blocks.front().trials.size() == expected.blocks.front().trials.size());
   for (std::size_t i = 0; i < found.blocks.front().trials.size(); ++i) {
     CHECK(found.blocks.front().trials[i].level == expected.blocks.front().trials[i].level);

@@ -10,6 +10,7 @@
 #include "station/session/resume.hpp"
 #include "station/session/session.hpp"
 #include "station/store/read.hpp"
+#include "tests/session/screen.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/stochastic_approximation.hpp"
 
@@ -63,15 +64,6 @@ struct Watch : session::Monitor {
   }
   void trial_ended(const trial::TrialSpec&, const core::TrialRow& row) override {
     ended.push_back(row.level);
-  }
-};
-
-/// Simulates a crash: it throws an exception after a number of pages.
-struct Cut : session::Display {
-  int pages;
-  explicit Cut(int n) : pages(n) {}
-  void show(const session::Page&) override {
-    if (--pages == 0) throw std::runtime_error("the plug was pulled");
   }
 };
 
@@ -165,7 +157,7 @@ TEST_CASE(
   for (int page = 8; page < 40; page += 6) {
     INFO("cut at page " << page);
     const auto database = folder / ("cut" + std::to_string(page) + ".sqlite");
-    Cut cut(page);
+    Screen cut(page);
     session::Inputs inputs;
     auto setup = session::prepare(request_for("demo", database));
     setup.protocol.resume.warmup = 0;
@@ -205,7 +197,7 @@ TEST_CASE(
   for (const int page : {70, 100, 130}) {
     INFO("cut at page " << page);
     const auto database = "cut" + std::to_string(page) + ".sqlite";
-    Cut cut(page);
+    Screen cut(page);
     session::Inputs inputs;
     CHECK_THROWS_AS(session::run(session::prepare(request(database)), &cut, inputs), std::runtime_error);
     const auto before = store::list_sessions(folder / database).front().trials;
@@ -229,7 +221,7 @@ TEST_CASE(
 
 TEST_CASE("a session log is not continued with a different protocol text", "[session]") {
   const Folder folder;
-  Cut cut(30);
+  Screen cut(30);
   session::Inputs inputs;
   auto setup = session::prepare(request_for("demo", folder / "a.sqlite"));
   CHECK_THROWS(session::run(setup, &cut, inputs));
@@ -244,7 +236,7 @@ TEST_CASE("a session log is not continued if factors would be combined in anothe
   // If the levels of a balanced factor are in another order, the staircase presents the same levels, but the
   // positions of the marks change.
   const Folder folder;
-  Cut cut(60);
+  Screen cut(60);
   session::Inputs inputs;
   CHECK_THROWS(
       session::run(session::prepare(request_for("boundary-constant", folder / "a.sqlite")), &cut, inputs));
@@ -321,7 +313,7 @@ TEST_CASE(
 TEST_CASE("a simulated session is not continued with another simulated observer", "[session]") {
   const Folder folder;
   const auto database = folder / "a.sqlite";
-  Cut cut(30);
+  Screen cut(30);
   session::Inputs inputs;
   const auto setup = session::prepare(request_for("demo", database));
   CHECK_THROWS_AS(session::run(setup, &cut, inputs), std::runtime_error);

@@ -38,6 +38,10 @@ link <- function(name, guess, lapse) {
 for (i in seq_len(nrow(groups))) {
   group <- groups[i, ]
   part <- answers[answers$condition == group$condition, ]
+  if (any(part$positive %% 1 != 0)) {
+    message("no comparison for ", group$condition, ": unsure answers count as fractions, which lme4 rounds")
+    next
+  }
   # lme4 wants levels of the order of 1
   centre <- mean(part$axis); width <- sd(part$axis)
   part$x <- (part$axis - centre) / width
