@@ -234,7 +234,7 @@ void add_points(const std::vector<TrialRecord>& trials, InstructionResult& resul
     points.push_back(*trial.points);
     minutes.push_back(trial.duration_s / 60);
   }
-  result.points = student_ratio(points, std::vector<double>(points.size(), 1));
+  result.points = student_mean(points);
   result.points_per_minute = student_ratio(points, minutes);
 }
 
