@@ -457,9 +457,12 @@ void add_differences(const Summary& summary, Document& document) {
     if (!has(row, summary) || *row.difference == '\0') continue;
     auto& cells = table.rows.emplace_back();
     cells.push_back(head(phrase(row.title)));
-    for (const auto& pair : pairs)
-      for (const auto& one : differences)
-        if (one.measure == row.difference && pair_of(one) == pair) cells.push_back(difference_cell(one));
+    for (const auto& pair : pairs) {
+      const auto found = std::find_if(differences.begin(), differences.end(), [&](const auto& one) {
+        return one.measure == row.difference && pair_of(one) == pair;
+      });
+      cells.push_back(found == differences.end() ? estimated(std::nullopt) : difference_cell(*found));
+    }
   }
   document.table(std::move(table));
 }

@@ -85,6 +85,14 @@ void keep(const std::string& name, const std::string& text) {
     std::ofstream(std::string(folder) + "/" + name) << text;
 }
 
+/// The words of a text, in English.
+std::string said(const Text& text) {
+  std::string all;
+  for (const auto& run : text.runs)
+    if (const auto* phrase = std::get_if<core::Phrase>(&run.what)) all += core::say(*phrase, "en");
+  return all;
+}
+
 std::string shown(const std::optional<report::Figure>& figure) {
   REQUIRE(figure);
   const auto svg = report::render(*figure);
@@ -151,6 +159,37 @@ TEST_CASE("The macro trade has d' and time of each condition with their interval
   auto signalled = data;
   signalled.signalled = true;  // the lags are the macro trade then
   CHECK_FALSE(macro_figure(summarise(signalled)));
+}
+
+TEST_CASE("A difference that could not be estimated leaves the others under their own pairs of conditions",
+          "[report]") {
+  Summary summary;
+  summary.data = head();
+  summary.data.payoff = true;
+  const char* names[] = {"fast", "even", "slow"};
+  for (const auto* name : names) summary.trade.instructions.emplace_back().instruction = name;
+  for (int a = 0; a < 3; ++a)
+    for (int b = a + 1; b < 3; ++b)
+      summary.trade.differences.push_back({names[a], names[b], "proportion correct", "proportion", {}});
+  const analysis::Estimate points{7, {6, 8}};
+  summary.trade.differences.push_back({"fast", "slow", "points a trial", "points", points});
+  const Table* found = nullptr;
+  const auto all = document(summary);
+  for (const auto& part : all.parts)
+    if (const auto* table = std::get_if<Table>(&part); table && table->columns.size() == 4) {
+      if (said(table->columns[2].title) == "slow \u2212 fast") found = table;
+    }
+  REQUIRE(found);
+  bool points_found = false;
+  for (const auto& row : found->rows) {
+    REQUIRE(row.size() == 4);
+    if (said(row[0].text) != "Points a trial") continue;
+    points_found = true;
+    CHECK(row[1].kind == Cell::Kind::missing);
+    CHECK(row[2].kind == Cell::Kind::number);
+    CHECK(row[3].kind == Cell::Kind::missing);
+  }
+  CHECK(points_found);
 }
 
 TEST_CASE("Comparisons are corrected for their number only if the protocol asks for it", "[report]") {
