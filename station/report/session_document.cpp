@@ -670,6 +670,8 @@ void add_course(const Summary& summary, Document& document) {
              Text(" %") +
              (bias->criterion ? ", criterion c = " + Text(Number{*bias->criterion, {}, 2}) : Text()));
   trend("Trend of response time", summary.fatigue.response_time_s, " s");
+  document.explain(
+      "Trials of practice are left out. Void trials are those that were aborted or had a fault.");
   if (summary.data.scored && summary.data.design != Design::adjustment)
     trend("Trend of accuracy", summary.fatigue.proportion_correct, " (proportion correct)");
   document.table(std::move(table));
