@@ -119,10 +119,6 @@ std::string psychometric_caption(const Summary& summary) {
   return caption;
 }
 
-std::string or_default(const std::string& name, const std::string& fallback) {
-  return name.empty() ? fallback : name;
-}
-
 }  // namespace
 
 namespace {
@@ -216,7 +212,7 @@ std::optional<Figure> trace_figure(const Summary& summary) {
     }
     if (!wrong.x.empty()) right.name = words("figure.right"), wrong.name = words("figure.wrong");
     Chart panel;
-    panel.title = or_default(trace.procedure, words("figure.all_trials"));
+    panel.title = words(name_of(trace.procedure));
     panel.x = report::fitted(words("figure.trial_in_session"), line.x, 0.03);
     panel.x.counts = true;
     panel.y = report::fitted(summary.data.level_label, line.y, 0.1);
@@ -333,7 +329,7 @@ std::optional<Figure> confusion_figure(const Summary& summary) {
     for (const auto& row : confusion.rows)
       for (const int count : row.answers) shares.values.push_back(static_cast<double>(count) / row.trials);
     Chart chart;
-    chart.title = or_default(confusion.condition, words("figure.all_trials"));
+    chart.title = words(name_of(confusion.condition));
     chart.x = {words("figure.answer"), 0.5, shares.x_edges.back(), AxisScale::linear, true,
                summary.data.choices};
     chart.y = {words("figure.stimulus"), 0.5, shares.y_edges.back(), AxisScale::linear, true};
@@ -399,7 +395,7 @@ std::optional<Figure> response_time_figure(const Summary& summary) {
     const auto& entry = summary.trade.instructions[i];
     bars[i].series = static_cast<int>(i);
     Chart panel;
-    panel.title = or_default(entry.instruction, words("figure.all_trials"));
+    panel.title = words(name_of(entry.instruction));
     panel.x = {words("figure.response_time"), 0, high};
     panel.y = {words("figure.trials"), 0, tallest * 1.12, AxisScale::linear, true};
     panel.layers.push_back(bars[i]);
@@ -427,7 +423,7 @@ std::optional<Figure> quantile_probability_figure(const Summary& summary) {
   std::vector<double> times{0};
   for (const auto& entry : summary.trade.instructions) {
     if (!entry.check) continue;
-    Chart chart{name_of(entry.instruction), {}, {}, {}, false};
+    Chart chart{core::say(name_of(entry.instruction), summary.data.language), {}, {}, {}, false};
     for (std::size_t q = 0; q < analysis::kPredictedQuantiles.size(); ++q) {
       Points points;
       std::vector<std::pair<double, double>> predicted;
@@ -518,7 +514,7 @@ std::optional<Chart> conditions_chart(const Summary& summary, const Words& words
     Points point;
     point.x = {right.mean_s}, point.y = {accuracy.value};
     region.series = point.series = own;
-    point.name = or_default(entry.instruction, words("figure.all_trials"));
+    point.name = words(name_of(entry.instruction));
     times_s.insert(times_s.end(), region.x.begin(), region.x.end());
     accuracies.insert(accuracies.end(), {accuracy.interval.low, accuracy.interval.high});
     chart.layers.push_back(region);
@@ -564,7 +560,7 @@ std::optional<Figure> trade_figure(const Summary& summary) {
     }
     caf_times.insert(caf_times.end(), bins.x.begin(), bins.x.end());
     cell_times.insert(cell_times.end(), by_difficulty.x.begin(), by_difficulty.x.end());
-    const auto name = or_default(entry.instruction, words("figure.all_trials"));
+    const auto name = words(name_of(entry.instruction));
     bins.series = bin_line.series = by_difficulty.series = series++;
     bins.name = bin_line.name = by_difficulty.name = name;
     bin_line.x = bins.x, bin_line.y = bins.y;
@@ -610,7 +606,7 @@ std::optional<Figure> macro_figure(const Summary& summary) {
     point.x = {time.value}, point.y = {height.value};
     point.low = {height.interval.low}, point.high = {height.interval.high};
     across.series = point.series = own;
-    point.name = or_default(entry.instruction, words("figure.all_trials"));
+    point.name = words(name_of(entry.instruction));
     chart.layers.insert(chart.layers.end(), {across, point});
     joined.emplace_back(time.value, height.value);
     times_s.insert(times_s.end(), across.x.begin(), across.x.end());
@@ -643,7 +639,7 @@ std::optional<Figure> roc_figure(const Summary& summary) {
   for (const auto& entry : summary.rocs) {
     if (figure.charts.empty() || entry.condition != last) {
       figure.charts.push_back(
-          {or_default(entry.condition, words("figure.all_trials")), {"False alarms", 0, 1}, {"Hits", 0, 1}, {}});
+          {words(name_of(entry.condition)), {"False alarms", 0, 1}, {"Hits", 0, 1}, {}});
       last = entry.condition;
     }
     auto& layers = figure.charts.back().layers;
@@ -670,7 +666,7 @@ std::optional<Figure> signal_figure(const Summary& summary) {
     Points points;
     Line line;
     points.series = line.series = series++;
-    points.name = line.name = or_default(curve.condition, words("figure.all_trials"));
+    points.name = line.name = words(name_of(curve.condition));
     for (const auto& point : curve.points) {
       if (!point.d_prime) continue;
       points.x.push_back(point.time_s), points.y.push_back(point.d_prime->value);

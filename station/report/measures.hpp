@@ -11,7 +11,7 @@ namespace turnpoint::report {
 template <class Of>
 struct Measure {
   const char* key;    ///< in JSON
-  const char* title;  ///< of its row: a text of the catalogues, or English words
+  const char* title;  ///< of its row: the key of a text
   std::optional<analysis::Estimate> Of::*value;
   const char* difference = "";  ///< the name of its difference between conditions; "" if it has none
   const char* part = "";  ///< the part of the report (shows()) to which it belongs; "" if every report has it
@@ -23,21 +23,21 @@ inline constexpr Measure<Result> kSpeedAndAccuracy[] = {
     {"proportion_correct", "report.proportion_right", &Result::proportion_correct, "proportion correct", "",
      true},
     {"median_response_time_s", "figure.median_time", &Result::median_s, "median response time", "", true},
-    {"d_prime", "Sensitivity d\u2032 over all levels (standard deviations)", &Result::d_prime, "d'"},
+    {"d_prime", "report.d_prime", &Result::d_prime, "d'"},
     {"boundary", "report.boundary", &Result::boundary, "boundary", "ez"},
     {"nondecision_s", "report.nondecision", &Result::nondecision_s, "time outside the decision", "ez"},
-    {"drift", "Drift v, mean over difficulties (1/s, s = 0.1)", &Result::drift, "drift", "ez"},
-    {"contaminants", "Share of trials that were no decision (0 to 1)", &Result::contaminants, "", "ez"},
-    {"lisas_s", "LISAS (s)", &Result::lisas_s, "LISAS", "lisas"},
+    {"drift", "report.drift", &Result::drift, "drift", "ez"},
+    {"contaminants", "report.contaminants", &Result::contaminants, "", "ez"},
+    {"lisas_s", "report.lisas", &Result::lisas_s, "LISAS", "lisas"},
     {"inverse_efficiency_s", "report.inverse_efficiency", &Result::inverse_efficiency_s, "inverse efficiency",
      "ies"},
-    {"points", "Points a trial", &Result::points, "points a trial", "points"},
-    {"points_per_minute", "Points a minute, of trials with their pauses", &Result::points_per_minute,
+    {"points", "report.points", &Result::points, "points a trial", "points"},
+    {"points_per_minute", "report.points_per_minute", &Result::points_per_minute,
      "points a minute", "points"},
-    {"post_error_slowing_s", "Slower after an error than before it (s)", &Result::post_error_s},
-    {"repetition", "Answers that repeat the last answer, more than right ones would (share)",
+    {"post_error_slowing_s", "report.post_error", &Result::post_error_s},
+    {"repetition", "report.repetition",
      &Result::repetition},
-    {"late_boundary", "Boundary, second half of the blocks \u2212 first half (s = 0.1)",
+    {"late_boundary", "report.late_boundary",
      &Result::late_boundary, "", "ez"}};
 
 using Touched = analysis::FingerCondition;

@@ -67,6 +67,7 @@ struct ThresholdCurve {
 using Fact = std::pair<std::string, std::string>;
 /// A fact in a language that is chosen later.
 using SpokenFact = std::pair<core::Phrase, core::Phrase>;
+
 /// The measured vibration of a trial's stimuli, compared with the plan.
 struct MeasuredTrial {
   int trial_index = 0;
@@ -145,7 +146,7 @@ struct SessionData : LevelAnalysis {
 SessionData part_of(const SessionData& data, std::size_t part);
 
 /// True if the report contains this part: "psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime",
-/// "response-signal" or "trace". If the protocol does not choose the parts, the report contains all of them,
+/// "response-signal" or "trace", which the protocol may choose, or "points", which a payoff decides. If the protocol does not choose the parts, the report contains all of them,
 /// with two exceptions: d' only for yes/no tasks and where `deciding` has a model, and the diffusion model
 /// only for two answers that come without a response signal.
 bool shows(const SessionData& data, const std::string& part);

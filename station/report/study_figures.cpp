@@ -101,7 +101,7 @@ std::optional<Figure> group_curve_figure(const Study& study) {
     if (!group.result.fit || !group.result.fit->threshold) continue;
     const auto& fit = *group.result.fit;
     Chart chart;
-    chart.title = name_of(group.condition);
+    chart.title = core::say(name_of(group.condition), "en");
     const auto& part = analysis_of(group, study.settings);
     chart.x =
         report::fitted(part.level_label, levels_of(study, group.part), 0.05,
@@ -160,7 +160,7 @@ std::optional<Figure> shrinkage_figure(const Study& study) {
     }
     if (all.empty()) continue;
     Chart chart;
-    chart.title = name_of(group.condition);
+    chart.title = core::say(name_of(group.condition), "en");
     chart.x = {"Participant", 0.4, number + 0.6, AxisScale::linear, true, codes};
     chart.y = report::fitted(analysis_of(group, study.settings).level_label, all, 0.08);
     chart.layers.push_back(Rule{Rule::Direction::horizontal, group.result.fit->threshold->value, "group"});
@@ -230,7 +230,7 @@ std::optional<Chart> course_chart(const Study& study, const std::string& heights
     Points points;
     Line line;
     points.series = line.series = series++;
-    points.name = name_of(condition);
+    points.name = core::say(name_of(condition), "en");
     for (const auto& height : study.means) {
       if (!height.measure.starts_with(heights) || height.condition != condition || !height.mean) continue;
       const auto wanted = times + height.measure.substr(heights.size());

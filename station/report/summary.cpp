@@ -299,6 +299,7 @@ core::Phrase describe_intervals(const NamedFit& named, const SessionData& data) 
 }
 
 bool shows(const SessionData& data, const std::string& part) {
+  if (part == "points") return data.payoff;
   if (data.show) return std::find(data.show->begin(), data.show->end(), part) != data.show->end();
   if (part == "response-signal") return true;
   if (part == "ez") return data.choices.size() <= 2 && !data.signalled && !data.unsure;

@@ -89,4 +89,7 @@ std::vector<analysis::CurveDifference> curve_differences_of(
 /// seed included. Takes about 0.3 s with 1000 replicates.
 Summary summarise(const SessionData& data);
 
+/// Returns the content of the report as one JSON document. Missing values are null.
+std::string to_json(const Summary& summary);
+
 }  // namespace turnpoint::report

@@ -10,8 +10,14 @@
 namespace turnpoint::report {
 
 /// The name of a condition, or "all trials" if there is only one condition.
-inline std::string name_of(const std::string& condition) {
-  return condition.empty() ? core::text("figure.all_trials", "en") : condition;
+inline core::Phrase name_of(const std::string& condition) {
+  return condition.empty() ? core::phrase("figure.all_trials") : core::plain(condition);
+}
+
+/// A name with its unit, or with "no unit" if that is empty.
+inline core::Phrase in_unit(core::Phrase name, core::Phrase unit) {
+  if (unit.empty()) unit = core::phrase("report.no_unit");
+  return {"", "", {std::move(name), core::plain(" ("), std::move(unit), core::plain(")")}};
 }
 
 /// With a typographic minus sign.

@@ -450,14 +450,17 @@ TEST_CASE("Every figure of a report has a caption that says whose trials it show
 
 TEST_CASE("A number of a report has the digits that its interval determines, and says what is not determined",
           "[report]") {
-  using Shown = std::pair<std::string, std::string>;
+  const auto shown = [](const Number& number, const char* language = "en") {
+    const auto [value, interval] = in_known_digits(number);
+    return core::say(value, language) + " " + core::say(interval, language);
+  };
   const double endless = std::numeric_limits<double>::infinity();
-  CHECK(in_known_digits({-0.51234}) == Shown("\u22120.512", ""));
-  CHECK(in_known_digits({-0.51234, analysis::Interval{-0.71, -0.31}}) ==
-        Shown("\u22120.512", "[\u22120.710, \u22120.310]"));
-  CHECK(in_known_digits({2, analysis::Interval{1, 3}, 3, true, true}).second == "[\u2264 1.00, \u2265 3.00]");
-  CHECK(in_known_digits({2, analysis::Interval{1, endless}}).second == "[1.00, not determined]");
-  CHECK(in_known_digits({2, analysis::Interval{1, endless}, 3, false, false, true}).second == "[1, \u221e]");
+  CHECK(shown({-0.51234}) == "\u22120.512 ");
+  CHECK(shown({-0.51234, analysis::Interval{-0.71, -0.31}}) == "\u22120.512 [\u22120.710, \u22120.310]");
+  CHECK(shown({2, analysis::Interval{1, 3}, 3, true, true}) == "2.00 [\u2264 1.00, \u2265 3.00]");
+  CHECK(shown({2, analysis::Interval{1, endless}}) == "2.00 [1.00, not determined]");
+  CHECK(shown({2, analysis::Interval{1, endless}}, "de") == "2.00 [1.00, nicht bestimmt]");
+  CHECK(shown({2, analysis::Interval{1, endless}, 3, false, false, true}) == "2 [1, \u221e]");
 }
 
 TEST_CASE("A curve ends where its band ends", "[report]") {
