@@ -450,12 +450,12 @@ void add_differences(const Summary& summary, Document& document) {
   for (const auto& [first, second] : pairs) table.columns.push_back({second_minus_first(first, second), true});
   if (pairs.empty()) return;
   for (const auto& row : kSpeedAndAccuracy) {
-    if (!has(row, summary) || *row.difference == '\0') continue;
+    if (!has(row, summary) || !row.compared) continue;
     auto& cells = table.rows.emplace_back();
     cells.push_back(head(phrase(row.title)));
     for (const auto& pair : pairs) {
       const auto found = std::find_if(differences.begin(), differences.end(), [&](const auto& one) {
-        return one.measure == row.difference && pair_of(one) == pair;
+        return one.measure == row.name && pair_of(one) == pair;
       });
       cells.push_back(found == differences.end() ? estimated(std::nullopt) : difference_cell(*found));
     }
@@ -533,15 +533,15 @@ void add_trade_in_words(const Summary& summary, Document& document) {
                                                         gap.interval.confidence}};
   };
   for (const auto& pair : differences) {
-    if (pair.measure != "proportion correct") continue;
-    const auto *right = of(pair, "proportion correct"), *time = of(pair, "median response time");
+    if (pair.measure != analysis::kCorrect) continue;
+    const auto *right = of(pair, analysis::kCorrect), *time = of(pair, analysis::kMedianTime);
     if (right == nullptr || time == nullptr) continue;
     auto text = "Compared with " + Text(name_of(pair.first), Look::strong) + ", answers under " +
                 Text(name_of(pair.second), Look::strong) + " came " + size(*time->estimate, 1) + " s " +
                 (time->estimate->value < 0 ? "sooner" : "later") + " (median) and were right " +
                 size(*right->estimate, 100) + " % of the trials " +
                 (right->estimate->value < 0 ? "less" : "more") + " often.";
-    const auto *boundary = of(pair, "boundary"), *drift = of(pair, "drift");
+    const auto *boundary = of(pair, analysis::kBoundary), *drift = of(pair, analysis::kDrift);
     if (boundary != nullptr && drift != nullptr)
       text += std::string(" The boundary ") +
               change(*boundary, "was lower (less caution)", "was higher (more caution)") + "; the drift " +

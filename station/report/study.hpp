@@ -73,11 +73,9 @@ struct Study {
   std::vector<analysis::Statement> statements;
 };
 
-/// Names of measures that figures of a study look for. The last four, and analysis::kBinMeasure, are followed
-/// by the bin ("1 of 5") or the lag ("0.35 s").
-inline constexpr const char *kCorrect = "proportion correct", *kMedianTime = "median response time",
-                            *kSensitivity = "d'", *kBinTime = "mean time in time bin ",
-                            *kLagSensitivity = "d' at the signal after ",
+/// Names of measures that figures of a study look for beside those of analysis/trade.hpp. They are followed by the bin
+/// ("1 of 5") or the lag ("0.35 s").
+inline constexpr const char *kBinTime = "mean time in time bin ", *kLagSensitivity = "d' at the signal after ",
                             *kLagTime = "response time at the signal after ";
 
 /// Number of bootstrap replicates for the intervals of single participants.

@@ -178,7 +178,7 @@ std::optional<Figure> group_trade_figure(const Study& study) {
   std::vector<double> times, accuracies;
   std::vector<std::string> conditions;
   for (const auto& mean : study.means)
-    if (mean.measure == kCorrect) conditions.push_back(mean.condition);
+    if (mean.measure == analysis::kCorrect) conditions.push_back(mean.condition);
   int series = 0;
   for (const auto& condition : conditions) {
     Points points;
@@ -188,8 +188,8 @@ std::optional<Figure> group_trade_figure(const Study& study) {
       std::optional<double> time, accuracy;
       for (const auto& measure : person.measures) {
         if (measure.condition != condition) continue;
-        if (measure.measure == kMedianTime) time = measure.value;
-        if (measure.measure == kCorrect) accuracy = measure.value;
+        if (measure.measure == analysis::kMedianTime) time = measure.value;
+        if (measure.measure == analysis::kCorrect) accuracy = measure.value;
       }
       if (!time || !accuracy || !person.excluded.empty()) continue;
       points.x.push_back(*time), points.y.push_back(*accuracy);
@@ -280,7 +280,7 @@ std::optional<Figure> group_course_figure(const Study& study) {
   add("Conditional accuracy", "Proportion correct (0 to 1)", analysis::kBinMeasure, kBinTime, false);
   add("Sensitivity at the signal", "Sensitivity d\u2032", kLagSensitivity, kLagTime, false);
   if (!study.settings.signalled)
-    add("Sensitivity over the conditions", "Sensitivity d\u2032", kSensitivity, kMedianTime, true);
+    add("Sensitivity over the conditions", "Sensitivity d\u2032", analysis::kSensitivity, analysis::kMedianTime, true);
   if (figure.charts.empty()) return std::nullopt;
   figure.title = "Accuracy over time, means of the participants";
   figure.columns = figure.charts.size() > 1 ? 2 : 1;
