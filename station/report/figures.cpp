@@ -134,7 +134,7 @@ std::optional<Chart> psychometric_chart(const std::vector<const NamedFit*>& fits
   const bool logarithmic = data.scale == analysis::Scale::log10;
   Chart panel;
   panel.x =
-      report::fitted(data.level_label, levels, 0.05, logarithmic ? AxisScale::log10 : AxisScale::linear);
+      report::fitted(words(data.level_label), levels, 0.05, logarithmic ? AxisScale::log10 : AxisScale::linear);
   const bool forced = data.design == Design::forced_choice;
   const auto& positive = fits.front()->positive;
   panel.y = {words("figure.proportion", positive == "correct" ? words("figure.correct") : positive),
@@ -215,7 +215,7 @@ std::optional<Figure> trace_figure(const Summary& summary) {
     panel.title = words(name_of(trace.procedure));
     panel.x = report::fitted(words("figure.trial_in_session"), line.x, 0.03);
     panel.x.counts = true;
-    panel.y = report::fitted(summary.data.level_label, line.y, 0.1);
+    panel.y = report::fitted(words(summary.data.level_label), line.y, 0.1);
     // Draw a line only if the procedure moves in small steps. A line through shuffled levels would only
     // zigzag.
     double steps = 0;
@@ -233,6 +233,7 @@ std::optional<Figure> trace_figure(const Summary& summary) {
 }
 
 std::optional<Figure> settings_figure(const Summary& summary) {
+  const Words words(summary.data.language);
   Figure figure;
   std::size_t count = 0;
   figure.title = "Settings in the order made";
@@ -255,7 +256,7 @@ std::optional<Figure> settings_figure(const Summary& summary) {
     Chart panel;
     panel.title = settings.procedure + (settings.condition.empty() ? "" : ", " + settings.condition);
     panel.x = report::fitted("Setting (number)", starts.x, 0.03);
-    panel.y = report::fitted(summary.data.level_label, both, 0.1);
+    panel.y = report::fitted(words(summary.data.level_label), both, 0.1);
     if (settings.mean)
       panel.layers.push_back(Rule{Rule::Direction::horizontal, settings.mean->value,
                                   "mean " + in_digits(settings.mean->value, &settings.mean->interval)});
@@ -264,7 +265,7 @@ std::optional<Figure> settings_figure(const Summary& summary) {
     figure.charts.push_back(std::move(panel));
   }
   if (figure.charts.empty()) return std::nullopt;
-  figure.caption = of_trials(summary, count) + " " + Words(summary.data.language)("figure.caption_settings");
+  figure.caption = of_trials(summary, count) + " " + words("figure.caption_settings");
   return figure;
 }
 
@@ -296,7 +297,7 @@ std::optional<Figure> judgement_figure(const Summary& summary) {
   const bool ratios =
       numbers && summary.data.level_unit != "dB" && *std::min_element(levels.begin(), levels.end()) > 0;
   const auto scale = [](bool logarithmic) { return logarithmic ? AxisScale::log10 : AxisScale::linear; };
-  chart.x = report::fitted(summary.data.level_label, levels, 0.06, scale(ratios));
+  chart.x = report::fitted(words(summary.data.level_label), levels, 0.06, scale(ratios));
   chart.y = report::fitted(words(numbers ? "figure.geometric_mean" : "figure.mean_rating"), values, 0.08,
                            scale(numbers));
   Figure figure;

@@ -57,7 +57,7 @@ struct ThresholdCurve {
     bool one = false;  ///< the answer was right, or the tracked answer
   };
   std::string block, procedure;
-  std::string label;    ///< name and unit of the second dimension, for an axis: "Boundary (mm)"
+  core::Phrase label;   ///< name and unit of the second dimension, for an axis: "Boundary (mm)"
   bool ratios = false;  ///< true if thresholds are compared by their ratio (the procedure's scale)
   std::vector<Point> points;
   std::vector<Trial> trials;
@@ -82,7 +82,7 @@ struct LevelAnalysis {
   Design design = Design::forced_choice;
   core::Function function = core::Function::weibull;
   analysis::Scale scale = analysis::Scale::linear;
-  std::string level_label;  ///< name and unit, for an axis: "Contrast (dB)"
+  core::Phrase level_label;  ///< name and unit, for an axis: "Contrast (dB)"
   std::string level_unit;   ///< unit of the level; "" if it has none
   /// If has_noise(): the choice that means "yes". For two sides: the choice that belongs to high levels.
   int positive = 1;

@@ -106,7 +106,7 @@ void add_threshold_curves(const Summary& summary, Document& document) {
   document.heading("Threshold along the second dimension");
   document.figure("threshold-curve", threshold_curve_figure(summary));
   for (const auto& curve : data.threshold_curves) {
-    Table table{{curve.label, "Threshold, " + data.level_label}, {}};
+    Table table{{curve.label, Text("Threshold, ") + data.level_label}, {}};
     for (const auto& point : curve.points)
       table.rows.push_back({amount(point.second, 4), estimated(point.threshold, point.interval)});
     document.table(std::move(table));
@@ -191,7 +191,7 @@ void add_confusions(const Summary& summary, Document& document) {
       document.remark(phrase("statement.none_answered"));
       continue;
     }
-    Table table{{data.scored ? "Right answer" : data.level_label}, {}};
+    Table table{{data.scored ? Text("Right answer") : Text(data.level_label)}, {}};
     for (const auto& choice : data.choices) table.columns.emplace_back(quoted(choice));
     table.columns.emplace_back(phrase("report.proportion_right"), true);
     for (const auto& row : confusion.rows) {
@@ -216,7 +216,7 @@ void add_detections(const Summary& summary, Document& document) {
   if (summary.detections.empty()) return;
   const auto& data = summary.data;
   document.heading("Sensitivity and criterion");
-  Table table{{"Condition", data.cut != 0 ? "Distance from " + core::number(data.cut, 6) : data.level_label,
+  Table table{{"Condition", data.cut != 0 ? Text("Distance from " + core::number(data.cut, 6)) : Text(data.level_label),
                "Hits", "False alarms", "d\u2032 (standard deviations)", "Criterion c (standard deviations)"},
               {}};
   const auto of = [](int some, int others) {
@@ -344,7 +344,7 @@ void add_signal(const Summary& summary, Document& document) {
   Table lags{
       {"Condition", "Signal after (s)", "Mean response time (s)", "Trials", "d\u2032 (standard deviations)"},
       {}};
-  Table levels{{"Condition", "Signal after (s)", summary.data.level_label + ", without sign",
+  Table levels{{"Condition", "Signal after (s)", Text(summary.data.level_label) + ", without sign",
                 "d\u2032 (standard deviations)"},
                {}};
   for (const auto& curve : summary.curves) {

@@ -27,7 +27,7 @@ void add_estimator(const std::string& program, const std::map<std::string, proce
                    const protocol::Protocol& protocol, SessionData& data);
 
 /// An axis label: "Contrast (dB)" for the name "contrast" and the unit "dB".
-std::string axis_label(std::string name, const std::string& unit);
+core::Phrase axis_label(std::string name, const std::string& unit);
 
 /// Unit of a procedure's parameter, made from the units of its level and of its second dimension: "dB/mm" for
 /// a gradient; "" if it has none.

@@ -104,7 +104,7 @@ std::optional<Figure> group_curve_figure(const Study& study) {
     chart.title = core::say(name_of(group.condition), "en");
     const auto& part = analysis_of(group, study.settings);
     chart.x =
-        report::fitted(part.level_label, levels_of(study, group.part), 0.05,
+        report::fitted(core::say(part.level_label, "en"), levels_of(study, group.part), 0.05,
                        fit.options.scale == analysis::Scale::log10 ? AxisScale::log10 : AxisScale::linear);
     chart.y = {"Proportion " + group.positive + " (0 to 1)", -0.03, 1.03};
     if (part.design == Design::forced_choice) chart.y.low = 0.3;
@@ -162,7 +162,7 @@ std::optional<Figure> shrinkage_figure(const Study& study) {
     Chart chart;
     chart.title = core::say(name_of(group.condition), "en");
     chart.x = {"Participant", 0.4, number + 0.6, AxisScale::linear, true, codes};
-    chart.y = report::fitted(analysis_of(group, study.settings).level_label, all, 0.08);
+    chart.y = report::fitted(core::say(analysis_of(group, study.settings).level_label, "en"), all, 0.08);
     chart.layers.push_back(Rule{Rule::Direction::horizontal, group.result.fit->threshold->value, "group"});
     chart.layers.push_back(alone);
     chart.layers.push_back(pooled);
