@@ -12,6 +12,7 @@ Rectangle {
     /// On a tall screen, the numbers stand below the figure.
     readonly property bool tall: height > width
     readonly property string title: report.title + (report.status === "" ? "" : " (" + texts.named(report.runMode) + ", " + texts.named(report.status) + ")")
+    readonly property Texts words: texts
     signal closed()
 
     color: look.paper
@@ -117,24 +118,15 @@ Rectangle {
                 spacing: look.unit
                 Repeater {
                     model: root.report.sections
-                    Column {
-                        id: section
+                    FactTable {
                         required property var modelData
-                        readonly property Texts words: texts
                         width: sheet.width
-                        spacing: look.unit
-                        FactTable { width: parent.width; theme: look; texts: section.words; heading: section.words.say(section.modelData.heading); facts: section.modelData.facts; labelShare: 0.5 }
-                        Repeater {
-                            model: section.modelData.statements
-                            PlainText {
-                                required property var modelData
-                                width: section.width
-                                text: "• " + texts.say(modelData)
-                                color: look.ink
-                                font.pixelSize: look.textSmall
-                                wrapMode: Text.Wrap
-                            }
-                        }
+                        theme: look
+                        texts: root.words
+                        heading: root.words.say(modelData.heading)
+                        facts: modelData.facts
+                        remarks: modelData.statements
+                        labelShare: 0.5
                     }
                 }
             }
