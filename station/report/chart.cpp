@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "station/report/canvas.hpp"
@@ -115,6 +116,8 @@ double draw_legend(Canvas* canvas, const std::vector<LegendEntry>& entries, doub
 namespace {
 
 constexpr double kTitle = 13.5, kPad = 10, kTick = 5, kCaptionLine = 16;
+// of a chart: its least size in px, and its best proportions
+constexpr double kLeastWidth = 200, kLeastHeight = 165, kBestShape = 1.5;
 const std::string kSoft = "#545454", kGrid = "#e6e6e6";
 
 void check(bool good, const std::string& what) {
@@ -367,12 +370,7 @@ Division divided(const Chart& chart, const Place& place, VerticalLabels where) {
   }
 }
 
-Division divided_with_room(const Chart& chart, const Place& place, VerticalLabels where) {
-  auto d = divided(chart, place, where);
-  check(d.labelled.frame.width > 40 && d.labelled.frame.height > 40,
-        "chart \"" + chart.title + "\" leaves no room for its data");
-  return d;
-}
+bool has_room(const Division& d) { return d.labelled.frame.width > 40 && d.labelled.frame.height > 40; }
 
 /// Draws a chart's title above its data. A long title begins further left, and shrinks if that is not enough.
 void draw_title(Canvas& canvas, const std::string& title, const Place& place, double left) {
@@ -421,29 +419,39 @@ std::vector<std::string> caption_lines(const std::string& caption, double width)
   return lines;
 }
 
+std::vector<Place> places_of(const Figure& figure) {
+  const int count = static_cast<int>(figure.charts.size()), columns = std::min(figure.columns, count);
+  std::vector<Place> places;
+  for (int i = 0; i < count; ++i)
+    places.push_back({i % columns * figure.chart_width_px, i / columns * figure.chart_height_px,
+                      figure.chart_width_px, figure.chart_height_px});
+  return places;
+}
+
+std::vector<Division> divided(const Figure& figure, const std::vector<Place>& places) {
+  const auto where = labels_of(figure.charts, places);
+  std::vector<Division> divisions;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    divisions.push_back(divided(figure.charts[i], places[i], where));
+  return divisions;
+}
+
 }  // namespace
 
 void draw(Canvas& canvas, const Figure& figure) {
   check(!figure.charts.empty(), "a figure needs a chart");
   check(figure.columns > 0, "the number of columns must be at least 1");
-  const int count = static_cast<int>(figure.charts.size());
-  const int columns = std::min(figure.columns, count), rows = (count + columns - 1) / columns;
-  const auto [width, height] = size_px(figure);
-  const double charts = rows * figure.chart_height_px;
-  std::vector<Place> places;
-  for (int i = 0; i < count; ++i)
-    places.push_back({i % columns * figure.chart_width_px, i / columns * figure.chart_height_px,
-                      figure.chart_width_px, figure.chart_height_px});
-  const auto where = labels_of(figure.charts, places);
-  std::vector<Division> divisions;
+  const auto places = places_of(figure);
+  const auto divisions = divided(figure, places);
   for (std::size_t i = 0; i < places.size(); ++i)
-    divisions.push_back(divided_with_room(figure.charts[i], places[i], where));
+    check(has_room(divisions[i]), "chart \"" + figure.charts[i].title + "\" leaves no room for its data");
+  const auto [width, height] = size_px(figure);
   const auto caption = caption_lines(figure.caption, width - 4 * kPad);
   canvas.begin(width, height, figure.title);
   canvas.rectangle({0, 0}, width, height, {"", "#ffffff", 0, "", 1});
   for (std::size_t i = 0; i < places.size(); ++i)
     draw_chart(canvas, figure.charts[i], places[i], divisions[i]);
-  double y = charts + kText_px;
+  double y = height - caption_height_px(figure) + kText_px;
   for (const auto& line : caption) {
     canvas.text({2 * kPad, y}, line, kText_px, Anchor::start, kSoft);
     y += kCaptionLine;
@@ -470,25 +478,54 @@ std::string render(const Figure& figure) {
 
 Figure laid_out(Figure figure, double width_px, double height_px) {
   check(width_px > 0 && height_px > 0, "the size of a figure must be above 0");
-  constexpr double best = 1.5, least_width = 200, least_height = 165;
   const auto count = static_cast<int>(figure.charts.size());
   Figure chosen = figure;
   double nearest = std::numeric_limits<double>::infinity();
   for (int columns = 1; columns <= count; ++columns) {
     const int rows = (count + columns - 1) / columns;
-    const double larger = std::max({1.0, least_width * columns / width_px, least_height * rows / height_px});
+    const double larger = std::max({1.0, kLeastWidth * columns / width_px, kLeastHeight * rows / height_px});
     const double width = width_px * larger;
     const auto caption = static_cast<double>(caption_lines(figure.caption, width - 4 * kPad).size());
     figure.columns = columns;
     figure.chart_width_px = width / columns;
     figure.chart_height_px = std::max(
-        least_height, (height_px * larger - (caption > 0 ? kPad + kCaptionLine * caption : 0)) / rows);
+        kLeastHeight, (height_px * larger - (caption > 0 ? kPad + kCaptionLine * caption : 0)) / rows);
     // Prefer the layout whose charts are closest to the best proportions, and whose document grows least.
     const double off =
-        std::abs(std::log(figure.chart_width_px / figure.chart_height_px / best)) + 2 * std::log(larger);
+        std::abs(std::log(figure.chart_width_px / figure.chart_height_px / kBestShape)) + 2 * std::log(larger);
     if (off < nearest) nearest = off, chosen = figure;
   }
   return chosen;
+}
+
+Figure laid_out_to_scroll(Figure figure, double width_px, double height_px) {
+  const auto caption_px = [&] {
+    auto one_column = figure;
+    one_column.columns = 1, one_column.chart_width_px = width_px;
+    return caption_height_px(one_column);
+  }();
+  const auto caption = std::exchange(figure.caption, "");
+  // a caption leaves the charts four fifths of the height, or else stands below what is seen first
+  if (caption_px <= 0.2 * height_px) height_px -= caption_px;
+  const auto all_has_room = [](const Figure& placed) {
+    const auto divisions = divided(placed, places_of(placed));
+    for (std::size_t i = 0; i < divisions.size(); ++i) {
+      const auto& label = placed.charts[i].y.label;  // reaches beyond the data, as far as the numbers below it
+      const double room_px = divisions[i].labelled.frame.height + 2 * 40;
+      if (!has_room(divisions[i]) || text_width(label, kText_px) > room_px) return false;
+    }
+    return true;
+  };
+  auto placed = laid_out(figure, width_px, height_px);
+  if (size_px(placed).first > width_px + 0.5 || !all_has_room(placed)) {
+    placed.columns = 1;
+    placed.chart_width_px = std::max(width_px, kLeastWidth);
+    placed.chart_height_px = std::clamp(placed.chart_width_px / kBestShape, kLeastHeight, std::max(kLeastHeight, height_px));
+    // a long legend, or a long label beside the data, needs more height than is seen at once
+    for (int i = 0; i < 10 && !all_has_room(placed); ++i) placed.chart_height_px *= 1.15;
+  }
+  placed.caption = caption;
+  return placed;
 }
 
 Histogram histogram(const std::vector<double>& values, double low, double high, int bins) {

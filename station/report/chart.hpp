@@ -105,6 +105,10 @@ Point size_px(const Figure& figure);
 /// charts have the best proportions. Text is never made smaller: if there is not enough room, the document
 /// becomes larger and keeps its proportions.
 Figure laid_out(Figure figure, double width_px, double height_px);
+/// The same for a view of this size that can be scrolled downwards. The figure has the view's width, so that text
+/// keeps its size: charts that have no room side by side stand below each other, each about as high as the view, and
+/// a long caption stands below them.
+Figure laid_out_to_scroll(Figure figure, double width_px, double height_px);
 
 /// Counts `values` in at most `bins` bins of equal width. The bins reach from `low` to `high`, rounded
 /// outwards.

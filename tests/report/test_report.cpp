@@ -27,7 +27,7 @@ SessionData head() {
   data.status = "completed";
   data.facts = {{"Protocol", "speed-accuracy-change 1.0.0"}};
   data.health = {{core::plain("Underruns"), core::plain("0")}};
-  data.level_label = "Change of friction";
+  data.level_label = core::plain("Change of friction");
   data.choices = {"Smoother", "Rougher"};
   data.replicates = 200;
   return data;
@@ -59,7 +59,7 @@ SessionData speed_accuracy(int per_level) {
 
 SessionData staircase_session() {
   auto data = head();
-  data.level_label = "Friction contrast (dB)";
+  data.level_label = core::plain("Friction contrast (dB)");
   data.level_unit = "dB";
   data.choices = {"First", "Second"};
   core::Draws draws({4, core::Stream::observer, 0, 0, 0});
@@ -113,6 +113,11 @@ TEST_CASE("A speed-accuracy session gives fits, the trade with intervals, and al
   keep("trace.svg", shown(trace_figure(summary)));
   keep("times.svg", shown(response_time_figure(summary)));
   keep("trade.svg", shown(trade_figure(summary)));
+  // on a panel of 800 x 480 px its charts stand below each other
+  const auto scrolled = laid_out_to_scroll(*trade_figure(summary), 360, 200);
+  CHECK(size_px(scrolled).first == 360);
+  CHECK(scrolled.columns == 1);
+  keep("trade-scrolled.svg", shown(scrolled));
   const auto html = to_html(summary);
   keep("report.html", html);
   CHECK(html == to_html(summarise(speed_accuracy(28))));
@@ -124,6 +129,7 @@ TEST_CASE("A speed-accuracy session gives fits, the trade with intervals, and al
   CHECK(html.find("The boundary was higher (more caution); the drift did not change detectably.") !=
         std::string::npos);
   CHECK(html.find("class=\"mode\">simulated") != std::string::npos);
+  CHECK(html.find("Trials of practice are left out.") != std::string::npos);
   const auto json = nlohmann::json::parse(to_json(summary));
   CHECK(json["instructions"].size() == 2);
   CHECK(json["differences"][2]["estimate"]["value"].get<double>() > 0.03);

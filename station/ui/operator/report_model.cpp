@@ -77,7 +77,7 @@ QStringList ReportModel::picture_names() const {
 
 QVariantList ReportModel::pictures() const {
   QVariantList list;
-  for (const auto& figure : pages_.figures) list += to_variant(view::drawing_of(figure.figure));
+  for (const auto& figure : pages_.figures) list += to_variant(figure.figure);
   return list;
 }
 
