@@ -315,10 +315,8 @@ void set_estimates(InstructionResult& result, const Measures& values,
 struct MeasureName {
   const char *name, *unit;
 };
-constexpr MeasureName kNames[measures] = {{kCorrect, "proportion"},
-                                          {kMedianTime, "s"},
-                                          {kLisas, "s"},
-                                          {kInverseEfficiency, "s"}};
+constexpr MeasureName kNames[measures] = {
+    {kCorrect, "proportion"}, {kMedianTime, "s"}, {kLisas, "s"}, {kInverseEfficiency, "s"}};
 
 /// The difference of one parameter of two diffusion fits, second minus first: the median and a central
 /// interval of the differences between their draws.
@@ -342,8 +340,7 @@ void add_diffusion_differences(const Group& first, const Group& second, const Tr
                            diffusion_difference(first, second, options.confidence, of)});
   };
   add(kBoundary, "s = 0.1", [](const Group&, const DiffusionDraw& draw) { return draw.boundary; });
-  add(kNondecision, "s",
-      [](const Group&, const DiffusionDraw& draw) { return draw.nondecision_s; });
+  add(kNondecision, "s", [](const Group&, const DiffusionDraw& draw) { return draw.nondecision_s; });
   std::vector<double> shared;
   std::set_intersection(first.difficulty.begin(), first.difficulty.end(), second.difficulty.begin(),
                         second.difficulty.end(), std::back_inserter(shared));

@@ -52,8 +52,8 @@ struct InstructionResult {
   std::vector<Statement> statements;
 };
 
-/// The names of measures, of which differences and studies are made. That of the conditional accuracy is followed by
-/// the bin of time ("1 of 5").
+/// The names of measures, of which differences and studies are made. That of the conditional accuracy is
+/// followed by the bin of time ("1 of 5").
 inline constexpr const char *kCorrect = "proportion correct", *kMedianTime = "median response time",
                             *kSensitivity = "d'", *kBoundary = "boundary",
                             *kNondecision = "time outside the decision", *kDrift = "drift", *kLisas = "LISAS",

@@ -151,7 +151,8 @@ class Truths {
           if (first && second) add(source, parameter, *second - *first);
         };
         add_gap(analysis::kCorrect, generating.share_correct(names[a]), generating.share_correct(names[b]));
-        add_gap(analysis::kBoundary, generating.boundary(names[a], observer), generating.boundary(names[b], observer));
+        add_gap(analysis::kBoundary, generating.boundary(names[a], observer),
+                generating.boundary(names[b], observer));
         // the time that a simulated observer needs outside the decision is the same in all conditions, so the
         // true difference is 0
         add(source, analysis::kNondecision, 0);

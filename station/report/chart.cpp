@@ -29,8 +29,8 @@ struct LegendEntry {
   bool line = false, faint_line = false, points = false, open_points = false, area = false;
 };
 
-/// Returns an entry for each layer of the chart that has a name; none if there is only one, which has nothing to be told
-/// from.
+/// Returns an entry for each layer of the chart that has a name; none if there is only one, which has nothing
+/// to be told from.
 std::vector<LegendEntry> legend_of(const Chart& chart);
 
 /// Draws the legend between title and data, in rows that fit the width (px). Returns its height in px.
@@ -104,7 +104,8 @@ double draw_legend(Canvas* canvas, const std::vector<LegendEntry>& entries, doub
       if (entry.area)
         canvas->rectangle({x, y + 3}, sample, 10, {"", look.colour, 0, "", entry.line ? 0.18 : 0.85});
       if (entry.line) canvas->line({x, y + 8}, {x + sample, y + 8}, {look.colour, "", 2, look.dash, 1});
-      if (entry.faint_line) canvas->line({x, y + 8}, {x + sample, y + 8}, {look.colour, "", 1, look.dash, 0.4});
+      if (entry.faint_line)
+        canvas->line({x, y + 8}, {x + sample, y + 8}, {look.colour, "", 1, look.dash, 0.4});
       if (entry.points || entry.open_points) marker(*canvas, {x + sample / 2, y + 8}, 4, look, !entry.points);
       canvas->text({x + sample + 6, y + 12}, entry.name, kText_px, Anchor::start, kInk);
     }
@@ -232,7 +233,8 @@ struct Draw {
     end(high, part->cut_high, 1);
   }
 
-  /// An arrow with its tip at the edge of the axes, in the direction of the part of an interval that is not shown.
+  /// An arrow with its tip at the edge of the axes, in the direction of the part of an interval that is not
+  /// shown.
   void arrow(Point tip, double to_right, double down, const std::string& colour) const {
     constexpr double length = 8, half = 4;
     const auto [x, y] = tip;
@@ -277,8 +279,8 @@ bool have_room(const std::vector<Tick>& list, const Axis& axis, double width) {
   });
 }
 
-/// If the names on a horizontal axis do not fit beside each other, they are turned upright. Returns the height in px that
-/// they then need below an ordinary label; otherwise 0.
+/// If the names on a horizontal axis do not fit beside each other, they are turned upright. Returns the
+/// height in px that they then need below an ordinary label; otherwise 0.
 double turned_names_px(const Axis& axis, double width) {
   if (axis.names.empty()) return 0;
   const auto names = ticks(axis);
@@ -351,8 +353,7 @@ Division divided(const Chart& chart, const Place& place, VerticalLabels where, i
   d.entries = legend_of(chart);
   Frame frame{d.left, d.legend_top, d.width, 0, &chart.x, &chart.y};
   frame.y += draw_legend(nullptr, d.entries, d.left, 0, d.width);
-  frame.height =
-      place.top + place.height - kPad - 38 - turned_names_px(chart.x, frame.width) - frame.y;
+  frame.height = place.top + place.height - kPad - 38 - turned_names_px(chart.x, frame.width) - frame.y;
   d.layers = beside(chart, frame);
   Chart moved;
   moved.layers = d.layers;
@@ -491,8 +492,8 @@ Figure laid_out(Figure figure, double width_px, double height_px) {
     figure.chart_height_px = std::max(
         kLeastHeight, (height_px * larger - (caption > 0 ? kPad + kCaptionLine * caption : 0)) / rows);
     // Prefer the layout whose charts are closest to the best proportions, and whose document grows least.
-    const double off =
-        std::abs(std::log(figure.chart_width_px / figure.chart_height_px / kBestShape)) + 2 * std::log(larger);
+    const double off = std::abs(std::log(figure.chart_width_px / figure.chart_height_px / kBestShape)) +
+                       2 * std::log(larger);
     if (off < nearest) nearest = off, chosen = figure;
   }
   return chosen;
@@ -510,7 +511,8 @@ Figure laid_out_to_scroll(Figure figure, double width_px, double height_px) {
   const auto all_has_room = [](const Figure& placed) {
     const auto divisions = divided(placed, places_of(placed));
     for (std::size_t i = 0; i < divisions.size(); ++i) {
-      const auto& label = placed.charts[i].y.label;  // reaches beyond the data, as far as the numbers below it
+      const auto& label =
+          placed.charts[i].y.label;  // reaches beyond the data, as far as the numbers below it
       const double room_px = divisions[i].labelled.frame.height + 2 * 40;
       if (!has_room(divisions[i]) || text_width(label, kText_px) > room_px) return false;
     }
@@ -520,7 +522,8 @@ Figure laid_out_to_scroll(Figure figure, double width_px, double height_px) {
   if (size_px(placed).first > width_px + 0.5 || !all_has_room(placed)) {
     placed.columns = 1;
     placed.chart_width_px = std::max(width_px, kLeastWidth);
-    placed.chart_height_px = std::clamp(placed.chart_width_px / kBestShape, kLeastHeight, std::max(kLeastHeight, height_px));
+    placed.chart_height_px =
+        std::clamp(placed.chart_width_px / kBestShape, kLeastHeight, std::max(kLeastHeight, height_px));
     // a long legend, or a long label beside the data, needs more height than is seen at once
     for (int i = 0; i < 10 && !all_has_room(placed); ++i) placed.chart_height_px *= 1.15;
   }

@@ -42,7 +42,8 @@ Line curve(const NamedFit& named, int series, const Axis& axis, const std::strin
   const bool logarithmic = axis.scale == AxisScale::log10;
   // the curve ends where its band does
   const auto& along = named.intervals.band_level;
-  const double low = along.empty() ? axis.low : along.front(), high = along.empty() ? axis.high : along.back();
+  const double low = along.empty() ? axis.low : along.front(),
+               high = along.empty() ? axis.high : along.back();
   for (int i = 0; i <= 120; ++i) {
     const double share = i / 120.0;
     const double x = logarithmic ? low * std::pow(high / low, share) : low + share * (high - low);
@@ -59,8 +60,8 @@ std::optional<double> false_alarms(const NamedFit& named) {
   return std::nullopt;
 }
 
-/// Marks the threshold (or PSE) on the curve: a thin line labelled with its value and the height of the curve there,
-/// which is the criterion that the threshold stands for, and its interval at that height.
+/// Marks the threshold (or PSE) on the curve: a thin line labelled with its value and the height of the curve
+/// there, which is the criterion that the threshold stands for, and its interval at that height.
 void mark_threshold(const NamedFit& named, const LevelAnalysis& data, const Words& words, int series,
                     const std::string& name, Chart& panel) {
   const auto& fit = named.fit;
@@ -112,8 +113,9 @@ std::string psychometric_caption(const Summary& summary) {
     bands = bands || !named.intervals.band_level.empty();
     thresholds = thresholds || named.intervals.threshold;
   }
-  auto caption = of_trials(summary, trials) + " " +
-                 words.together({"figure.caption_points", curve_caption(summary.fits.front().fit.options.function)});
+  auto caption =
+      of_trials(summary, trials) + " " +
+      words.together({"figure.caption_points", curve_caption(summary.fits.front().fit.options.function)});
   if (bands) caption += " " + words("figure.caption_band");
   if (thresholds) caption += " " + words("figure.caption_threshold");
   return caption;
@@ -133,8 +135,8 @@ std::optional<Chart> psychometric_chart(const std::vector<const NamedFit*>& fits
   if (levels.empty()) return std::nullopt;
   const bool logarithmic = data.scale == analysis::Scale::log10;
   Chart panel;
-  panel.x =
-      report::fitted(words(data.level_label), levels, 0.05, logarithmic ? AxisScale::log10 : AxisScale::linear);
+  panel.x = report::fitted(words(data.level_label), levels, 0.05,
+                           logarithmic ? AxisScale::log10 : AxisScale::linear);
   const bool forced = data.design == Design::forced_choice;
   const auto& positive = fits.front()->positive;
   panel.y = {words("figure.proportion", positive == "correct" ? words("figure.correct") : positive),
@@ -304,8 +306,8 @@ std::optional<Figure> judgement_figure(const Summary& summary) {
   figure.title = numbers ? "Numbers at each level" : "Ratings at each level";
   figure.chart_width_px = 620;
   figure.chart_height_px = 320;
-  figure.caption = of_trials(summary, count) + " " +
-                   words(numbers ? "figure.caption_numbers" : "figure.caption_ratings");
+  figure.caption =
+      of_trials(summary, count) + " " + words(numbers ? "figure.caption_numbers" : "figure.caption_ratings");
   figure.charts.push_back(std::move(chart));
   return figure;
 }
@@ -331,13 +333,13 @@ std::optional<Figure> confusion_figure(const Summary& summary) {
       for (const int count : row.answers) shares.values.push_back(static_cast<double>(count) / row.trials);
     Chart chart;
     chart.title = words(name_of(confusion.condition));
-    chart.x = {words("figure.answer"), 0.5, shares.x_edges.back(), AxisScale::linear, true,
-               summary.data.choices};
+    chart.x = {words("figure.answer"), 0.5,  shares.x_edges.back(),
+               AxisScale::linear,      true, summary.data.choices};
     chart.y = {words("figure.stimulus"), 0.5, shares.y_edges.back(), AxisScale::linear, true};
     for (const auto& row : confusion.rows)
       chart.y.names.push_back(row.stimulus ? summary.data.choices.at(static_cast<std::size_t>(*row.stimulus))
-                              : row.level ? in_digits(*row.level, nullptr)
-                                          : "");
+                              : row.level  ? in_digits(*row.level, nullptr)
+                                           : "");
     chart.layers.push_back(std::move(shares));
     figure.charts.push_back(std::move(chart));
   }
@@ -365,8 +367,8 @@ std::optional<Figure> vibration_figure(const Summary& summary) {
   chart.layers.push_back(points);
   Figure figure;
   figure.title = "Vibration of the surface";
-  figure.caption = of_trials(summary, points.x.size()) + " " +
-                   Words(summary.data.language)("figure.caption_vibration");
+  figure.caption =
+      of_trials(summary, points.x.size()) + " " + Words(summary.data.language)("figure.caption_vibration");
   figure.chart_width_px = 620;
   figure.chart_height_px = 220;
   figure.charts.push_back(std::move(chart));
@@ -401,10 +403,10 @@ std::optional<Figure> response_time_figure(const Summary& summary) {
     panel.y = {words("figure.trials"), 0, tallest * 1.12, AxisScale::linear, true};
     panel.layers.push_back(bars[i]);
     if (entry.times)
-      panel.layers.push_back(Rule{Rule::Direction::vertical, entry.times->median_s,
-                                  words("figure.median", in_digits(entry.times->median_s,
-                                                                   entry.median_s ? &entry.median_s->interval
-                                                                                  : nullptr))});
+      panel.layers.push_back(Rule{
+          Rule::Direction::vertical, entry.times->median_s,
+          words("figure.median",
+                in_digits(entry.times->median_s, entry.median_s ? &entry.median_s->interval : nullptr))});
     figure.charts.push_back(std::move(panel));
   }
   figure.caption = of_trials(summary, all.size()) + " " + words("figure.caption_times");
@@ -639,8 +641,7 @@ std::optional<Figure> roc_figure(const Summary& summary) {
   std::string last;
   for (const auto& entry : summary.rocs) {
     if (figure.charts.empty() || entry.condition != last) {
-      figure.charts.push_back(
-          {words(name_of(entry.condition)), {"False alarms", 0, 1}, {"Hits", 0, 1}, {}});
+      figure.charts.push_back({words(name_of(entry.condition)), {"False alarms", 0, 1}, {"Hits", 0, 1}, {}});
       last = entry.condition;
     }
     auto& layers = figure.charts.back().layers;

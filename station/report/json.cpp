@@ -262,8 +262,9 @@ Json facts_json(const std::vector<Fact>& facts) {
 
 std::string to_json(const Summary& summary) {
   const auto& data = summary.data;
-  Json json{{"session_id", data.session_id}, {"participant", data.participant}, {"title", data.title},
-            {"run_mode", data.run_mode},     {"status", data.status},           {"level", core::say(data.level_label, "en")},
+  Json json{{"session_id", data.session_id}, {"participant", data.participant},
+            {"title", data.title},           {"run_mode", data.run_mode},
+            {"status", data.status},         {"level", core::say(data.level_label, "en")},
             {"level_unit", data.level_unit}, {"choices", data.choices}};
   json["measures"] = meanings_json(data);
   json["facts"] = facts_json(data.facts);

@@ -22,8 +22,8 @@ struct Measure {
 
 using Result = analysis::InstructionResult;
 inline constexpr Measure<Result> kSpeedAndAccuracy[] = {
-    {"proportion_correct", "report.proportion_right", &Result::proportion_correct, analysis::kCorrect, "", true,
-     "", true},
+    {"proportion_correct", "report.proportion_right", &Result::proportion_correct, analysis::kCorrect, "",
+     true, "", true},
     {"median_response_time_s", "figure.median_time", &Result::median_s, analysis::kMedianTime, "s", true, "",
      true},
     {"d_prime", "report.d_prime", &Result::d_prime, analysis::kSensitivity, "", true},

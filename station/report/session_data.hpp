@@ -83,7 +83,7 @@ struct LevelAnalysis {
   core::Function function = core::Function::weibull;
   analysis::Scale scale = analysis::Scale::linear;
   core::Phrase level_label;  ///< name and unit, for an axis: "Contrast (dB)"
-  std::string level_unit;   ///< unit of the level; "" if it has none
+  std::string level_unit;    ///< unit of the level; "" if it has none
   /// If has_noise(): the choice that means "yes". For two sides: the choice that belongs to high levels.
   int positive = 1;
   /// for two sides in 2ifc: the two scenes, of which a trial's interval with one of them is chosen
@@ -137,7 +137,7 @@ struct SessionData : LevelAnalysis {
   std::vector<MeasuredTrial> measured;
   analysis::TimeExclusion exclusion;
   protocol::Holm holm = protocol::Holm::none;  ///< which comparisons are corrected together
-  std::uint64_t seed = 1;  ///< seed of the bootstraps' random numbers
+  std::uint64_t seed = 1;                      ///< seed of the bootstraps' random numbers
   int replicates = 1000;
 };
 
@@ -146,9 +146,10 @@ struct SessionData : LevelAnalysis {
 SessionData part_of(const SessionData& data, std::size_t part);
 
 /// True if the report contains this part: "psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime",
-/// "response-signal" or "trace", which the protocol may choose, or "points", which a payoff decides. If the protocol does not choose the parts, the report contains all of them,
-/// with two exceptions: d' only for yes/no tasks and where `deciding` has a model, and the diffusion model
-/// only for two answers that come without a response signal.
+/// "response-signal" or "trace", which the protocol may choose, or "points", which a payoff decides. If the
+/// protocol does not choose the parts, the report contains all of them, with two exceptions: d' only for
+/// yes/no tasks and where `deciding` has a model, and the diffusion model only for two answers that come
+/// without a response signal.
 bool shows(const SessionData& data, const std::string& part);
 
 /// Corrects the p values of comparisons, each with its measure, as the protocol asks for. All are empty if it

@@ -216,7 +216,8 @@ void add_detections(const Summary& summary, Document& document) {
   if (summary.detections.empty()) return;
   const auto& data = summary.data;
   document.heading("Sensitivity and criterion");
-  Table table{{"Condition", data.cut != 0 ? Text("Distance from " + core::number(data.cut, 6)) : Text(data.level_label),
+  Table table{{"Condition",
+               data.cut != 0 ? Text("Distance from " + core::number(data.cut, 6)) : Text(data.level_label),
                "Hits", "False alarms", "d\u2032 (standard deviations)", "Criterion c (standard deviations)"},
               {}};
   const auto of = [](int some, int others) {
@@ -447,7 +448,8 @@ void add_differences(const Summary& summary, Document& document) {
   for (const auto& one : differences)
     if (std::find(pairs.begin(), pairs.end(), pair_of(one)) == pairs.end()) pairs.push_back(pair_of(one));
   Table table{{"Difference"}, {}};
-  for (const auto& [first, second] : pairs) table.columns.push_back({second_minus_first(first, second), true});
+  for (const auto& [first, second] : pairs)
+    table.columns.push_back({second_minus_first(first, second), true});
   if (pairs.empty()) return;
   for (const auto& row : kSpeedAndAccuracy) {
     if (!has(row, summary) || !row.compared) continue;
@@ -506,8 +508,7 @@ void add_difficulties(const Summary& summary, Document& document) {
                amount(part.mean_correct_s, 3, "none")};
       if (drift) cells.push_back(estimated(part.drift));
     }
-  if (table.rows.empty())
-    return document.remark(phrase("statement.no_right_answer"));
+  if (table.rows.empty()) return document.remark(phrase("statement.no_right_answer"));
   document.table(std::move(table));
 }
 
@@ -654,7 +655,8 @@ void add_course(const Summary& summary, Document& document) {
     line("Unsure",
          std::to_string(counts.unsure) + " of " + std::to_string(counts.answered) +
              " answers; they are left out of proportions correct and response times, and count as " +
-             core::number(1.0 / summary.data.alternatives, 3) + " of a right answer in the psychometric function",
+             core::number(1.0 / summary.data.alternatives, 3) +
+             " of a right answer in the psychometric function",
          false);
   for (const auto& [degree, right] : summary.confidence)
     line("Right with confidence " + std::to_string(degree), right_of(right), false);
@@ -664,8 +666,9 @@ void add_course(const Summary& summary, Document& document) {
          Number{100 * bias->share_second,
                 analysis::Interval{100 * bias->interval.low, 100 * bias->interval.high}} +
              Text(" %") +
-             (bias->criterion ? ", " + Text(phrase("report.criterion")) + " c = " + Number{*bias->criterion, {}, 2}
-                              : Text()));
+             (bias->criterion
+                  ? ", " + Text(phrase("report.criterion")) + " c = " + Number{*bias->criterion, {}, 2}
+                  : Text()));
   trend("Trend of response time", summary.fatigue.response_time_s, " s");
   if (summary.data.scored && summary.data.design != Design::adjustment)
     trend("Trend of accuracy", summary.fatigue.proportion_correct, " (proportion correct)");

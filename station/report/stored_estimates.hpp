@@ -11,9 +11,9 @@
 
 namespace turnpoint::report {
 
-/// Recomputes the final estimates of adaptive procedures, and which of them ended early, from the stored answers of a session, from the last
-/// attempt at each block, and adds them to `data`. `seed` is that of the session, and `earlier` are the
-/// trials of the participant's earlier sessions, for procedures that continue.
+/// Recomputes the final estimates of adaptive procedures, and which of them ended early, from the stored
+/// answers of a session, from the last attempt at each block, and adds them to `data`. `seed` is that of the
+/// session, and `earlier` are the trials of the participant's earlier sessions, for procedures that continue.
 void add_estimates(const std::vector<core::BlockRecord>& blocks, const protocol::Protocol& protocol,
                    std::uint64_t seed, const procedure::EarlierTrials& earlier, SessionData& data);
 

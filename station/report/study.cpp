@@ -337,12 +337,12 @@ void finish_study(Study& study) {
   std::stable_sort(measures.begin(), measures.end(),
                    [&place](const PersonMeasure& a, const PersonMeasure& b) { return place(a) < place(b); });
   study.means = analysis::group_means(measures);
-  if (study.means.empty())
-    study.statements.push_back({"no-measures", core::phrase("statement.no_measures")});
+  if (study.means.empty()) study.statements.push_back({"no-measures", core::phrase("statement.no_measures")});
   const auto& groups = study.groups_of_conditions;
-  std::erase_if(measures, [](const PersonMeasure& one) {  // where figures put their points; nothing to compare
-    return one.measure.starts_with(kBinTime) || one.measure.starts_with(kLagTime);
-  });
+  std::erase_if(measures,
+                [](const PersonMeasure& one) {  // where figures put their points; nothing to compare
+                  return one.measure.starts_with(kBinTime) || one.measure.starts_with(kLagTime);
+                });
   study.effects = analysis::effects(measures, [&groups](const std::string& first, const std::string& second) {
     return group_of(first, groups) != group_of(second, groups);
   });

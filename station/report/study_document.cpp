@@ -56,9 +56,10 @@ void add_group(const GroupFit& group, const Study& study, Document& document) {
     if (fit.threshold_sd)
       table.rows.push_back(
           {with_unit("Standard deviation between participants", part.level_unit), amount(fit.threshold_sd)});
-    table.rows.push_back({Text(in_unit(core::phrase("report.lapse"), core::phrase("report.share")), Look::label) +
-                              ", the same for all",
-                          amount(fit.lapse, 2)});
+    table.rows.push_back(
+        {Text(in_unit(core::phrase("report.lapse"), core::phrase("report.share")), Look::label) +
+             ", the same for all",
+         amount(fit.lapse, 2)});
     document.table(std::move(table));
     document.remark(fit.statements);
     Table pooled{{"Number", "Participant", "Trials", threshold_label(part), "Drawn to the group"}, {}};

@@ -33,7 +33,8 @@ analysis::Psychometric group_parameters(const analysis::MixedFit& fit) {
   return {fit.threshold->value, fit.slope->value, guess, fit.lapse};
 }
 
-/// The mean of the participants' proportions, with its interval, at each level that at least three of them had.
+/// The mean of the participants' proportions, with its interval, at each level that at least three of them
+/// had.
 Points answers_of(const Study& study, const GroupFit& group, int series) {
   struct Level {
     int trials = 0;
@@ -280,7 +281,8 @@ std::optional<Figure> group_course_figure(const Study& study) {
   add("Conditional accuracy", "Proportion correct (0 to 1)", analysis::kBinMeasure, kBinTime, false);
   add("Sensitivity at the signal", "Sensitivity d\u2032", kLagSensitivity, kLagTime, false);
   if (!study.settings.signalled)
-    add("Sensitivity over the conditions", "Sensitivity d\u2032", analysis::kSensitivity, analysis::kMedianTime, true);
+    add("Sensitivity over the conditions", "Sensitivity d\u2032", analysis::kSensitivity,
+        analysis::kMedianTime, true);
   if (figure.charts.empty()) return std::nullopt;
   figure.title = "Accuracy over time, means of the participants";
   figure.columns = figure.charts.size() > 1 ? 2 : 1;

@@ -43,7 +43,8 @@ Chart panel_of(const ThresholdCurve& curve, const core::Phrase& level_label, con
   Chart panel;
   panel.title = curve.procedure;
   panel.x = report::fitted(words(curve.label), seconds, 0.06);
-  panel.y = report::fitted(words(level_label), levels, 0.08, curve.ratios ? AxisScale::log10 : AxisScale::linear);
+  panel.y =
+      report::fitted(words(level_label), levels, 0.08, curve.ratios ? AxisScale::log10 : AxisScale::linear);
   panel.layers = {band, points, line};
   return panel;
 }

@@ -25,8 +25,8 @@ inline std::string with_minus(std::string number) {
   return number.starts_with('-') ? "\u2212" + number.substr(1) : number;
 }
 
-/// Formats an estimate with the digits that its interval justifies, as tables show it, and with a typographic minus
-/// sign. Without an interval it has three digits.
+/// Formats an estimate with the digits that its interval justifies, as tables show it, and with a typographic
+/// minus sign. Without an interval it has three digits.
 inline std::string in_digits(double value, const analysis::Interval* interval) {
   return with_minus(interval == nullptr
                         ? core::number(value, 3)

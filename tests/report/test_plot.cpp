@@ -168,13 +168,16 @@ TEST_CASE("A figure laid out for a given size fills it, in the arrangement that 
   CHECK_NOTHROW(render(tiny));
 }
 
-TEST_CASE("A figure that is scrolled keeps its text's size: charts stand below each other, and the caption below them",
-          "[plot]") {
+TEST_CASE(
+    "A figure that is scrolled keeps its text's size: charts stand below each other, and the caption below "
+    "them",
+    "[plot]") {
   auto figure = example();
   figure.charts.resize(3, figure.charts[0]);
   figure.caption = "Bars show what nineteen of twenty repetitions would lie between.";
   for (int i = 0; i < 3; ++i) figure.caption += " " + figure.caption;
-  // the same charts in a figure that is not scrolled: the document is wider than the view, and is scaled down to it
+  // the same charts in a figure that is not scrolled: the document is wider than the view, and is scaled down
+  // to it
   CHECK(size_px(laid_out(figure, 360, 200)).first > 500);
   const auto scrolled = laid_out_to_scroll(figure, 360, 200);
   CHECK(scrolled.columns == 1);
@@ -339,7 +342,8 @@ TEST_CASE("An axis of names shows each of them, turned upright if they are many"
   }
 }
 
-TEST_CASE("The files of a figure are as wide as one and two columns, and have its data and caption", "[plot]") {
+TEST_CASE("The files of a figure are as wide as one and two columns, and have its data and caption",
+          "[plot]") {
   auto figure = example();
   figure.caption = "Participant P01, 70 trials.";
   const NamedFigure named{"example", figure};

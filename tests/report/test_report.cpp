@@ -135,8 +135,9 @@ TEST_CASE("A speed-accuracy session gives fits, the trade with intervals, and al
   CHECK(json["differences"][2]["estimate"]["value"].get<double>() > 0.03);
 }
 
-TEST_CASE("The macro trade has d' and time of each condition with their intervals, as figure and in the table",
-          "[report]") {
+TEST_CASE(
+    "The macro trade has d' and time of each condition with their intervals, as figure and in the table",
+    "[report]") {
   const auto data = speed_accuracy(28);
   const auto summary = summarise(data);
   const auto figure = macro_figure(summary);
@@ -158,8 +159,8 @@ TEST_CASE("The macro trade has d' and time of each condition with their interval
   CHECK(points == 2);
   const auto& gap = summary.trade.differences.back();
   CHECK(gap.measure == "d'");
-  CHECK(gap.estimate->value == Approx(summary.trade.instructions[1].d_prime->value -
-                                      summary.trade.instructions[0].d_prime->value));
+  CHECK(gap.estimate->value ==
+        Approx(summary.trade.instructions[1].d_prime->value - summary.trade.instructions[0].d_prime->value));
   CHECK((*gap.estimate->p < 0.05) == (gap.estimate->interval.low > 0 || gap.estimate->interval.high < 0));
   CHECK(to_html(summary).find("Sensitivity d\u2032 over all levels") != std::string::npos);
   auto signalled = data;
@@ -317,12 +318,14 @@ TEST_CASE("If the answers determined the levels, the report states the posterior
   const auto& layers = figure->charts[0].layers;
   const double threshold = summary.fits[0].fit.parameters->threshold;
   const auto& fitted = summary.fits[0].fit;
-  const auto height = core::number(std::round(
-      100 * analysis::probability(fitted.options.function, fitted.options.scale, *fitted.parameters, threshold)));
+  const auto height =
+      core::number(std::round(100 * analysis::probability(fitted.options.function, fitted.options.scale,
+                                                          *fitted.parameters, threshold)));
   CHECK(std::any_of(layers.begin(), layers.end(), [&](const auto& layer) {
     const auto* rule = std::get_if<report::Rule>(&layer);
     return rule != nullptr && rule->direction == report::Rule::Direction::vertical && rule->at == threshold &&
-           rule->label == "threshold " + in_digits(threshold, &found.threshold->interval) + " dB (" + height + " %)";
+           rule->label ==
+               "threshold " + in_digits(threshold, &found.threshold->interval) + " dB (" + height + " %)";
   }));
   CHECK(std::any_of(layers.begin(), layers.end(), [&](const auto& layer) {
     const auto* span = std::get_if<report::Span>(&layer);
@@ -426,7 +429,8 @@ TEST_CASE("The report has the finger's force, speed and friction only if force c
   CHECK(unfelt.find("Friction along the strip") == std::string::npos);
 }
 
-TEST_CASE("The label of a threshold has the digits of the table and the height of the curve there", "[report]") {
+TEST_CASE("The label of a threshold has the digits of the table and the height of the curve there",
+          "[report]") {
   const auto summary = summarise(speed_accuracy(28));
   const auto svg = render(*psychometric_figure(summary));
   const auto html = to_html(summary);
@@ -435,8 +439,9 @@ TEST_CASE("The label of a threshold has the digits of the table and the height o
     const double at = named.fit.parameters->threshold;
     const auto digits = in_digits(at, &named.intervals.threshold->interval);
     CHECK(html.find(digits + " <span class=\"soft\">[") != std::string::npos);
-    const auto height = core::number(std::round(100 * analysis::probability(
-                            named.fit.options.function, named.fit.options.scale, *named.fit.parameters, at)));
+    const auto height = core::number(
+        std::round(100 * analysis::probability(named.fit.options.function, named.fit.options.scale,
+                                               *named.fit.parameters, at)));
     CHECK(svg.find(named.name + " " + digits) != std::string::npos);
     CHECK(svg.find("(" + height + " %)") != std::string::npos);
   }

@@ -133,11 +133,12 @@ bool in_protocol(const std::string& words, const std::string& protocol) {
 
 }  // namespace
 
-TEST_CASE("headings, labels and remarks of each design's report are texts in six languages, and end in a word",
-          "[operator]") {
+TEST_CASE(
+    "headings, labels and remarks of each design's report are texts in six languages, and end in a word",
+    "[operator]") {
   const auto name = GENERATE("speed-accuracy", "boundary-adjustment", "friction-rating", "magnitude-free",
-                             "friction-identification", "friction-zest", "friction-boundary-2d", "response-signal",
-                             "friction-confidence", "reward-rate", "friction-unforced");
+                             "friction-identification", "friction-zest", "friction-boundary-2d",
+                             "response-signal", "friction-confidence", "reward-rate", "friction-unforced");
   CAPTURE(name);
   auto protocol = shipped(name);
   const auto pages = view::report_pages(report::summarise(data_of(protocol)));
@@ -170,9 +171,8 @@ TEST_CASE("a section of the report on the screen that has only a remark keeps it
   report::Summary summary;
   summary.data.design = report::Design::adjustment;
   const auto pages = view::report_pages(summary);
-  const auto found = std::find_if(pages.sections.begin(), pages.sections.end(), [](const auto& one) {
-    return core::say(one.heading, "en") == "Settings";
-  });
+  const auto found = std::find_if(pages.sections.begin(), pages.sections.end(),
+                                  [](const auto& one) { return core::say(one.heading, "en") == "Settings"; });
   REQUIRE(found != pages.sections.end());
   CHECK(found->facts.empty());
   REQUIRE(found->statements.size() == 1);

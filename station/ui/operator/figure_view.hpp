@@ -21,14 +21,14 @@ struct Picture {
 QVariant to_variant(const view::Drawing& drawing);
 QVariant to_variant(const report::Figure& figure);
 
-/// Writes the files of a figure (see report::figure_files) to a folder, which it makes if there is none. The PDF is made
-/// by Qt, which joins the letters of all scripts. Throws std::runtime_error or std::system_error if a file cannot be
-/// written.
+/// Writes the files of a figure (see report::figure_files) to a folder, which it makes if there is none. The
+/// PDF is made by Qt, which joins the letters of all scripts. Throws std::runtime_error or std::system_error
+/// if a file cannot be written.
 void save_figure(const report::NamedFigure& figure, const QString& folder);
 
 /// Shows one figure, laid out for the size of this item with text of `textPixels`. Each new picture is drawn
-/// only once. If the item is in a Flickable, `seenHeight` is that one's height, and the item must be as high as
-/// `neededHeight`: a figure whose text would have to be smaller is then higher than what is seen at once.
+/// only once. If the item is in a Flickable, `seenHeight` is that one's height, and the item must be as high
+/// as `neededHeight`: a figure whose text would have to be smaller is then higher than what is seen at once.
 class FigureView : public QQuickPaintedItem {
   Q_OBJECT
   QML_ELEMENT
@@ -47,8 +47,8 @@ class FigureView : public QQuickPaintedItem {
   void set_text_pixels(double pixels);        // NOLINT
   void set_seen_height(double height);        // NOLINT
   double needed_height() const { return needed_height_; }
-  void set_paper(const QColor& paper);        // NOLINT
-  void set_dark(bool dark);                   // NOLINT
+  void set_paper(const QColor& paper);  // NOLINT
+  void set_dark(bool dark);             // NOLINT
   void paint(QPainter* painter) override;
 
  Q_SIGNALS:

@@ -48,9 +48,8 @@ void ReportModel::save(int picture) {
 QVariantList ReportModel::sections() const {
   QVariantList list;
   for (const auto& [heading, facts, statements] : pages_.sections)
-    list += QVariantMap{{"heading", to_variant(heading)},
-                        {"facts", to_list(facts)},
-                        {"statements", to_list(statements)}};
+    list += QVariantMap{
+        {"heading", to_variant(heading)}, {"facts", to_list(facts)}, {"statements", to_list(statements)}};
   return list;
 }
 
