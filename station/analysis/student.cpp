@@ -63,7 +63,6 @@ std::optional<Estimate> student_ratio(const std::vector<double>& y, const std::v
   const double n = static_cast<double>(x.size()), ratio = average(y) / average(x);
   double squares = 0;
   for (std::size_t i = 0; i < x.size(); ++i) squares += (y[i] - ratio * x[i]) * (y[i] - ratio * x[i]);
-  if (squares <= 0) return std::nullopt;
   return student(ratio, std::sqrt(squares / (n - 1) / n) / average(x), n - 1);
 }
 

@@ -15,8 +15,7 @@ std::optional<Estimate> student_difference(const std::vector<double>& a, const s
 std::optional<Estimate> student_slope(const std::vector<double>& x, const std::vector<double>& y);
 
 /// The ratio of the sums of y and x, such as points in a time, from pairs of them (linearised, with n - 1
-/// degrees of freedom). Empty with fewer than 3 pairs, if the x do not add up to more than 0, or if all pairs
-/// have the same ratio.
+/// degrees of freedom). Empty with fewer than 3 pairs, or if the x do not add up to more than 0.
 std::optional<Estimate> student_ratio(const std::vector<double>& y, const std::vector<double>& x);
 
 }  // namespace turnpoint::analysis

@@ -234,7 +234,7 @@ void add_points(const std::vector<TrialRecord>& trials, InstructionResult& resul
     points.push_back(*trial.points);
     minutes.push_back(trial.duration_s / 60);
   }
-  result.points = student_ratio(points, std::vector<double>(points.size(), 1));
+  result.points = student_mean(points);
   result.points_per_minute = student_ratio(points, minutes);
 }
 
@@ -315,10 +315,8 @@ void set_estimates(InstructionResult& result, const Measures& values,
 struct MeasureName {
   const char *name, *unit;
 };
-constexpr MeasureName kNames[measures] = {{"proportion correct", "proportion"},
-                                          {"median response time", "s"},
-                                          {"LISAS", "s"},
-                                          {"inverse efficiency", "s"}};
+constexpr MeasureName kNames[measures] = {
+    {kCorrect, "proportion"}, {kMedianTime, "s"}, {kLisas, "s"}, {kInverseEfficiency, "s"}};
 
 /// The difference of one parameter of two diffusion fits, second minus first: the median and a central
 /// interval of the differences between their draws.
@@ -341,17 +339,16 @@ void add_diffusion_differences(const Group& first, const Group& second, const Tr
     differences.push_back({a.instruction, b.instruction, measure, unit,
                            diffusion_difference(first, second, options.confidence, of)});
   };
-  add("boundary", "s = 0.1", [](const Group&, const DiffusionDraw& draw) { return draw.boundary; });
-  add("time outside the decision", "s",
-      [](const Group&, const DiffusionDraw& draw) { return draw.nondecision_s; });
+  add(kBoundary, "s = 0.1", [](const Group&, const DiffusionDraw& draw) { return draw.boundary; });
+  add(kNondecision, "s", [](const Group&, const DiffusionDraw& draw) { return draw.nondecision_s; });
   std::vector<double> shared;
   std::set_intersection(first.difficulty.begin(), first.difficulty.end(), second.difficulty.begin(),
                         second.difficulty.end(), std::back_inserter(shared));
   if (shared.empty()) {
-    differences.push_back({a.instruction, b.instruction, "drift", "s = 0.1", std::nullopt});
+    differences.push_back({a.instruction, b.instruction, kDrift, "s = 0.1", std::nullopt});
     return;
   }
-  add("drift", "s = 0.1", [&shared](const Group& group, const DiffusionDraw& draw) {
+  add(kDrift, "s = 0.1", [&shared](const Group& group, const DiffusionDraw& draw) {
     double sum = 0;
     for (std::size_t i = 0; i < group.difficulty.size(); ++i)
       if (std::binary_search(shared.begin(), shared.end(), group.difficulty[i])) sum += draw.drift[i];
@@ -411,8 +408,8 @@ void add_differences(const Sessions& sessions, const std::vector<Group>& groups,
                                    proportion(second.caf[i].correct, second.caf[i].trials),
                                    options.confidence)});
       for (const auto& [measure, unit, value] :
-           {std::tuple{"points a trial", "points", &InstructionResult::points},
-            {"points a minute", "points/min", &InstructionResult::points_per_minute}})
+           {std::tuple{kPoints, "points", &InstructionResult::points},
+            {kPointsPerMinute, "points/min", &InstructionResult::points_per_minute}})
         if (first.*value && second.*value)
           trade.differences.push_back({first.instruction, second.instruction, measure, unit,
                                        difference_of(*(first.*value), *(second.*value))});

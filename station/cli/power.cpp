@@ -25,6 +25,7 @@
 #include "station/rehearsal/power_figure.hpp"
 #include "station/rehearsal/power_session.hpp"
 #include "station/rehearsal/reward.hpp"
+#include "station/report/words.hpp"
 #include "station/session/places.hpp"
 #include "station/session/prepare.hpp"
 #include "station/session/programs.hpp"
@@ -408,7 +409,7 @@ void print(std::ostream& out, const rehearsal::Power& power) {
     fmt::print(out, "The check of the diffusion model finds a misfit in {} % of {} sessions\n",
                number(100 * power.misfits->value, 3), power.misfits->trials);
   const auto named = [](const rehearsal::Recovery& r) {
-    return fmt::format("{} ({})", r.parameter, r.unit.empty() ? "no unit" : r.unit);
+    return core::say(report::in_unit(core::plain(r.parameter), core::plain(r.unit)), "en");
   };
   std::size_t widest = 34;
   for (const auto& r : power.recoveries) widest = std::max(widest, named(r).size());

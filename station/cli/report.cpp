@@ -136,7 +136,7 @@ void print_study(std::ostream& out, const std::string& file, const report::Study
   for (const auto& person : study.persons) excluded += !person.excluded.empty();
   fmt::print(out, "{}: {} participants, {} excluded\n", file, study.persons.size(), excluded);
   for (const auto& group : study.groups) {
-    const auto name = report::name_of(group.condition);
+    const auto name = core::say(report::name_of(group.condition), "en");
     if (group.result.fit && group.result.fit->threshold) {
       fmt::print(out, "  {}: threshold of the group {} {}\n", name,
                  interval_in_words(*group.result.fit->threshold), study.settings.level_unit);

@@ -73,16 +73,16 @@ class Truths {
     for (const auto& outcome : outcomes) generating.add(outcome.generating);
     if (outcomes.front().design == report::Design::categories)
       for (const auto& condition : with_none(protocol::analysed_conditions(protocol)))
-        add(source_of("answers", condition), "proportion correct", generating.share_correct(condition));
+        add(source_of("answers", condition), analysis::kCorrect, generating.share_correct(condition));
     add_d_primes(protocol, generating, observer);
     add_fits(generating, observer, outcomes);
     add_differences(generating, observer, protocol::analysed_conditions(protocol));
     for (const auto& condition : with_none(protocol::analysed_conditions(protocol))) {
       const auto diffusion = source_of("diffusion", condition), signal = source_of("signal", condition);
-      add(diffusion, "boundary", generating.boundary(condition, observer));
-      add(diffusion, "drift", generating.drift(condition));
+      add(diffusion, analysis::kBoundary, generating.boundary(condition, observer));
+      add(diffusion, analysis::kDrift, generating.drift(condition));
       if (options.observer.residual_range_s == 0)
-        add(diffusion, "time outside the decision", observer.nondecision_s());
+        add(diffusion, analysis::kNondecision, observer.nondecision_s());
       if (const auto curve = generating.curve(condition)) {
         add(signal, kAsymptote, (*curve)[0]);
         add(signal, kRate, (*curve)[1]);
@@ -153,13 +153,14 @@ class Truths {
                                  std::optional<double> second) {
           if (first && second) add(source, parameter, *second - *first);
         };
-        add_gap("proportion correct", generating.share_correct(names[a]), generating.share_correct(names[b]));
-        add_gap("boundary", generating.boundary(names[a], observer), generating.boundary(names[b], observer));
+        add_gap(analysis::kCorrect, generating.share_correct(names[a]), generating.share_correct(names[b]));
+        add_gap(analysis::kBoundary, generating.boundary(names[a], observer),
+                generating.boundary(names[b], observer));
         // the time that a simulated observer needs outside the decision is the same in all conditions, so the
         // true difference is 0
-        add(source, "time outside the decision", 0);
+        add(source, analysis::kNondecision, 0);
         // its drift depends on the stimulus only
-        add(source, "drift", 0);
+        add(source, analysis::kDrift, 0);
         const auto first = generating.curve(names[a]), second = generating.curve(names[b]);
         if (!first || !second) continue;
         add(source, kAsymptote, (*second)[0] - (*first)[0]);
@@ -327,11 +328,11 @@ Measures true_measures(const SessionOutcome& outcome, const simulation::Observer
     if (value) truths.push_back({"", condition, measure, "", *value});
   };
   for (const auto& condition : conditions) {
-    add(condition, report::kCorrect, generating.share_correct(condition));
-    add(condition, "boundary", generating.boundary(condition, observer));
-    add(condition, "drift", generating.drift(condition));
+    add(condition, analysis::kCorrect, generating.share_correct(condition));
+    add(condition, analysis::kBoundary, generating.boundary(condition, observer));
+    add(condition, analysis::kDrift, generating.drift(condition));
     if (observer.parameters().residual_range_s == 0)
-      add(condition, "time outside the decision", observer.nondecision_s());
+      add(condition, analysis::kNondecision, observer.nondecision_s());
     if (const auto curve = generating.curve(condition)) {
       add(condition, kAsymptote, (*curve)[0]);
       add(condition, kRate, (*curve)[1]);

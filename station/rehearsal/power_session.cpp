@@ -91,7 +91,7 @@ void add_fits(const report::SessionData& data, const std::string& unit, SessionO
     for (const auto& confusion :
          analysis::confusions(data.trials, data.conditions, static_cast<int>(data.choices.size())))
       if (confusion.right)
-        outcome.findings.push_back({source_of("answers", confusion.condition), "proportion correct", "",
+        outcome.findings.push_back({source_of("answers", confusion.condition), analysis::kCorrect, "",
                                     confusion.right->value, confusion.right->interval});
     return;
   }
@@ -149,9 +149,9 @@ void add_trade(const report::SessionData& data, SessionOutcome& outcome) {
         findings.push_back(
             {source_of("diffusion", entry.instruction), parameter, unit, found->value, found->interval});
     };
-    add("boundary", "s = 0.1", entry.boundary);
-    add("time outside the decision", "s", entry.nondecision_s);
-    add("drift", "s = 0.1", entry.drift);
+    add(analysis::kBoundary, "s = 0.1", entry.boundary);
+    add(analysis::kNondecision, "s", entry.nondecision_s);
+    add(analysis::kDrift, "s = 0.1", entry.drift);
   }
   for (const auto& difference : trade.differences) {
     if (!difference.estimate) continue;

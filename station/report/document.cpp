@@ -10,17 +10,22 @@
 
 namespace turnpoint::report {
 
-std::pair<std::string, std::string> in_known_digits(const Number& number) {
-  if (!number.interval) return {with_minus(core::number(number.value, number.digits)), ""};
+std::pair<core::Phrase, core::Phrase> in_known_digits(const Number& number) {
+  using core::plain;
+  if (!number.interval) return {plain(with_minus(core::number(number.value, number.digits))), {}};
   const auto& [low, high, confidence] = *number.interval;
   const bool endless = number.unbounded && !(std::isfinite(low) && std::isfinite(high));
   const double error = endless ? 0 : core::uncertainty(number.value, low, high);
-  const auto shown = [&](double value) -> std::string {
-    if (std::isfinite(value)) return with_minus(core::estimated(value, error));
-    return !number.unbounded ? "not determined" : value < 0 ? "\u2212\u221e" : "\u221e";
+  const auto shown = [&](double value) {
+    if (std::isfinite(value)) return plain(with_minus(core::estimated(value, error)));
+    if (!number.unbounded) return core::phrase("report.not_determined");
+    return plain(value < 0 ? "\u2212\u221e" : "\u221e");
   };
-  return {shown(number.value), std::string("[") + (number.at_most ? "\u2264 " : "") + shown(low) + ", " +
-                                   (number.at_least ? "\u2265 " : "") + shown(high) + "]"};
+  return {shown(number.value),
+          {"",
+           "",
+           {plain(number.at_most ? "[\u2264 " : "["), shown(low), plain(number.at_least ? ", \u2265 " : ", "),
+            shown(high), plain("]")}}};
 }
 
 Cell amount(const std::optional<double>& value, int digits, const char* missing) {
@@ -62,17 +67,16 @@ std::vector<NamedFigure> figures_of(const Document& document) {
 
 Text threshold_label(const LevelAnalysis& data) {
   const auto* key = data.design == Design::two_sided ? "report.pse" : "report.threshold";
-  return Text(core::phrase(key), Text::Look::label) +
-         (" (" + (data.level_unit.empty() ? "no unit" : data.level_unit) + ")");
+  return {in_unit(core::phrase(key), core::plain(data.level_unit)), Text::Look::label};
 }
 
 Text slope_label(core::Function function, const LevelAnalysis& data) {
+  using core::phrase, core::plain;
   const auto& unit = data.level_unit;
-  const auto name = [](const char* key) { return Text(core::phrase(key), Text::Look::label); };
-  if (function == core::Function::normal)
-    return name("report.spread") + (", standard deviation (" + (unit.empty() ? "no unit" : unit) + ")");
-  if (function == core::Function::weibull) return name("report.slope") + " (exponent, no unit)";
-  return name("report.slope") + (unit.empty() ? " (no unit)" : " (1/" + unit + ")");
+  const auto label = [](core::Phrase name) { return Text(std::move(name), Text::Look::label); };
+  if (function == core::Function::normal) return label(in_unit(phrase("report.spread_sd"), plain(unit)));
+  if (function == core::Function::weibull) return label(phrase("report.slope_exponent"));
+  return label(in_unit(phrase("report.slope"), plain(unit.empty() ? "" : "1/" + unit)));
 }
 
 void add_meanings(const SessionData& data, Document& document) {
@@ -145,9 +149,9 @@ void add_own_estimates(std::vector<Column> of, const std::vector<OwnEstimate>& e
     table.columns.emplace_back(title);
   for (const auto& [first, estimate, is_brief] : estimates) {
     const bool level = estimate.parameter.starts_with("threshold") || estimate.parameter == "pse";
-    const auto unit = estimate.unit.empty() && level ? "no unit" : estimate.unit;
-    const auto parameter =
-        Text(procedure::parameter_name(estimate.parameter)) + (unit.empty() ? "" : " (" + unit + ")");
+    auto parameter = procedure::parameter_name(estimate.parameter);
+    if (level || !estimate.unit.empty())
+      parameter = in_unit(std::move(parameter), core::plain(estimate.unit));
     auto value = estimate.interval ? estimated(estimate.mean, *estimate.interval)
                  : estimate.sd     ? count(with_minus(core::estimated(estimate.mean, *estimate.sd)))
                                    : amount(estimate.mean);

@@ -1,5 +1,6 @@
 #pragma once
 #include <concepts>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -25,8 +26,8 @@ struct Number {
   bool at_most = false, at_least = false;
   bool unbounded = false;  ///< an infinite end is a result, not an end that could not be determined
 };
-/// The number and its interval ("" if it has none) in the digits that are known.
-std::pair<std::string, std::string> in_known_digits(const Number& number);
+/// The number and its interval (empty if it has none) in the digits that are known.
+std::pair<core::Phrase, core::Phrase> in_known_digits(const Number& number);
 
 /// A text whose language is chosen later, with numbers and marked words.
 struct Text {
@@ -38,7 +39,9 @@ struct Text {
   std::vector<Run> runs;
 
   Text() = default;
-  Text(core::Phrase phrase, Look look = Look::plain) { runs.push_back({std::move(phrase), look}); }
+  Text(core::Phrase phrase, Look look = Look::plain) {
+    if (!phrase.empty()) runs.push_back({std::move(phrase), look});
+  }
   Text(std::string words, Look look = Look::plain) : Text(core::plain(std::move(words)), look) {}
   Text(const char* words, Look look = Look::plain) : Text(std::string(words), look) {}
   Text(std::integral auto count) : Text(std::to_string(count)) {}
@@ -111,7 +114,7 @@ struct Document {
   /// Remarks that must be shown with the numbers. `condition` is the one that they are about, if no heading
   /// says so.
   void remark(const std::vector<analysis::Statement>& statements, const std::string& condition = "");
-  void remark(std::string words) { parts.push_back(analysis::Statement{"", core::plain(std::move(words))}); }
+  void remark(core::Phrase said) { parts.push_back(analysis::Statement{"", std::move(said)}); }
   /// Adds a table, unless it has no rows.
   void table(Table added);
   /// Adds a table of names and texts.
@@ -150,8 +153,5 @@ Text early_end(const EarlyEnd& end);
 /// script, no external files.
 std::string to_html(const Document& document);
 inline std::string to_html(const Summary& summary) { return to_html(document(summary)); }
-
-/// Returns the content of the report as one JSON document. Missing values are null.
-std::string to_json(const Summary& summary);
 
 }  // namespace turnpoint::report

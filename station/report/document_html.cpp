@@ -47,7 +47,8 @@ std::string html(const Text& text) {
   for (const auto& [what, look] : text.runs) {
     if (const auto* number = std::get_if<Number>(&what)) {
       const auto [value, interval] = in_known_digits(*number);
-      all += value + (interval.empty() ? "" : " <span class=\"soft\">" + interval + "</span>");
+      all += core::say(value, "en");
+      if (!interval.empty()) all += " <span class=\"soft\">" + core::say(interval, "en") + "</span>";
       continue;
     }
     auto words = core::say(std::get<core::Phrase>(what), "en");

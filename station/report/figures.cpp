@@ -42,7 +42,8 @@ Line curve(const NamedFit& named, int series, const Axis& axis, const std::strin
   const bool logarithmic = axis.scale == AxisScale::log10;
   // the curve ends where its band does
   const auto& along = named.intervals.band_level;
-  const double low = along.empty() ? axis.low : along.front(), high = along.empty() ? axis.high : along.back();
+  const double low = along.empty() ? axis.low : along.front(),
+               high = along.empty() ? axis.high : along.back();
   for (int i = 0; i <= 120; ++i) {
     const double share = i / 120.0;
     const double x = logarithmic ? low * std::pow(high / low, share) : low + share * (high - low);
@@ -59,8 +60,8 @@ std::optional<double> false_alarms(const NamedFit& named) {
   return std::nullopt;
 }
 
-/// Marks the threshold (or PSE) on the curve: a thin line labelled with its value and the height of the curve there,
-/// which is the criterion that the threshold stands for, and its interval at that height.
+/// Marks the threshold (or PSE) on the curve: a thin line labelled with its value and the height of the curve
+/// there, which is the criterion that the threshold stands for, and its interval at that height.
 void mark_threshold(const NamedFit& named, const LevelAnalysis& data, const Words& words, int series,
                     const std::string& name, Chart& panel) {
   const auto& fit = named.fit;
@@ -112,15 +113,12 @@ std::string psychometric_caption(const Summary& summary) {
     bands = bands || !named.intervals.band_level.empty();
     thresholds = thresholds || named.intervals.threshold;
   }
-  auto caption = of_trials(summary, trials) + " " +
-                 words.together({"figure.caption_points", curve_caption(summary.fits.front().fit.options.function)});
+  auto caption =
+      of_trials(summary, trials) + " " +
+      words.together({"figure.caption_points", curve_caption(summary.fits.front().fit.options.function)});
   if (bands) caption += " " + words("figure.caption_band");
   if (thresholds) caption += " " + words("figure.caption_threshold");
   return caption;
-}
-
-std::string or_default(const std::string& name, const std::string& fallback) {
-  return name.empty() ? fallback : name;
 }
 
 }  // namespace
@@ -137,8 +135,8 @@ std::optional<Chart> psychometric_chart(const std::vector<const NamedFit*>& fits
   if (levels.empty()) return std::nullopt;
   const bool logarithmic = data.scale == analysis::Scale::log10;
   Chart panel;
-  panel.x =
-      report::fitted(data.level_label, levels, 0.05, logarithmic ? AxisScale::log10 : AxisScale::linear);
+  panel.x = report::fitted(words(data.level_label), levels, 0.05,
+                           logarithmic ? AxisScale::log10 : AxisScale::linear);
   const bool forced = data.design == Design::forced_choice;
   const auto& positive = fits.front()->positive;
   panel.y = {words("figure.proportion", positive == "correct" ? words("figure.correct") : positive),
@@ -216,10 +214,10 @@ std::optional<Figure> trace_figure(const Summary& summary) {
     }
     if (!wrong.x.empty()) right.name = words("figure.right"), wrong.name = words("figure.wrong");
     Chart panel;
-    panel.title = or_default(trace.procedure, words("figure.all_trials"));
+    panel.title = words(name_of(trace.procedure));
     panel.x = report::fitted(words("figure.trial_in_session"), line.x, 0.03);
     panel.x.counts = true;
-    panel.y = report::fitted(summary.data.level_label, line.y, 0.1);
+    panel.y = report::fitted(words(summary.data.level_label), line.y, 0.1);
     // Draw a line only if the procedure moves in small steps. A line through shuffled levels would only
     // zigzag.
     double steps = 0;
@@ -237,6 +235,7 @@ std::optional<Figure> trace_figure(const Summary& summary) {
 }
 
 std::optional<Figure> settings_figure(const Summary& summary) {
+  const Words words(summary.data.language);
   Figure figure;
   std::size_t count = 0;
   figure.title = "Settings in the order made";
@@ -259,7 +258,7 @@ std::optional<Figure> settings_figure(const Summary& summary) {
     Chart panel;
     panel.title = settings.procedure + (settings.condition.empty() ? "" : ", " + settings.condition);
     panel.x = report::fitted("Setting (number)", starts.x, 0.03);
-    panel.y = report::fitted(summary.data.level_label, both, 0.1);
+    panel.y = report::fitted(words(summary.data.level_label), both, 0.1);
     if (settings.mean)
       panel.layers.push_back(Rule{Rule::Direction::horizontal, settings.mean->value,
                                   "mean " + in_digits(settings.mean->value, &settings.mean->interval)});
@@ -268,7 +267,7 @@ std::optional<Figure> settings_figure(const Summary& summary) {
     figure.charts.push_back(std::move(panel));
   }
   if (figure.charts.empty()) return std::nullopt;
-  figure.caption = of_trials(summary, count) + " " + Words(summary.data.language)("figure.caption_settings");
+  figure.caption = of_trials(summary, count) + " " + words("figure.caption_settings");
   return figure;
 }
 
@@ -300,15 +299,15 @@ std::optional<Figure> judgement_figure(const Summary& summary) {
   const bool ratios =
       numbers && summary.data.level_unit != "dB" && *std::min_element(levels.begin(), levels.end()) > 0;
   const auto scale = [](bool logarithmic) { return logarithmic ? AxisScale::log10 : AxisScale::linear; };
-  chart.x = report::fitted(summary.data.level_label, levels, 0.06, scale(ratios));
+  chart.x = report::fitted(words(summary.data.level_label), levels, 0.06, scale(ratios));
   chart.y = report::fitted(words(numbers ? "figure.geometric_mean" : "figure.mean_rating"), values, 0.08,
                            scale(numbers));
   Figure figure;
   figure.title = numbers ? "Numbers at each level" : "Ratings at each level";
   figure.chart_width_px = 620;
   figure.chart_height_px = 320;
-  figure.caption = of_trials(summary, count) + " " +
-                   words(numbers ? "figure.caption_numbers" : "figure.caption_ratings");
+  figure.caption =
+      of_trials(summary, count) + " " + words(numbers ? "figure.caption_numbers" : "figure.caption_ratings");
   figure.charts.push_back(std::move(chart));
   return figure;
 }
@@ -333,14 +332,14 @@ std::optional<Figure> confusion_figure(const Summary& summary) {
     for (const auto& row : confusion.rows)
       for (const int count : row.answers) shares.values.push_back(static_cast<double>(count) / row.trials);
     Chart chart;
-    chart.title = or_default(confusion.condition, words("figure.all_trials"));
-    chart.x = {words("figure.answer"), 0.5, shares.x_edges.back(), AxisScale::linear, true,
-               summary.data.choices};
+    chart.title = words(name_of(confusion.condition));
+    chart.x = {words("figure.answer"), 0.5,  shares.x_edges.back(),
+               AxisScale::linear,      true, summary.data.choices};
     chart.y = {words("figure.stimulus"), 0.5, shares.y_edges.back(), AxisScale::linear, true};
     for (const auto& row : confusion.rows)
       chart.y.names.push_back(row.stimulus ? summary.data.choices.at(static_cast<std::size_t>(*row.stimulus))
-                              : row.level ? in_digits(*row.level, nullptr)
-                                          : "");
+                              : row.level  ? in_digits(*row.level, nullptr)
+                                           : "");
     chart.layers.push_back(std::move(shares));
     figure.charts.push_back(std::move(chart));
   }
@@ -368,8 +367,8 @@ std::optional<Figure> vibration_figure(const Summary& summary) {
   chart.layers.push_back(points);
   Figure figure;
   figure.title = "Vibration of the surface";
-  figure.caption = of_trials(summary, points.x.size()) + " " +
-                   Words(summary.data.language)("figure.caption_vibration");
+  figure.caption =
+      of_trials(summary, points.x.size()) + " " + Words(summary.data.language)("figure.caption_vibration");
   figure.chart_width_px = 620;
   figure.chart_height_px = 220;
   figure.charts.push_back(std::move(chart));
@@ -399,15 +398,15 @@ std::optional<Figure> response_time_figure(const Summary& summary) {
     const auto& entry = summary.trade.instructions[i];
     bars[i].series = static_cast<int>(i);
     Chart panel;
-    panel.title = or_default(entry.instruction, words("figure.all_trials"));
+    panel.title = words(name_of(entry.instruction));
     panel.x = {words("figure.response_time"), 0, high};
     panel.y = {words("figure.trials"), 0, tallest * 1.12, AxisScale::linear, true};
     panel.layers.push_back(bars[i]);
     if (entry.times)
-      panel.layers.push_back(Rule{Rule::Direction::vertical, entry.times->median_s,
-                                  words("figure.median", in_digits(entry.times->median_s,
-                                                                   entry.median_s ? &entry.median_s->interval
-                                                                                  : nullptr))});
+      panel.layers.push_back(Rule{
+          Rule::Direction::vertical, entry.times->median_s,
+          words("figure.median",
+                in_digits(entry.times->median_s, entry.median_s ? &entry.median_s->interval : nullptr))});
     figure.charts.push_back(std::move(panel));
   }
   figure.caption = of_trials(summary, all.size()) + " " + words("figure.caption_times");
@@ -427,7 +426,7 @@ std::optional<Figure> quantile_probability_figure(const Summary& summary) {
   std::vector<double> times{0};
   for (const auto& entry : summary.trade.instructions) {
     if (!entry.check) continue;
-    Chart chart{name_of(entry.instruction), {}, {}, {}, false};
+    Chart chart{core::say(name_of(entry.instruction), summary.data.language), {}, {}, {}, false};
     for (std::size_t q = 0; q < analysis::kPredictedQuantiles.size(); ++q) {
       Points points;
       std::vector<std::pair<double, double>> predicted;
@@ -518,7 +517,7 @@ std::optional<Chart> conditions_chart(const Summary& summary, const Words& words
     Points point;
     point.x = {right.mean_s}, point.y = {accuracy.value};
     region.series = point.series = own;
-    point.name = or_default(entry.instruction, words("figure.all_trials"));
+    point.name = words(name_of(entry.instruction));
     times_s.insert(times_s.end(), region.x.begin(), region.x.end());
     accuracies.insert(accuracies.end(), {accuracy.interval.low, accuracy.interval.high});
     chart.layers.push_back(region);
@@ -564,7 +563,7 @@ std::optional<Figure> trade_figure(const Summary& summary) {
     }
     caf_times.insert(caf_times.end(), bins.x.begin(), bins.x.end());
     cell_times.insert(cell_times.end(), by_difficulty.x.begin(), by_difficulty.x.end());
-    const auto name = or_default(entry.instruction, words("figure.all_trials"));
+    const auto name = words(name_of(entry.instruction));
     bins.series = bin_line.series = by_difficulty.series = series++;
     bins.name = bin_line.name = by_difficulty.name = name;
     bin_line.x = bins.x, bin_line.y = bins.y;
@@ -610,7 +609,7 @@ std::optional<Figure> macro_figure(const Summary& summary) {
     point.x = {time.value}, point.y = {height.value};
     point.low = {height.interval.low}, point.high = {height.interval.high};
     across.series = point.series = own;
-    point.name = or_default(entry.instruction, words("figure.all_trials"));
+    point.name = words(name_of(entry.instruction));
     chart.layers.insert(chart.layers.end(), {across, point});
     joined.emplace_back(time.value, height.value);
     times_s.insert(times_s.end(), across.x.begin(), across.x.end());
@@ -642,8 +641,7 @@ std::optional<Figure> roc_figure(const Summary& summary) {
   std::string last;
   for (const auto& entry : summary.rocs) {
     if (figure.charts.empty() || entry.condition != last) {
-      figure.charts.push_back(
-          {or_default(entry.condition, words("figure.all_trials")), {"False alarms", 0, 1}, {"Hits", 0, 1}, {}});
+      figure.charts.push_back({words(name_of(entry.condition)), {"False alarms", 0, 1}, {"Hits", 0, 1}, {}});
       last = entry.condition;
     }
     auto& layers = figure.charts.back().layers;
@@ -670,7 +668,7 @@ std::optional<Figure> signal_figure(const Summary& summary) {
     Points points;
     Line line;
     points.series = line.series = series++;
-    points.name = line.name = or_default(curve.condition, words("figure.all_trials"));
+    points.name = line.name = words(name_of(curve.condition));
     for (const auto& point : curve.points) {
       if (!point.d_prime) continue;
       points.x.push_back(point.time_s), points.y.push_back(point.d_prime->value);

@@ -37,7 +37,7 @@ Json fit_json(const NamedFit& named, const SessionData& data) {
   const auto& p = named.fit.parameters;
   const bool posterior = named.intervals.method == analysis::IntervalMethod::posterior;
   Json json{{"name", named.name}, {"positive", named.positive}, {"measures", part.meaning}};
-  json["level"] = part.level_label;
+  json["level"] = core::say(part.level_label, "en");
   json["level_unit"] = part.level_unit;
   json["threshold"] = p ? value(p->threshold) : Json(nullptr);
   json["threshold_interval"] = value(named.intervals.threshold);
@@ -166,7 +166,7 @@ Json threshold_curves_json(const std::vector<ThresholdCurve>& curves) {
                         {"interval", value(point.interval)}});
     json.push_back({{"procedure", curve.procedure},
                     {"block", curve.block},
-                    {"second", curve.label},
+                    {"second", core::say(curve.label, "en")},
                     {"points", points}});
   }
   return json;
@@ -262,8 +262,9 @@ Json facts_json(const std::vector<Fact>& facts) {
 
 std::string to_json(const Summary& summary) {
   const auto& data = summary.data;
-  Json json{{"session_id", data.session_id}, {"participant", data.participant}, {"title", data.title},
-            {"run_mode", data.run_mode},     {"status", data.status},           {"level", data.level_label},
+  Json json{{"session_id", data.session_id}, {"participant", data.participant},
+            {"title", data.title},           {"run_mode", data.run_mode},
+            {"status", data.status},         {"level", core::say(data.level_label, "en")},
             {"level_unit", data.level_unit}, {"choices", data.choices}};
   json["measures"] = meanings_json(data);
   json["facts"] = facts_json(data.facts);

@@ -12,21 +12,17 @@ namespace turnpoint::report {
 namespace {
 
 using analysis::Estimate;
-using core::phrase;
+using core::phrase, core::plain;
 using Look = Text::Look;
 
-std::string in_unit(const std::string& name, const LevelAnalysis& data) {
-  return name + " (" + (data.level_unit.empty() ? "no unit" : data.level_unit) + ")";
-}
-
-std::string second_minus_first(const std::string& first, const std::string& second) {
-  return name_of(second) + " \u2212 " + name_of(first);
+core::Phrase second_minus_first(const std::string& first, const std::string& second) {
+  return {"", "", {name_of(second), plain(" \u2212 "), name_of(first)}};
 }
 
 Cell level_cell(const std::optional<double>& level) { return amount(level, 4, "all"); }
 
 Text right_of(const analysis::Proportion& right) {
-  return Text(phrase("report.of", {core::plain(right.right), core::plain(right.trials)})) + ", " +
+  return Text(phrase("report.of", {plain(right.right), plain(right.trials)})) + ", " +
          Number{right.value, right.interval};
 }
 
@@ -65,8 +61,9 @@ void add_fit(const NamedFit& named, const SessionData& session, Document& docume
                             Text(in_known_digits(std::get<Number>(cell.text.runs[0].what)).second, Look::soft)
                       : Text("only limited", Look::soft);
     }
-    if (found.level_75 && !two_sided) row(in_unit("75 % point", data), *found.level_75, found.interval_75);
-    row(Text(phrase("report.lapse"), Look::label) + " (proportion)", p.lapse, found.lapse, true);
+    if (found.level_75 && !two_sided)
+      row(in_unit(plain("75 % point"), plain(data.level_unit)), *found.level_75, found.interval_75);
+    row({in_unit(phrase("report.lapse"), phrase("report.share")), Look::label}, p.lapse, found.lapse, true);
     if (found.guess)
       row(has_noise(data.design) ? "False alarms (proportion)" : "Guess rate (proportion)", p.guess,
           found.guess);
@@ -109,7 +106,7 @@ void add_threshold_curves(const Summary& summary, Document& document) {
   document.heading("Threshold along the second dimension");
   document.figure("threshold-curve", threshold_curve_figure(summary));
   for (const auto& curve : data.threshold_curves) {
-    Table table{{curve.label, "Threshold, " + data.level_label}, {}};
+    Table table{{curve.label, Text("Threshold, ") + data.level_label}, {}};
     for (const auto& point : curve.points)
       table.rows.push_back({amount(point.second, 4), estimated(point.threshold, point.interval)});
     document.table(std::move(table));
@@ -126,28 +123,30 @@ void add_threshold_curves(const Summary& summary, Document& document) {
 
 void add_settings(const Summary& summary, Document& document) {
   const auto& data = summary.data;
-  document.heading("Settings");
+  document.heading(phrase("report.settings"));
   document.figure("settings", settings_figure(summary));
-  if (summary.settings.empty()) return document.remark("There are no settings in this session.");
+  if (summary.settings.empty()) return document.remark(phrase("statement.no_settings"));
   for (const auto& settings : summary.settings) {
     Table table;
-    const auto row = [&](const std::string& name, const std::optional<Estimate>& value,
-                         bool is_brief = false) {
-      table.rows.push_back({name, estimated(value)});
+    const auto row = [&](Text name, const std::optional<Estimate>& value, bool is_brief = false) {
+      table.rows.push_back({std::move(name), estimated(value)});
       table.rows.back()[1].brief = is_brief;
     };
     document.heading(settings.procedure + (settings.condition.empty() ? "" : ", " + settings.condition), 3);
     table.rows.push_back({"Settings", count(static_cast<int>(settings.values.size()))});
-    row(in_unit("Mean, point of subjective equality", data), settings.mean, true);
-    row(in_unit("Scatter, standard deviation", data), settings.sd, true);
+    const auto in_its_unit = [&](core::Phrase name) {
+      return in_unit(std::move(name), plain(data.level_unit));
+    };
+    row(in_its_unit(phrase("report.mean_setting")), settings.mean, true);
+    row({in_its_unit(phrase("report.spread_sd")), Look::label}, settings.sd, true);
     if (settings.from_below.settings > 0 && settings.from_above.settings > 0) {
       for (const auto& [name, side] :
            {std::pair("from below", &settings.from_below), std::pair("from above", &settings.from_above)}) {
         const auto counted = std::string(", ") + name + " (" + std::to_string(side->settings) + " settings)";
-        row(in_unit("Mean", data) + counted, side->mean);
-        row(in_unit("Scatter", data) + counted, side->sd);
+        row(in_its_unit(plain("Mean")) + counted, side->mean);
+        row(in_its_unit(plain("Spread")) + counted, side->sd);
       }
-      row(in_unit("Mean from below \u2212 mean from above", data), settings.side_difference);
+      row(in_its_unit(plain("Mean from below \u2212 mean from above")), settings.side_difference);
     }
     row("Influence of the starting position (0: none, 1: full)", settings.start_slope);
     document.table(std::move(table));
@@ -158,7 +157,7 @@ void add_settings(const Summary& summary, Document& document) {
 
 void add_judgements(const Summary& summary, Document& document) {
   const bool numbers = summary.data.design == Design::numbers;
-  document.heading(numbers ? "Numbers" : "Ratings");
+  document.heading(phrase(numbers ? "report.magnitudes" : "report.ratings"));
   document.figure("judgements", judgement_figure(summary));
   for (const auto& judged : summary.judgements) {
     if (!judged.condition.empty()) document.heading(judged.condition, 3);
@@ -189,10 +188,10 @@ void add_confusions(const Summary& summary, Document& document) {
   for (const auto& confusion : summary.confusions) {
     if (!confusion.condition.empty()) document.heading(confusion.condition, 3);
     if (confusion.rows.empty()) {
-      document.remark("No trial was answered.");
+      document.remark(phrase("statement.none_answered"));
       continue;
     }
-    Table table{{data.scored ? "Right answer" : data.level_label}, {}};
+    Table table{{data.scored ? Text("Right answer") : Text(data.level_label)}, {}};
     for (const auto& choice : data.choices) table.columns.emplace_back(quoted(choice));
     table.columns.emplace_back(phrase("report.proportion_right"), true);
     for (const auto& row : confusion.rows) {
@@ -217,7 +216,8 @@ void add_detections(const Summary& summary, Document& document) {
   if (summary.detections.empty()) return;
   const auto& data = summary.data;
   document.heading("Sensitivity and criterion");
-  Table table{{"Condition", data.cut != 0 ? "Distance from " + core::number(data.cut, 6) : data.level_label,
+  Table table{{"Condition",
+               data.cut != 0 ? Text("Distance from " + core::number(data.cut, 6)) : Text(data.level_label),
                "Hits", "False alarms", "d\u2032 (standard deviations)", "Criterion c (standard deviations)"},
               {}};
   const auto of = [](int some, int others) {
@@ -242,7 +242,7 @@ void add_rocs(const Summary& summary, Document& document) {
   if (summary.rocs.empty()) return;
   const auto& level = summary.data.level_label;
   const auto unequal = Text("d") + Text("a", Look::below);
-  document.heading("Receiver operating characteristic");
+  document.heading(phrase("report.roc_curve"));
   document.figure("roc", roc_figure(summary));
   Table table{{"Condition", level, "Area under the curve", "d\u2032, equal variances",
                unequal + ", unequal variances", "SD with a signal"},
@@ -339,13 +339,13 @@ void add_curve_differences(const Summary& summary, Document& document) {
 
 void add_signal(const Summary& summary, Document& document) {
   if (summary.curves.empty()) return;
-  document.heading("Accuracy at the response signal");
+  document.heading(phrase("report.signal_accuracy"));
   document.figure("response-signal", signal_figure(summary));
   Table curves{{"Condition", "Asymptote (d\u2032)", "Rate (1/s)", "Intercept (s)"}, {}};
   Table lags{
       {"Condition", "Signal after (s)", "Mean response time (s)", "Trials", "d\u2032 (standard deviations)"},
       {}};
-  Table levels{{"Condition", "Signal after (s)", summary.data.level_label + ", without sign",
+  Table levels{{"Condition", "Signal after (s)", Text(summary.data.level_label) + ", without sign",
                 "d\u2032 (standard deviations)"},
                {}};
   for (const auto& curve : summary.curves) {
@@ -394,7 +394,6 @@ bool has(const Measure<Result>& row, const Summary& summary) {
   const auto& conditions = summary.trade.instructions;
   if (row.value == &Result::d_prime)
     return std::any_of(conditions.begin(), conditions.end(), [](const auto& one) { return one.d_prime; });
-  if (row.part == std::string("points")) return summary.data.payoff;
   return *row.part == '\0' || shows(summary.data, row.part);
 }
 
@@ -444,22 +443,24 @@ Cell difference_cell(const analysis::Difference& difference) {
 /// A table with one column for each pair of conditions.
 void add_differences(const Summary& summary, Document& document) {
   const auto& differences = summary.trade.differences;
-  std::vector<std::string> pairs;
-  const auto pair_of = [](const analysis::Difference& one) {
-    return second_minus_first(one.first, one.second);
-  };
+  std::vector<std::pair<std::string, std::string>> pairs;
+  const auto pair_of = [](const analysis::Difference& one) { return std::pair(one.first, one.second); };
   for (const auto& one : differences)
     if (std::find(pairs.begin(), pairs.end(), pair_of(one)) == pairs.end()) pairs.push_back(pair_of(one));
   Table table{{"Difference"}, {}};
-  for (const auto& pair : pairs) table.columns.push_back({pair, true});
+  for (const auto& [first, second] : pairs)
+    table.columns.push_back({second_minus_first(first, second), true});
   if (pairs.empty()) return;
   for (const auto& row : kSpeedAndAccuracy) {
-    if (!has(row, summary) || *row.difference == '\0') continue;
+    if (!has(row, summary) || !row.compared) continue;
     auto& cells = table.rows.emplace_back();
     cells.push_back(head(phrase(row.title)));
-    for (const auto& pair : pairs)
-      for (const auto& one : differences)
-        if (one.measure == row.difference && pair_of(one) == pair) cells.push_back(difference_cell(one));
+    for (const auto& pair : pairs) {
+      const auto found = std::find_if(differences.begin(), differences.end(), [&](const auto& one) {
+        return one.measure == row.name && pair_of(one) == pair;
+      });
+      cells.push_back(found == differences.end() ? estimated(std::nullopt) : difference_cell(*found));
+    }
   }
   document.table(std::move(table));
 }
@@ -477,7 +478,7 @@ void add_conditional(const Summary& summary, Document& document) {
                Column(phrase("report.proportion_right"), true)},
               {}};
   for (std::size_t i = 0; i < bins; ++i) {
-    const auto of = std::to_string(i + 1) + " of " + std::to_string(bins);
+    const auto of = phrase("report.bin", {plain(i + 1), plain(bins)});
     for (const auto& entry : summary.trade.instructions) {
       if (i >= entry.caf.size()) continue;
       const auto& bin = entry.caf[i];
@@ -486,7 +487,7 @@ void add_conditional(const Summary& summary, Document& document) {
                                       analysis::wilson(bin.correct, bin.trials))});
     }
     for (const auto& one : summary.trade.differences)
-      if (one.measure == analysis::kBinMeasure + of)
+      if (one.measure == analysis::kBinMeasure + std::to_string(i + 1) + " of " + std::to_string(bins))
         table.rows.push_back({of, second_minus_first(one.first, one.second), "", difference_cell(one)});
   }
   document.table(std::move(table));
@@ -507,8 +508,7 @@ void add_difficulties(const Summary& summary, Document& document) {
                amount(part.mean_correct_s, 3, "none")};
       if (drift) cells.push_back(estimated(part.drift));
     }
-  if (table.rows.empty())
-    return document.remark("No answered trial has a right answer, so there is no table by difficulty.");
+  if (table.rows.empty()) return document.remark(phrase("statement.no_right_answer"));
   document.table(std::move(table));
 }
 
@@ -534,15 +534,15 @@ void add_trade_in_words(const Summary& summary, Document& document) {
                                                         gap.interval.confidence}};
   };
   for (const auto& pair : differences) {
-    if (pair.measure != "proportion correct") continue;
-    const auto *right = of(pair, "proportion correct"), *time = of(pair, "median response time");
+    if (pair.measure != analysis::kCorrect) continue;
+    const auto *right = of(pair, analysis::kCorrect), *time = of(pair, analysis::kMedianTime);
     if (right == nullptr || time == nullptr) continue;
     auto text = "Compared with " + Text(name_of(pair.first), Look::strong) + ", answers under " +
                 Text(name_of(pair.second), Look::strong) + " came " + size(*time->estimate, 1) + " s " +
                 (time->estimate->value < 0 ? "sooner" : "later") + " (median) and were right " +
                 size(*right->estimate, 100) + " % of the trials " +
                 (right->estimate->value < 0 ? "less" : "more") + " often.";
-    const auto *boundary = of(pair, "boundary"), *drift = of(pair, "drift");
+    const auto *boundary = of(pair, analysis::kBoundary), *drift = of(pair, analysis::kDrift);
     if (boundary != nullptr && drift != nullptr)
       text += std::string(" The boundary ") +
               change(*boundary, "was lower (less caution)", "was higher (more caution)") + "; the drift " +
@@ -655,21 +655,26 @@ void add_course(const Summary& summary, Document& document) {
     line("Unsure",
          std::to_string(counts.unsure) + " of " + std::to_string(counts.answered) +
              " answers; they are left out of proportions correct and response times, and count as " +
-             core::number(1.0 / summary.data.alternatives, 3) + " of a right answer in the psychometric function",
+             core::number(1.0 / summary.data.alternatives, 3) +
+             " of a right answer in the psychometric function",
          false);
   for (const auto& [degree, right] : summary.confidence)
     line("Right with confidence " + std::to_string(degree), right_of(right), false);
   if (summary.catch_trials) line(phrase("report.catch_right"), right_of(*summary.catch_trials));
   if (const auto& bias = summary.bias; bias && summary.data.choices.size() > 1)
-    line(phrase("report.chose", {core::plain(summary.data.choices[1])}),
+    line(phrase("report.chose", {plain(summary.data.choices[1])}),
          Number{100 * bias->share_second,
                 analysis::Interval{100 * bias->interval.low, 100 * bias->interval.high}} +
              Text(" %") +
-             (bias->criterion ? ", criterion c = " + Text(Number{*bias->criterion, {}, 2}) : Text()));
+             (bias->criterion
+                  ? ", " + Text(phrase("report.criterion")) + " c = " + Number{*bias->criterion, {}, 2}
+                  : Text()));
   trend("Trend of response time", summary.fatigue.response_time_s, " s");
   if (summary.data.scored && summary.data.design != Design::adjustment)
     trend("Trend of accuracy", summary.fatigue.proportion_correct, " (proportion correct)");
   document.table(std::move(table));
+  document.explain(
+      "Trials of practice are left out. Void trials are those that were aborted or had a fault.");
   document.figure("levels", trace_figure(summary));
   if (summary.bias) document.remark(summary.bias->statements);
   document.remark(summary.fatigue.statements);

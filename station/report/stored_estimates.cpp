@@ -13,6 +13,7 @@
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/report/stored_trials.hpp"
+#include "station/report/words.hpp"
 
 namespace turnpoint::report {
 
@@ -160,9 +161,9 @@ void add_estimator(const std::string& program, const std::map<std::string, proce
                               {}});
 }
 
-std::string axis_label(std::string name, const std::string& unit) {
+core::Phrase axis_label(std::string name, const std::string& unit) {
   if (name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
-  return name + " (" + (unit.empty() ? "no unit" : unit) + ")";
+  return in_unit(core::plain(std::move(name)), core::plain(unit));
 }
 
 std::string unit_of(const std::string& parameter, const procedure::Spec& spec) {

@@ -15,6 +15,7 @@
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/report/stored_estimates.hpp"
+#include "station/report/words.hpp"
 
 namespace turnpoint::report {
 
@@ -213,7 +214,7 @@ void set_analyses(const protocol::Protocol& protocol, SessionData& data) {
   data.name.clear(), data.meaning.clear(), data.conditions.clear();
   for (const auto& part : parts) {
     data.conditions.insert(data.conditions.end(), part.conditions.begin(), part.conditions.end());
-    if (part.level_label != data.level_label) data.level_label = axis_label("level", "");
+    if (part.level_label != data.level_label) data.level_label = in_unit(core::phrase("figure.level"), {});
     if (part.level_unit != parts.front().level_unit) data.level_unit.clear();
   }
   data.parts = std::move(parts);

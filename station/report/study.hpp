@@ -73,10 +73,10 @@ struct Study {
   std::vector<analysis::Statement> statements;
 };
 
-/// Names of measures that figures of a study look for. The last four, and analysis::kBinMeasure, are followed
-/// by the bin ("1 of 5") or the lag ("0.35 s").
-inline constexpr const char *kCorrect = "proportion correct", *kMedianTime = "median response time",
-                            *kSensitivity = "d'", *kBinTime = "mean time in time bin ",
+/// Names of measures that figures of a study look for beside those of analysis/trade.hpp. They are followed
+/// by the bin
+/// ("1 of 5") or the lag ("0.35 s").
+inline constexpr const char *kBinTime = "mean time in time bin ",
                             *kLagSensitivity = "d' at the signal after ",
                             *kLagTime = "response time at the signal after ";
 
@@ -118,7 +118,8 @@ struct CsvTable {
   std::string name;  ///< name of the CSV file
   std::string csv;
 };
-/// A text, and a number, as a field of a CSV file. A number that is not finite, or does not exist, is an empty field.
+/// A text, and a number, as a field of a CSV file. A number that is not finite, or does not exist, is an
+/// empty field.
 std::string csv_field(const std::string& text);
 std::string csv_number(double value);
 std::string csv_number(const std::optional<double>& value);

@@ -24,7 +24,7 @@ void add_people(const Study& study, Document& document) {
       std::to_string(n.found) + " sessions; begun again later: " + std::to_string(n.superseded) +
       "; not completed: " + std::to_string(n.incomplete) + ".");
   if (study.rules.empty()) {
-    document.remark("The protocol states no rules of exclusion, so every participant counts.");
+    document.remark(core::phrase("statement.no_rules"));
   } else {
     document.say("The protocol excludes participants with:");
     document.parts.push_back(List{{study.rules.begin(), study.rules.end()}});
@@ -56,8 +56,10 @@ void add_group(const GroupFit& group, const Study& study, Document& document) {
     if (fit.threshold_sd)
       table.rows.push_back(
           {with_unit("Standard deviation between participants", part.level_unit), amount(fit.threshold_sd)});
-    table.rows.push_back({Text(core::phrase("report.lapse"), Look::label) + " (proportion), the same for all",
-                          amount(fit.lapse, 2)});
+    table.rows.push_back(
+        {Text(in_unit(core::phrase("report.lapse"), core::phrase("report.share")), Look::label) +
+             ", the same for all",
+         amount(fit.lapse, 2)});
     document.table(std::move(table));
     document.remark(fit.statements);
     Table pooled{{"Number", "Participant", "Trials", threshold_label(part), "Drawn to the group"}, {}};
@@ -94,7 +96,7 @@ void add_effects(const Study& study, Document& document) {
   for (const auto& effect : study.effects) {
     auto& cells = table.rows.emplace_back();
     cells = {with_unit(effect.measure, effect.unit),
-             name_of(effect.second) + " \u2212 " + name_of(effect.first) +
+             Text(name_of(effect.second)) + " \u2212 " + name_of(effect.first) +
                  (effect.between_groups ? ", groups" : ""),
              count(effect.persons), estimated(effect.difference), amount(effect.standardised, 2)};
     if (!p_values) continue;

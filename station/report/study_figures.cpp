@@ -33,7 +33,8 @@ analysis::Psychometric group_parameters(const analysis::MixedFit& fit) {
   return {fit.threshold->value, fit.slope->value, guess, fit.lapse};
 }
 
-/// The mean of the participants' proportions, with its interval, at each level that at least three of them had.
+/// The mean of the participants' proportions, with its interval, at each level that at least three of them
+/// had.
 Points answers_of(const Study& study, const GroupFit& group, int series) {
   struct Level {
     int trials = 0;
@@ -101,10 +102,10 @@ std::optional<Figure> group_curve_figure(const Study& study) {
     if (!group.result.fit || !group.result.fit->threshold) continue;
     const auto& fit = *group.result.fit;
     Chart chart;
-    chart.title = name_of(group.condition);
+    chart.title = core::say(name_of(group.condition), "en");
     const auto& part = analysis_of(group, study.settings);
     chart.x =
-        report::fitted(part.level_label, levels_of(study, group.part), 0.05,
+        report::fitted(core::say(part.level_label, "en"), levels_of(study, group.part), 0.05,
                        fit.options.scale == analysis::Scale::log10 ? AxisScale::log10 : AxisScale::linear);
     chart.y = {"Proportion " + group.positive + " (0 to 1)", -0.03, 1.03};
     if (part.design == Design::forced_choice) chart.y.low = 0.3;
@@ -160,9 +161,9 @@ std::optional<Figure> shrinkage_figure(const Study& study) {
     }
     if (all.empty()) continue;
     Chart chart;
-    chart.title = name_of(group.condition);
+    chart.title = core::say(name_of(group.condition), "en");
     chart.x = {"Participant", 0.4, number + 0.6, AxisScale::linear, true, codes};
-    chart.y = report::fitted(analysis_of(group, study.settings).level_label, all, 0.08);
+    chart.y = report::fitted(core::say(analysis_of(group, study.settings).level_label, "en"), all, 0.08);
     chart.layers.push_back(Rule{Rule::Direction::horizontal, group.result.fit->threshold->value, "group"});
     chart.layers.push_back(alone);
     chart.layers.push_back(pooled);
@@ -178,7 +179,7 @@ std::optional<Figure> group_trade_figure(const Study& study) {
   std::vector<double> times, accuracies;
   std::vector<std::string> conditions;
   for (const auto& mean : study.means)
-    if (mean.measure == kCorrect) conditions.push_back(mean.condition);
+    if (mean.measure == analysis::kCorrect) conditions.push_back(mean.condition);
   int series = 0;
   for (const auto& condition : conditions) {
     Points points;
@@ -188,8 +189,8 @@ std::optional<Figure> group_trade_figure(const Study& study) {
       std::optional<double> time, accuracy;
       for (const auto& measure : person.measures) {
         if (measure.condition != condition) continue;
-        if (measure.measure == kMedianTime) time = measure.value;
-        if (measure.measure == kCorrect) accuracy = measure.value;
+        if (measure.measure == analysis::kMedianTime) time = measure.value;
+        if (measure.measure == analysis::kCorrect) accuracy = measure.value;
       }
       if (!time || !accuracy || !person.excluded.empty()) continue;
       points.x.push_back(*time), points.y.push_back(*accuracy);
@@ -230,7 +231,7 @@ std::optional<Chart> course_chart(const Study& study, const std::string& heights
     Points points;
     Line line;
     points.series = line.series = series++;
-    points.name = name_of(condition);
+    points.name = core::say(name_of(condition), "en");
     for (const auto& height : study.means) {
       if (!height.measure.starts_with(heights) || height.condition != condition || !height.mean) continue;
       const auto wanted = times + height.measure.substr(heights.size());
@@ -280,7 +281,8 @@ std::optional<Figure> group_course_figure(const Study& study) {
   add("Conditional accuracy", "Proportion correct (0 to 1)", analysis::kBinMeasure, kBinTime, false);
   add("Sensitivity at the signal", "Sensitivity d\u2032", kLagSensitivity, kLagTime, false);
   if (!study.settings.signalled)
-    add("Sensitivity over the conditions", "Sensitivity d\u2032", kSensitivity, kMedianTime, true);
+    add("Sensitivity over the conditions", "Sensitivity d\u2032", analysis::kSensitivity,
+        analysis::kMedianTime, true);
   if (figure.charts.empty()) return std::nullopt;
   figure.title = "Accuracy over time, means of the participants";
   figure.columns = figure.charts.size() > 1 ? 2 : 1;

@@ -53,18 +53,6 @@ Json person_json(const StudyPerson& person) {
   return json;
 }
 
-const char* function_name(core::Function function) {
-  switch (function) {
-    case core::Function::weibull:
-      return "weibull";
-    case core::Function::normal:
-      return "normal";
-    case core::Function::logistic:
-      break;
-  }
-  return "logistic";
-}
-
 Json group_json(const GroupFit& group) {
   Json json{{"condition", group.condition}, {"positive", group.positive}, {"fit", nullptr}};
   auto statements = group.result.statements;
@@ -80,7 +68,7 @@ Json group_json(const GroupFit& group) {
     double guess = 0;
     for (const auto& person : fit->persons)
       guess += person.parameters.guess / static_cast<double>(fit->persons.size());
-    json["fit"] = {{"function", function_name(fit->options.function)},
+    json["fit"] = {{"function", core::name(fit->options.function)},
                    {"guess", value(guess)},
                    {"threshold", value(fit->threshold)},
                    {"slope", value(fit->slope)},

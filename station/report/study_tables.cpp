@@ -33,7 +33,7 @@ std::string answers_table(const Study& study) {
         csv += csv_field(person.person) + "," + yes_or_no(!person.excluded.empty()) + "," +
                csv_field(named.name) + "," + csv_number(point.level) + "," +
                csv_number(analysis::axis_position(options.function, options.scale, point.level)) + "," +
-               std::to_string(point.trials) + "," + core::number(point.sum()) + "\n";
+               std::to_string(point.trials) + "," + csv_number(point.sum()) + "\n";
       }
   return csv;
 }

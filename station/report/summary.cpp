@@ -7,6 +7,7 @@
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/psychometric_posterior.hpp"
 #include "station/core/number.hpp"
+#include "station/report/measures.hpp"
 
 namespace turnpoint::report {
 
@@ -111,11 +112,10 @@ void hide(const SessionData& data, analysis::Trade& trade) {
   }
   std::erase_if(trade.differences, [&data](const auto& difference) {
     const auto& name = difference.measure;
-    return ((name == "boundary" || name == "time outside the decision" || name == "drift") &&
-            !shows(data, "ez")) ||
-           (name.starts_with(analysis::kBinMeasure) && !shows(data, "caf")) ||
-           (name == "LISAS" && !shows(data, "lisas")) ||
-           (name == "inverse efficiency" && !shows(data, "ies"));
+    if (name.starts_with(analysis::kBinMeasure)) return !shows(data, "caf");
+    return std::any_of(std::begin(kSpeedAndAccuracy), std::end(kSpeedAndAccuracy), [&](const auto& row) {
+      return name == row.name && *row.part != '\0' && !shows(data, row.part);
+    });
   });
 }
 
@@ -299,6 +299,7 @@ core::Phrase describe_intervals(const NamedFit& named, const SessionData& data) 
 }
 
 bool shows(const SessionData& data, const std::string& part) {
+  if (part == "points") return data.payoff;
   if (data.show) return std::find(data.show->begin(), data.show->end(), part) != data.show->end();
   if (part == "response-signal") return true;
   if (part == "ez") return data.choices.size() <= 2 && !data.signalled && !data.unsure;

@@ -10,8 +10,14 @@
 namespace turnpoint::report {
 
 /// The name of a condition, or "all trials" if there is only one condition.
-inline std::string name_of(const std::string& condition) {
-  return condition.empty() ? core::text("figure.all_trials", "en") : condition;
+inline core::Phrase name_of(const std::string& condition) {
+  return condition.empty() ? core::phrase("figure.all_trials") : core::plain(condition);
+}
+
+/// A name with its unit, or with "no unit" if that is empty.
+inline core::Phrase in_unit(core::Phrase name, core::Phrase unit) {
+  if (unit.empty()) unit = core::phrase("report.no_unit");
+  return {"", "", {std::move(name), core::plain(" ("), std::move(unit), core::plain(")")}};
 }
 
 /// With a typographic minus sign.
@@ -19,8 +25,8 @@ inline std::string with_minus(std::string number) {
   return number.starts_with('-') ? "\u2212" + number.substr(1) : number;
 }
 
-/// Formats an estimate with the digits that its interval justifies, as tables show it, and with a typographic minus
-/// sign. Without an interval it has three digits.
+/// Formats an estimate with the digits that its interval justifies, as tables show it, and with a typographic
+/// minus sign. Without an interval it has three digits.
 inline std::string in_digits(double value, const analysis::Interval* interval) {
   return with_minus(interval == nullptr
                         ? core::number(value, 3)

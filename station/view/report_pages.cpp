@@ -18,8 +18,9 @@ Phrase said(const report::Text& text) {
       all.values.push_back(*phrase);
       continue;
     }
-    const auto [value, interval] = in_known_digits(std::get<report::Number>(run.what));
-    all.values.push_back(core::plain(value + (interval.empty() ? "" : " " + interval)));
+    auto [value, interval] = in_known_digits(std::get<report::Number>(run.what));
+    all.values.push_back(std::move(value));
+    if (!interval.empty()) all.values.insert(all.values.end(), {core::plain(" "), std::move(interval)});
   }
   return all.values.size() == 1 ? all.values.front() : all;
 }

@@ -118,7 +118,7 @@ TEST_CASE("The interval of a ratio covers the ratio of the means", "[analysis]")
   INFO("covered in " << covered << " of " << runs);
   CHECK(covered > 0.93 * runs);
   CHECK(covered < 0.97 * runs);
-  CHECK_FALSE(analysis::student_ratio({1, 1, 1}, {2, 2, 2}));
+  CHECK(analysis::student_ratio({1, 1, 1}, {2, 2, 2})->interval.low == 0.5);
   CHECK_FALSE(analysis::student_ratio({1, 0}, {2, 2}));
   // with equal times it is Student's interval of the mean
   const auto ratio = analysis::student_ratio({3, 5, 10}, {1, 1, 1}),

@@ -496,6 +496,30 @@ TEST_CASE("A report of a payoff has the points a trial and a minute of each cond
   CHECK(unpaid.find("Points a") == std::string::npos);
 }
 
+TEST_CASE("Whoever is always right has points a trial, and counts in the study's mean", "[report]") {
+  const auto paid =
+      replaced(shipped("speed-accuracy"), "[timing]\n", "[payoff]\nright = 10\nwrong = -10\n\n[timing]\n");
+  const auto right = answered_by(paid, [](const auto& q) { return q.correct.value_or(0); });
+  const auto json = report_of(right);
+  REQUIRE(json["instructions"].size() == 2);
+  for (const auto& entry : json["instructions"]) CHECK(entry["points"]["value"] == 10);
+  report::Study study;
+  study.settings.scored = true;
+  for (const auto* name : {"P01", "P02", "P03"}) {
+    auto data = name == std::string("P01") ? right : data_of(paid);
+    data.participant = name;
+    study.persons.push_back(report::study_person(data, {}, false));
+  }
+  report::finish_study(study);
+  int means = 0;
+  for (const auto& mean : study.means)
+    if (mean.measure == "points a trial") {
+      ++means;
+      CHECK(mean.persons == 3);
+    }
+  CHECK(means == 2);
+}
+
 TEST_CASE("A report of an unforced choice counts unsure answers and fits no diffusion", "[report]") {
   const auto data = data_of(shipped("friction-unforced"), "sim:lapse=0,unsure=0.9");
   double unsure = 0, right = 0;

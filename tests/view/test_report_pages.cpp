@@ -1,9 +1,13 @@
 // Tests the report of a session on the screen: its tables, its figures, and their language.
+#include <algorithm>
+#include <cctype>
+
 #include "station/report/svg.hpp"
 #include "station/view/live_facts.hpp"
 #include "station/view/report_data.hpp"
 #include "station/view/report_pages.hpp"
 #include "station/view/scene_figures.hpp"
+#include "tests/report/simulated_report.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/view/demo.hpp"
 
@@ -102,6 +106,77 @@ TEST_CASE("remarks and facts about the station in a report are said in the langu
   CHECK(core::say(station.heading, "de") == "Station");
   CHECK(station.facts.size() > 15);
   for (const auto& [name, text] : station.facts) CHECK(core::say(name, "de") != core::say(name, "en"));
+}
+
+namespace {
+
+/// Calls `with` for each text and each name of which a phrase consists.
+template <class With>
+void parts_of(const core::Phrase& phrase, const With& with) {
+  with(phrase);
+  for (const auto& value : phrase.values) parts_of(value, with);
+}
+
+/// The names that a protocol gives, and units. Other words on the screen must be texts of the catalogues.
+bool in_protocol(const std::string& words, const std::string& protocol) {
+  std::string word;
+  for (const char c : words + " ") {
+    if (std::isalpha(static_cast<unsigned char>(c)) != 0) {
+      word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      continue;
+    }
+    if (word.size() > 3 && protocol.find(word) == std::string::npos) return false;
+    word.clear();
+  }
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "headings, labels and remarks of each design's report are texts in six languages, and end in a word",
+    "[operator]") {
+  const auto name = GENERATE("speed-accuracy", "boundary-adjustment", "friction-rating", "magnitude-free",
+                             "friction-identification", "friction-zest", "friction-boundary-2d",
+                             "response-signal", "friction-confidence", "reward-rate", "friction-unforced");
+  CAPTURE(name);
+  auto protocol = shipped(name);
+  const auto pages = view::report_pages(report::summarise(data_of(protocol)));
+  for (auto& c : protocol) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const auto check = [&](const core::Phrase& said) {
+    const auto english = core::say(said, "en");
+    CAPTURE(english);
+    CHECK_FALSE(english.empty());
+    for (const char* end : {", ", ": ", " ", ","}) CHECK_FALSE(english.ends_with(end));
+    CHECK_FALSE(english.starts_with(","));
+    CHECK(english.find(", ,") == std::string::npos);
+    parts_of(said, [&](const core::Phrase& part) {
+      CAPTURE(part.key, part.words);
+      CHECK(in_protocol(part.words, protocol));
+      if (!part.key.empty())
+        for (const auto& language : core::languages()) CHECK(core::catalogue(language).contains(part.key));
+    });
+  };
+  REQUIRE_FALSE(pages.sections.empty());
+  std::size_t facts = 0;
+  for (const auto& section : pages.sections) {
+    check(section.heading);
+    for (const auto& [label, value] : section.facts) check(label), check(value), ++facts;
+    for (const auto& statement : section.statements) check(statement);
+  }
+  CHECK(facts > 3);
+}
+
+TEST_CASE("a section of the report on the screen that has only a remark keeps its heading", "[operator]") {
+  report::Summary summary;
+  summary.data.design = report::Design::adjustment;
+  const auto pages = view::report_pages(summary);
+  const auto found = std::find_if(pages.sections.begin(), pages.sections.end(),
+                                  [](const auto& one) { return core::say(one.heading, "en") == "Settings"; });
+  REQUIRE(found != pages.sections.end());
+  CHECK(found->facts.empty());
+  REQUIRE(found->statements.size() == 1);
+  CHECK(core::say(found->statements[0], "de") == "In dieser Sitzung gibt es keine Einstellungen.");
 }
 
 TEST_CASE("the report on the screen has the finger's forces and friction, if force cells recorded",

@@ -48,9 +48,8 @@ void ReportModel::save(int picture) {
 QVariantList ReportModel::sections() const {
   QVariantList list;
   for (const auto& [heading, facts, statements] : pages_.sections)
-    list += QVariantMap{{"heading", to_variant(heading)},
-                        {"facts", to_list(facts)},
-                        {"statements", to_list(statements)}};
+    list += QVariantMap{
+        {"heading", to_variant(heading)}, {"facts", to_list(facts)}, {"statements", to_list(statements)}};
   return list;
 }
 
@@ -77,7 +76,7 @@ QStringList ReportModel::picture_names() const {
 
 QVariantList ReportModel::pictures() const {
   QVariantList list;
-  for (const auto& figure : pages_.figures) list += to_variant(view::drawing_of(figure.figure));
+  for (const auto& figure : pages_.figures) list += to_variant(figure.figure);
   return list;
 }
 
