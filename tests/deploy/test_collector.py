@@ -17,6 +17,7 @@ if os.geteuid() != 0:
     print("skipped: only root can set up a server; sudo tests/run")
     sys.exit(77)
 PROGRAM = os.path.realpath(sys.argv[1])
+LOCALES = os.path.join(os.path.dirname(os.path.dirname(PROGRAM)), "locales")
 AS_POSTGRES = ["setpriv", "--reuid=postgres", "--regid=postgres", "--init-groups", "--"]
 
 
@@ -69,7 +70,8 @@ class Collector:
                        env=self.environment, check=True, stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL, cwd="/")
 
     def collector(self, *words, status=0):
-        return self.run(os.path.join(SOURCE, "deploy", "collector"), *words, status=status)
+        # in a locale whose letters and order are not those of C
+        return self.run(os.path.join(SOURCE, "deploy", "collector"), *words, status=status, LC_ALL="tr_TR.UTF-8", LOCPATH=LOCALES)
 
     def push(self, status=0, to="service=collector", **changes):
         return self.run(PROGRAM, "push", "--db", "lab.sqlite", "--to", to, status=status, **changes)
