@@ -459,6 +459,8 @@ class Locales(Folder):
     def under(self, name, words, program=PROGRAM):
         """What the program says under this locale, or without one."""
         variables = {"LD_PRELOAD": self.PRELOADED, "USE_LOCALE": "1", "LC_ALL": f"{name}.UTF-8", "LOCPATH": os.path.join(BUILD, "locales")}
+        if os.path.exists(os.path.join(self.folder, "made.toml")):  # by the run before
+            os.remove(os.path.join(self.folder, "made.toml"))
         ran = subprocess.run([program, *words], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False,
                              env={"PATH": os.environ["PATH"], "HOME": self.folder, "LANG": "C.UTF-8", **(variables if name else {})})
         return ran.returncode, ran.stdout, ran.stderr
@@ -471,20 +473,34 @@ class Locales(Folder):
 
     def test_commands_print_the_same_under_every_locale(self):
         self.add_sessions()
-        self.write("friction.csv", b"0,1\n0.5,0.82\n1,0.8\n2,0.41\n4,0.3\n")
+        self.write("friction.csv", b"displacement_um,relative_friction\n0,1\n0.5,0.82\n1,0.8\n2,0.41\n4,0.3\n")
         with open(os.path.join(SOURCE, "deploy/rigs/simulated.toml"), "rb") as rig:
-            self.write("lines.toml", rig.read().replace(b"[output]", b"[buttons]\nuri = \"gpio:left=a,right=b,hold_ms=1.5\"\n[output]"))
+            self.write("lines.toml", rig.read().replace(b"[buttons]\nuri = \"sim:\"", b"[buttons]\nuri = \"gpio:left=a,right=b,hold_ms=2.5\""))
         for words in (["plan", "demo", "--scene", "edge", "--json"], ["map", "--boundary", "150"],
                       ["field", "--tone", "30000.5", "--points", "3"], ["trace", "demo", "--procedure", "levels", "--answers", "1"],
                       ["calibrate", "--rig", "simulated", "--sweep"],
-                      ["calibrate", "--rig", "simulated", "--friction", "friction.csv", "--out", "made.toml", "--force"],
+                      ["calibrate", "--rig", "simulated", "--friction", "friction.csv", "--out", "made.toml"],
                       ["report", "--db", "lab.sqlite", "--participant", "P01", "--json"],
-                      ["check", "DEMO", "--sessions", "0"], ["check", "demo", "--rig", "lines.toml", "--sessions", "0", "--json"],
+                      ["check", "DEMO", "--sessions", "0"], ["doctor", "--rig", "lines.toml", "--data", "."],
                       ["export", "--db", "lab.sqlite", "--out", "export"], ["verify", "--db", "lab.sqlite"],
                       ["figures", "--help"], ["sessions", "--db", "lab.sqlite"]):
             plain = self.under("", words)
+            self.assertEqual(plain[0], {"check": 2, "doctor": 1}.get(words[0], 0), f"{words}: {plain}")
             for name in self.NAMES:
-                self.assertEqual(self.under(name, words), plain, f"{name}: {words}")
+                other = self.under(name, words)
+                if words[0] == "doctor":  # what it measures changes; what it reads does not
+                    self.assertNotIn("hold_ms", other[1])
+                    other, plain = other[:1], plain[:1]
+                self.assertEqual(other, plain, f"{name}: {words}")
+
+    def test_the_benchmark_says_the_same_things_under_every_locale(self):
+        def shape(value):
+            if isinstance(value, dict):
+                return {key: shape(inner) for key, inner in value.items()}
+            return [shape(inner) for inner in value] if isinstance(value, list) else value if isinstance(value, str) else type(value).__name__
+        said = [self.under(name, ["procedures", "--json"], os.path.join(BUILD, "bin/turnpoint-bench")) for name in ("", "de_DE", "ar_EG")]
+        self.assertEqual([status for status, _, _ in said], [0, 0, 0], said)
+        self.assertEqual(len({json.dumps(shape(json.loads(out))) for _, out, _ in said}), 1)
 
     def test_a_session_has_the_same_trials_under_every_locale(self):
         trials = {}

@@ -160,7 +160,7 @@ TEST_CASE(
   const auto burst = three_tones();
   Room room;
   SECTION("ramp") {
-    const double share = GENERATE(0.2, 0.35, 0.5, 0.65, 0.8, 0.95, 1.0);
+    const double share = GENERATE(0.35, 0.5, 0.65, 0.8, 0.95, 1.0);
     const double ramp_frames = std::acos(2 * share - 1) / M_PI * 960;
     const double stop_s = (static_cast<double>(burst.length_frames) - 960 + ramp_frames) / 192000;
     room.gain_at = [=](double t) { return t < stop_s ? 1.0 : 0.0; };
@@ -170,7 +170,8 @@ TEST_CASE(
     CHECK(proof.cause == ProofCause::offset);
   }
   SECTION("pulse") {
-    const double at_s = GENERATE(0.006, 0.0123, 0.05, 0.2, 0.3456, 0.38, 0.3938), level = GENERATE(0.05, 0.5);
+    // The first ramp and the 5 ms in which the plate settles after it are not judged.
+    const double at_s = GENERATE(0.0123, 0.05, 0.2, 0.3456, 0.38, 0.3938), level = GENERATE(0.05, 0.5);
     room.extra = [=](double t) {
       return t > at_s && t < at_s + 1e-4 ? level * std::sin(2 * M_PI * 33000 * t) : 0.0;
     };
