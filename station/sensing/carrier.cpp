@@ -140,6 +140,9 @@ constexpr double reference_tolerance = 0.03, quadrature_share = 0.05;
 /// A bridge whose samples are equal for this long is silent. Its carrier is never exactly balanced, and even
 /// the noise of a converter with 16 bits changes the last digit more often.
 constexpr double silent_s = 0.002;
+/// The longest block that a stuck driver is expected to repeat. The carrier alone, without any noise, repeats
+/// after 7680 frames at 192 kHz.
+constexpr std::int64_t longest_block_frames = 4096;
 
 double pass_Hz(Band band) { return band == Band::force ? 400 : 1000; }
 double stop_Hz(Band band) { return band == Band::force ? 600 : 2000; }
@@ -181,12 +184,30 @@ BridgeDemodulator::BridgeDemodulator(const BridgeOptions& options)
     sin_[i] = std::sin(options_.rotation_rad[i]);
   }
   silent_until_.fill(std::numeric_limits<std::int64_t>::min());
+  repeated_.assign(bridge_count,
+                   Repeated(static_cast<std::size_t>(silent_s * options_.rate_Hz), longest_block_frames));
 }
 
 void BridgeDemodulator::check(const CaptureBlock& block) const {
   if (block.rate_Hz != options_.rate_Hz || block.channels != options_.channels)
     throw std::logic_error(fmt::format("captured block of {} channels at {} Hz, expected {} at {} Hz",
                                        block.channels, block.rate_Hz, options_.channels, options_.rate_Hz));
+}
+
+bool Repeated::add(std::int32_t value) noexcept {
+  if (filled_ < kept_.size()) {
+    kept_[filled_++] = value;
+    age_ = 0, equal_ = 0;
+    return false;
+  }
+  if (++age_ > longest_ + static_cast<std::int64_t>(kept_.size())) {
+    reset();
+    return false;
+  }
+  equal_ = value == kept_[equal_] ? equal_ + 1 : value == kept_[0] ? 1 : 0;
+  if (equal_ < kept_.size()) return false;
+  age_ = 0, equal_ = 0;
+  return true;
 }
 
 bool BridgeDemodulator::add(const std::int32_t* frames, std::int64_t count) noexcept {
@@ -208,10 +229,13 @@ bool BridgeDemodulator::add(const std::int32_t* frames, std::int64_t count) noex
 void BridgeDemodulator::watch(const std::int32_t* frames, std::int64_t count) noexcept {
   const auto enough = static_cast<std::int64_t>(silent_s * options_.rate_Hz);
   for (std::size_t i = 0; i < bridge_count; ++i) {
-    if (frames == nullptr) unchanged_[i].reset();
-    for (std::int64_t n = 0; frames != nullptr && n < count; ++n)
-      if (unchanged_[i].add(frames[n * options_.channels + options_.bridges[i]]) >= enough)
-        silent_until_[i] = next_frame_ + n;
+    if (frames == nullptr) unchanged_[i].reset(), repeated_[i].reset();
+    for (std::int64_t n = 0; frames != nullptr && n < count; ++n) {
+      const auto value = frames[n * options_.channels + options_.bridges[i]];
+      if (unchanged_[i].add(value) >= enough) silent_until_[i] = next_frame_ + n;
+      // The next row that comes again ends at most one block later.
+      if (repeated_[i].add(value)) silent_until_[i] = next_frame_ + n + longest_block_frames;
+    }
   }
 }
 

@@ -100,6 +100,7 @@ Flow SessionRun::run_parts() {
 
 Flow SessionRun::run_block() {
   const auto block = *director_.block();
+  if (pass_mixer() == Flow::stop) return Flow::stop;
   const auto start = trial::block_start(block, director_.block_index(), director_.attempt());
   gate_.keep([&] { log_.begin_block(start); });
   scores_.begin(start);
@@ -120,6 +121,7 @@ Flow SessionRun::run_block() {
 }
 
 Flow SessionRun::leave_block() {
+  if (pass_mixer() == Flow::stop) return Flow::stop;
   log_estimates();
   for (auto& e : director_.estimates()) summary_.estimates.push_back(std::move(e));
   for (auto& end : director_.early_ends()) {
@@ -759,11 +761,31 @@ Flow SessionRun::pass_self_test() {
     return gate_.stop_asked() ? Flow::stop : Flow::go_on;
   }
   const auto what = failures(event.checks);
-  auto reason = setup_.despite;
-  if (reason.empty() && !gate_.stop_asked()) reason = gate_.reason_to_continue({FaultKind::self_test, what});
+  const auto reason = reason_despite(what);
   event.value = reason.empty() ? "failed" : "failed; continued: " + reason;
   log_.event(std::move(event));
-  if (reason.empty() && !gate_.stop_asked()) gate_.stop("the self-test failed: " + what);
+  known_mixer_ = row_of(judged(read_mixer(setup_.rig))).what;
+  return gate_.stop_asked() ? Flow::stop : Flow::go_on;
+}
+
+/// Returns the operator's reason for going on although a check failed. Without one, the session is stopped.
+std::string SessionRun::reason_despite(const std::string& failed) {
+  auto reason = setup_.despite;
+  if (reason.empty() && !gate_.stop_asked())
+    reason = gate_.reason_to_continue({FaultKind::self_test, failed});
+  if (reason.empty() && !gate_.stop_asked()) gate_.stop("the self-test failed: " + failed);
+  return reason;
+}
+
+/// Compares the mixer's levels with those of the calibration once more. Another program may change them after
+/// the self-test, and without pick-ups nothing else shows it.
+Flow SessionRun::pass_mixer() {
+  const auto check = row_of(judged(read_mixer(setup_.rig)));
+  if (check.verdict != Verdict::failed || check.what == known_mixer_) return Flow::go_on;
+  known_mixer_ = check.what;
+  const auto reason = reason_despite(check.name + ": " + check.what);
+  const auto answer = reason.empty() ? "" : "; continued: " + reason;
+  gate_.keep([&] { log_.event({stage_->now_ns(), "mixer", check.what + answer, {}}); });
   return gate_.stop_asked() ? Flow::stop : Flow::go_on;
 }
 

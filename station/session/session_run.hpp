@@ -67,6 +67,8 @@ class SessionRun {
   Flow leave_block();
   Flow play_example(const protocol::Example& example, Page page);
   Flow pass_self_test();
+  Flow pass_mixer();
+  std::string reason_despite(const std::string& failed);
   Flow rest_if_due(int trials_in_block);
   int trial_index() const { return log_.session().trials; }
   void finish(core::SessionStatus status, const std::string& reason);
@@ -136,6 +138,7 @@ class SessionRun {
   Scores scores_;
   Interludes interludes_;
   Summary summary_;
+  std::string known_mixer_;  ///< what the mixer's check found when the operator last went on despite it
   int examples_ = 0;  ///< examples presented so far
   int scored_ = 0, right_ = 0;
   int voids_in_a_row_ = 0, refused_in_a_row_ = 0, repeats_in_a_row_ = 0, unanswered_in_a_row_ = 0;

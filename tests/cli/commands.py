@@ -10,6 +10,7 @@ import pty
 import re
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -18,6 +19,7 @@ import unittest
 HERE = os.path.dirname(os.path.realpath(__file__))
 SOURCE = os.path.dirname(os.path.dirname(HERE))
 PROGRAM = os.path.realpath(sys.argv[1])
+BUILD = os.path.dirname(os.path.dirname(PROGRAM))
 with open(os.path.join(HERE, "json_shapes.json"), encoding="utf-8") as file:
     SHAPES = json.load(file)
 
@@ -450,20 +452,180 @@ class Outputs(HelpExamples):
 
 
 class Locales(Folder):
-    """A comma in the numbers of the locale, and the Turkish I, change nothing."""
+    """A comma in the numbers of the locale, the Turkish I, and Arabic digits change nothing. The programs without a screen
+    never set a locale, as Qt does, so that a library sets it for them."""
+    NAMES = ("de_DE", "tr_TR", "ar_EG", "fa_IR")
+    PRELOADED = os.path.join(BUILD, "tests/faults/libfaulty_system.so")
+
+    def under(self, name, words, program=PROGRAM):
+        """What the program says under this locale, or without one."""
+        variables = {"LD_PRELOAD": self.PRELOADED, "USE_LOCALE": "1", "LC_ALL": f"{name}.UTF-8", "LOCPATH": os.path.join(BUILD, "locales")}
+        if os.path.exists(os.path.join(self.folder, "made.toml")):  # by the run before
+            os.remove(os.path.join(self.folder, "made.toml"))
+        ran = subprocess.run([program, *words], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False,
+                             env={"PATH": os.environ["PATH"], "HOME": self.folder, "LANG": "C.UTF-8", **(variables if name else {})})
+        return ran.returncode, ran.stdout, ran.stderr
+
+    def test_negative_control_a_conversion_that_depends_on_the_locale_is_noticed(self):
+        read = "import ctypes; f = ctypes.CDLL(None).strtod; f.restype = ctypes.c_double; print(f(b'2.75', None))"
+        self.assertEqual(self.under("", ["-c", read], sys.executable)[1], "2.75\n")
+        for name in self.NAMES[:2]:
+            self.assertEqual(self.under(name, ["-c", read], sys.executable)[1], "2.0\n", name)
+
     def test_commands_print_the_same_under_every_locale(self):
-        for name in ("de_DE", "tr_TR"):
-            made = run(f"localedef -i {name} -f UTF-8 {self.folder}/{name}.UTF-8", self.folder)
-            self.assertTrue(os.path.isdir(os.path.join(self.folder, f"{name}.UTF-8")), made)
         self.add_sessions()
+        self.write("friction.csv", b"displacement_um,relative_friction\n0,1\n0.5,0.82\n1,0.8\n2,0.41\n4,0.3\n")
+        with open(os.path.join(SOURCE, "deploy/rigs/simulated.toml"), "rb") as rig:
+            self.write("lines.toml", rig.read().replace(b"[buttons]\nuri = \"sim:\"", b"[buttons]\nuri = \"gpio:left=a,right=b,hold_ms=2.5\""))
         for words in (["plan", "demo", "--scene", "edge", "--json"], ["map", "--boundary", "150"],
                       ["field", "--tone", "30000.5", "--points", "3"], ["trace", "demo", "--procedure", "levels", "--answers", "1"],
-                      ["calibrate", "--rig", "simulated", "--sweep"], ["report", "--db", "lab.sqlite", "--participant", "P01", "--json"],
-                      ["sessions", "--db", "lab.sqlite"]):
-            plain = run(words, self.folder, LC_ALL="C.UTF-8")
-            for name in ("de_DE", "tr_TR"):
-                other = run(words, self.folder, LC_ALL=f"{name}.UTF-8", LOCPATH=self.folder)
-                self.assertEqual(other, plain, words)
+                      ["calibrate", "--rig", "simulated", "--sweep"],
+                      ["calibrate", "--rig", "simulated", "--friction", "friction.csv", "--out", "made.toml"],
+                      ["report", "--db", "lab.sqlite", "--participant", "P01", "--json"],
+                      ["check", "DEMO", "--sessions", "0"], ["doctor", "--rig", "lines.toml", "--data", "."],
+                      ["export", "--db", "lab.sqlite", "--out", "export"], ["verify", "--db", "lab.sqlite"],
+                      ["figures", "--help"], ["sessions", "--db", "lab.sqlite"]):
+            plain = self.under("", words)
+            self.assertEqual(plain[0], {"check": 2, "doctor": 1}.get(words[0], 0), f"{words}: {plain}")
+            for name in self.NAMES:
+                other = self.under(name, words)
+                if words[0] == "doctor":  # what it measures changes; what it reads does not
+                    self.assertNotIn("hold_ms", other[1])
+                    other, plain = other[:1], plain[:1]
+                self.assertEqual(other, plain, f"{name}: {words}")
+
+    def test_the_benchmark_says_the_same_things_under_every_locale(self):
+        def shape(value):
+            if isinstance(value, dict):
+                return {key: shape(inner) for key, inner in value.items()}
+            return [shape(inner) for inner in value] if isinstance(value, list) else value if isinstance(value, str) else type(value).__name__
+        said = [self.under(name, ["procedures", "--json"], os.path.join(BUILD, "bin/turnpoint-bench")) for name in ("", "de_DE", "ar_EG")]
+        self.assertEqual([status for status, _, _ in said], [0, 0, 0], said)
+        self.assertEqual(len({json.dumps(shape(json.loads(out))) for _, out, _ in said}), 1)
+
+    def test_a_session_has_the_same_trials_under_every_locale(self):
+        trials = {}
+        for name in ("", *self.NAMES):
+            database = f"x{name}.sqlite"
+            done = self.under(name, ["run", "friction-2ifc", "--participant", "P01", "--db", database, "--seed", "3",
+                                     "--observer", "sim:threshold=0.12,slope=2.5,lapse=0.02"])
+            self.assertEqual(done[0], 0, done)
+            with sqlite3.connect(os.path.join(self.folder, database)) as opened:
+                trials[name] = opened.execute("SELECT trial_index, level, correct, onset_ns FROM trial ORDER BY trial_index").fetchall()
+        for name in self.NAMES:
+            self.assertEqual(trials[name], trials[""], name)
+
+
+@unittest.skipIf(os.geteuid() != 0, "only root can give a process another machine-id and host name; sudo tests/run")
+class Clones(Folder):
+    """Two machines with copies of one card or image, a folder of backups that both use, and a host that is renamed. Each
+    refusal says what to do, and doing it is the way out."""
+    IDS = {"one": "4c1d0f5b7e2a49c38d6e90b1a7f35c28", "two": "9be07a3c5d1f42e68a0c7b94f2d35e61"}
+
+    def setUp(self):
+        # Not in memory, because a machine-id there does not count.
+        self.folder = tempfile.mkdtemp(prefix="turnpoint-clones-", dir=os.environ.get("TURNPOINT_TEST_DISK", os.getcwd()))
+        self.addCleanup(shutil.rmtree, self.folder)
+        for name, machine_id in self.IDS.items():
+            self.write(f"{name}.id", f"{machine_id}\n".encode())
+            os.mkdir(os.path.join(self.folder, name))
+
+    def on(self, machine, *words, host="lab", status=0):
+        """Runs the program on a machine, in its folder. Returns all that it says."""
+        line = 'mount --bind "$0" /etc/machine-id && hostname "$1" && shift && exec "$@"'
+        ran = subprocess.run(["unshare", "--mount", "--uts", "--propagation", "private", "sh", "-c", line,
+                              os.path.join(self.folder, f"{machine}.id"), host, PROGRAM, *words],
+                             cwd=os.path.join(self.folder, machine), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                             env={"PATH": os.environ["PATH"], "HOME": self.folder, "LANG": "C.UTF-8"}, check=False, timeout=300)
+        self.assertEqual(ran.returncode, status, f"{machine}: {words}: {ran.stdout}")
+        return ran.stdout
+
+    def content(self, name):
+        with open(os.path.join(self.folder, name), "rb") as file:
+            return file.read()
+
+    def session(self, machine, person, **how):
+        return self.on(machine, "run", "demo", "--db", "lab.sqlite", "--participant", person, "--observer", "sim", "--seed", "1", **how)
+
+    def stations(self, machine, database="lab.sqlite"):
+        return [session["station_id"] for session in json.loads(self.on(machine, "sessions", "--db", database, "--json"))]
+
+    def test_a_card_is_copied_after_use(self):
+        self.session("one", "P01")
+        shutil.copy(os.path.join(self.folder, "one/lab.sqlite"), os.path.join(self.folder, "two"))
+        before = self.content("two/lab.sqlite")
+        for words in (["run", "demo", "--participant", "P02", "--observer", "sim"], ["push", "--to", "host=collector.invalid"],
+                      ["station-name", "--stored", "lab"]):
+            said = self.on("two", words[0], "--db", "lab.sqlite", *words[1:], status=1)
+            if words[-1] != "lab":
+                self.assertIn("it belongs to station lab on another machine", said)
+                self.assertIn("name it: turnpoint station-name --db ", said)
+                self.assertIn("station-name --db " + os.path.join(self.folder, "two/lab.sqlite") + " --moved", said)
+        self.assertEqual(self.content("two/lab.sqlite"), before)
+        self.assertIn("machine: another one than this", self.on("two", "station-name", "--db", "lab.sqlite"))
+        self.assertIn("station of its own now", self.on("two", "station-name", "--db", "lab.sqlite", "bench-2"))
+        self.session("two", "P02")
+        self.session("one", "P02")
+        for machine in ("one", "two"):
+            self.on("one", "merge", "--db", "hub.sqlite", f"../{machine}/lab.sqlite")
+        self.assertEqual(sorted(self.stations("one", "hub.sqlite")), ["bench-2", "lab", "lab"])
+        self.on("one", "verify", "--db", "hub.sqlite")
+
+    def test_the_board_is_replaced(self):
+        self.session("one", "P01")
+        shutil.move(os.path.join(self.folder, "one/lab.sqlite"), os.path.join(self.folder, "two"))
+        self.session("two", "P02", status=1)
+        self.on("two", "station-name", "--db", "lab.sqlite", "--moved")
+        self.session("two", "P02", host="another")
+        self.assertEqual(self.stations("two"), ["lab", "lab"])
+
+    def test_two_machines_get_one_image(self):
+        for machine in self.IDS:
+            self.session(machine, "P01", host="turnpoint")  # the name that the image gives
+        names = {self.stations(machine)[0] for machine in self.IDS}
+        self.assertEqual(len(names), 2, names)
+        for name in names:
+            self.assertRegex(name, "^turnpoint-[0-9a-f]{4}$")
+
+    def test_two_machines_have_one_name(self):
+        for machine, person in (("one", "P01"), ("two", "P01")):
+            self.session(machine, person, host="bench")
+        self.on("one", "merge", "--db", "hub.sqlite", "lab.sqlite")
+        said = self.on("one", "merge", "--db", "hub.sqlite", "../two/lab.sqlite", status=1)
+        self.assertIn("two machines have recorded as station bench", said)
+        self.assertIn("on its own machine: turnpoint station-name --db FILE NEW-NAME --stored", said)
+        self.on("two", "station-name", "--db", "lab.sqlite", "bench-2", "--stored")
+        self.on("one", "merge", "--db", "hub.sqlite", "../two/lab.sqlite")
+        self.assertEqual(sorted(self.stations("one", "hub.sqlite")), ["bench", "bench-2"])
+
+    def test_a_renamed_host_stays_the_same_station(self):
+        self.session("one", "P01", host="lab")
+        self.session("one", "P02", host="attic")
+        self.assertEqual(self.stations("one"), ["lab", "lab"])
+
+    def test_two_machines_share_a_folder_of_backups(self):
+        self.session("one", "P01")
+        shutil.copy(os.path.join(self.folder, "one/lab.sqlite"), os.path.join(self.folder, "two"))
+        backup = ["backup", "--db", "lab.sqlite", "--dir", "../shared", "--to", "folder", "--keep", "1"]
+        self.on("one", *backup)
+        self.on("two", *backup)
+        self.on("two", *backup)
+        kept = [name for name in os.listdir(os.path.join(self.folder, "shared")) if name.endswith(".sqlite")]
+        self.assertEqual(len(kept), 2, "one of each machine")
+        for name in os.listdir(os.path.join(self.folder, "one")):
+            os.remove(os.path.join(self.folder, "one", name))
+        # The backup of the other machine is the newest one.
+        self.assertIn("restored", self.on("one", *backup[:5], "--restore"))
+        for name in os.listdir(os.path.join(self.folder, "one")):
+            os.remove(os.path.join(self.folder, "one", name))
+        self.write("three.id", b"b07a3c5d1f42e68a0c7b94f2d35e619e\n")
+        os.mkdir(os.path.join(self.folder, "three"))
+        said = self.on("three", *backup[:5], "--restore", status=1)
+        self.assertIn("another machine made the backups", said)
+        self.assertIn("if this machine replaces that one, add --moved", said)
+        self.assertFalse(os.path.exists(os.path.join(self.folder, "three/lab.sqlite")))
+        self.on("three", *backup[:5], "--restore", "--moved")
+        self.session("three", "P02")
 
 
 class Mistakes(Folder):

@@ -17,6 +17,10 @@ if os.geteuid() != 0:
     print("skipped: only root can set up a server; sudo tests/run")
     sys.exit(77)
 PROGRAM = os.path.realpath(sys.argv[1])
+BUILD = os.path.dirname(os.path.dirname(PROGRAM))
+LOCALES = os.path.join(BUILD, "locales")
+# gives the program a locale with a decimal comma, which it would not set itself
+COMMA = {"LD_PRELOAD": os.path.join(BUILD, "tests/faults/libfaulty_system.so"), "USE_LOCALE": "1", "LC_ALL": "de_DE.UTF-8", "LOCPATH": LOCALES}
 AS_POSTGRES = ["setpriv", "--reuid=postgres", "--regid=postgres", "--init-groups", "--"]
 
 
@@ -69,10 +73,11 @@ class Collector:
                        env=self.environment, check=True, stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL, cwd="/")
 
     def collector(self, *words, status=0):
-        return self.run(os.path.join(SOURCE, "deploy", "collector"), *words, status=status)
+        # in a locale whose letters and order are not those of C
+        return self.run(os.path.join(SOURCE, "deploy", "collector"), *words, status=status, LC_ALL="tr_TR.UTF-8", LOCPATH=LOCALES)
 
     def push(self, status=0, to="service=collector", **changes):
-        return self.run(PROGRAM, "push", "--db", "lab.sqlite", "--to", to, status=status, **changes)
+        return self.run(PROGRAM, "push", "--db", "lab.sqlite", "--to", to, status=status, **COMMA, **changes)
 
     def sql(self, text, database="lab"):
         return self.run(*AS_POSTGRES, "psql", "-XqAt", "-d", database, "-c", text).strip()

@@ -1,5 +1,6 @@
 """test_read.py MAKE_SAMPLE TURNPOINT README RIG: the readers against exports, the database itself, and the examples."""
 import json
+import locale
 import re
 import shutil
 import sqlite3
@@ -13,6 +14,7 @@ import numpy as np
 import pandas as pd
 import turnpoint
 
+locale.setlocale(locale.LC_ALL, "")  # as a program with windows does; a decimal comma changes nothing
 MAKE_SAMPLE, TURNPOINT, README, RIG = (sys.argv.pop(1) for _ in range(4))
 TABLES = ("trials", "intervals", "events", "sessions", "self_tests", "answers", "friction_tables",
           "programs", "estimates")

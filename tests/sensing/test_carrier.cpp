@@ -242,6 +242,47 @@ TEST_CASE("a bridge whose samples stop to change is a fault from then on, and on
   }
 }
 
+TEST_CASE(
+    "a bridge that repeats a block of samples is a fault, and one with half the noise of the others is none",
+    "[sensing]") {
+  // The frames at which the bridge gets stuck, and the length of the block that it repeats.
+  const auto [stuck, length] = GENERATE(table<std::int64_t, std::int64_t>(
+      {{24000, 64}, {24000, 256}, {30011, 441}, {24000, 1024}, {24000, 4096}, {0, 0}}));
+  BridgeSignal signal;
+  signal.force_N = [](double) { return 0.0; };
+  signal.noise_V_rtHz = 4e-9;
+  auto samples = signal.frames(0, second / 2);
+  for (std::size_t n = 0; length == 0 && n < second / 2; ++n) samples[4 * n + 3] /= 2;
+  for (std::size_t n = static_cast<std::size_t>(stuck + length); length > 0 && n < second / 2; ++n)
+    samples[4 * n + 3] = samples[4 * (n - static_cast<std::size_t>(length)) + 3];
+  // It is known at the latest after the old row of samples, a new one, and its repetition.
+  const auto known = stuck + 2 * 4480 + 2 * length;
+  CAPTURE(length);
+  for (const auto& point : complete(demodulated(bridge_options(), 0, samples))) {
+    const std::int64_t frame = point.index * 192000 / points_per_second(Band::force);
+    if (length == 0 || frame < stuck - 3400) CHECK(point.fault == WireFault::none);
+    if (length == 0 || frame < known) continue;
+    CHECK(point.fault == WireFault::silent);
+    CHECK(point.bridge == 2);
+  }
+}
+
+TEST_CASE("a bridge whose converter is at its limits is a fault", "[sensing]") {
+  const auto levels =
+      GENERATE(std::pair{0x7fffff00, 0x7fffff00}, std::pair{-0x7fffff00 - 256, -0x7fffff00 - 256},
+               std::pair{0x7fffff00, -0x7fffff00 - 256});
+  BridgeSignal signal;
+  signal.noise_V_rtHz = 4e-9;
+  auto samples = signal.frames(0, second / 4);
+  // The last one: the carrier, so strong that the converter only ever reads its two limits.
+  for (std::size_t n = 0; n < second / 4; ++n)
+    samples[4 * n + 3] = samples[4 * n] > 0 ? levels.first : levels.second;
+  for (const auto& point : complete(demodulated(bridge_options(), 0, samples))) {
+    CHECK(point.fault != WireFault::none);
+    CHECK(point.bridge == 2);
+  }
+}
+
 TEST_CASE("impossible wiring of the bridges is refused", "[sensing]") {
   const auto refused = [](auto change) {
     auto options = bridge_options();

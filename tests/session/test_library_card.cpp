@@ -205,6 +205,64 @@ TEST_CASE("a live session reads its force cells through alsa-lib, and stores wha
   CHECK(rows == (finger.wire_off ? 0 : 2));
 }
 
+TEST_CASE(
+    "a level of the mixer that changes during a session stops it at the end of the block, or is stored with "
+    "the reason",
+    "[session][alsa][mixer]") {
+  using Kind = LibraryCard::Control::Kind;
+  const TemporaryFolder folder;
+  use_plugin(folder);
+  auto setup = setup_on(folder);
+  setup.rig.capture.reset();
+  card.played_channels = session::session_stream(setup.rig).output.channels;
+  card.controls = {{Kind::level, "Digital Playback Volume", {207, 207}},
+                   {Kind::toggle, "Speaker Switch", {1, 0}}};
+  setup.rig.mixer = session::mixer_levels(setup.rig);
+  REQUIRE(setup.rig.mixer.size() == 2);
+  // What happens after the first stimulus, and what the operator then says.
+  enum class Change { none, level, muted, renamed, gone };
+  const auto [change, continues] = GENERATE(table<Change, bool>({{Change::none, true},
+                                                                 {Change::level, true},
+                                                                 {Change::level, false},
+                                                                 {Change::muted, false},
+                                                                 {Change::renamed, false},
+                                                                 {Change::gone, false}}));
+  live_room::Room room;
+  int asked = 0;
+  room.reacts = [&, change = change, continues = continues](const session::Page& page) {
+    if (page.kind == PageKind::fault && page.fault == core::FaultKind::self_test) {
+      ++asked;
+      session::Input input;
+      input.time_ns = system::monotonic_ns();
+      input.kind = continues ? InputKind::note : InputKind::stop;
+      if (continues) input.text = "set back by hand";
+      return room.inputs.push(input);
+    }
+    if (page.kind == PageKind::stimulus && change == Change::level) card.controls[0].values = {207, 180};
+    if (page.kind == PageKind::stimulus && change == Change::muted) card.controls[1].values = {0, 0};
+    if (page.kind == PageKind::stimulus && change == Change::renamed)
+      card.controls[0].name = "Master Playback Volume";
+    if (page.kind == PageKind::stimulus && change == Change::gone) card.controls.clear();
+    if (page.kind == PageKind::response) return room.press(0);
+    if (page.kind != PageKind::stimulus) room.cooperate(page);
+  };
+  const auto summary = session::run(setup, &room, room.inputs, room.devices());
+  const auto events = live_room::events_of(setup.database, summary, "mixer");
+  CHECK(asked == (change == Change::none ? 0 : 1));
+  REQUIRE(events.size() == (change == Change::none ? 0 : 1));
+  const bool completes = change == Change::none || continues;
+  CHECK(summary.status == (completes ? core::SessionStatus::completed : core::SessionStatus::interrupted));
+  if (change == Change::level)
+    CHECK(events[0].value ==
+          std::string("the control \"Digital Playback Volume\" of the sound card is at 207, 180; "
+                      "during the calibration it was at 207, 207") +
+              (continues ? "; continued: set back by hand" : ""));
+  if (change == Change::muted)
+    CHECK(events[0].value.find("\"Speaker Switch\" of the sound card is at off") != std::string::npos);
+  if (!completes) CHECK(summary.reason.find("the self-test failed: mixer: ") == 0);
+  card.controls.clear();
+}
+
 TEST_CASE("the mixer's levels belong to a calibration", "[session][alsa][mixer]") {
   using Kind = LibraryCard::Control::Kind;
   const TemporaryFolder folder;

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+#include <sys/mount.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,6 +13,7 @@
 #include "station/core/number.hpp"
 #include "station/core/usage_error.hpp"
 #include "station/store/backup.hpp"
+#include "station/store/backup_folder.hpp"
 #include "station/store/export.hpp"
 #include "station/store/merge.hpp"
 #include "station/store/open.hpp"
@@ -471,30 +474,185 @@ std::string recorded(const std::string& db, const std::string& participant, cons
 
 }  // namespace
 
-TEST_CASE("a machine is known by its machine-id and its board, and an image's name gets a part of that",
-          "[store]") {
+namespace {
+
+/// The files by which a machine is known, as every user sees them.
+struct Machine {
   TemporaryFolder folder;
-  CHECK(machine_identity(folder.path).empty());
-  const auto write = [&](const std::string& path, const std::string& text) {
-    const auto name = std::filesystem::path(folder / path.c_str());
+  const std::string board = "sys/firmware/devicetree/base/serial-number",
+                    uuid = "sys/class/dmi/id/product_uuid", serial = "sys/class/dmi/id/board_serial";
+
+  explicit Machine(const std::string& machine_id = "4c1d0f5b7e2a49c38d6e90b1a7f35c28\n") {
+    if (!machine_id.empty()) write("etc/machine-id", machine_id);
+  }
+  std::filesystem::path write(const std::string& path, const std::string& text) const {
+    const auto name = std::filesystem::path(folder / path);
     std::filesystem::create_directories(name.parent_path());
     std::ofstream(name) << text;
+    std::filesystem::permissions(name, std::filesystem::perms(0444));
     return name;
-  };
-  write("etc/machine-id", "4c1d\n");
-  const auto of_card = machine_identity(folder.path);
-  const auto uuid = write("sys/class/dmi/id/product_uuid", "uuid-1\n");
+  }
+  std::string identity() const { return machine_identity(folder.path); }
+};
+
+}  // namespace
+
+TEST_CASE("a machine is known by its machine-id and its board, and an image's name gets a part of that",
+          "[store]") {
+  CHECK(Machine("").identity().empty());
+  const Machine machine;
+  const auto of_card = machine.identity();
+  const auto uuid = machine.write(machine.uuid, "8f1b0a6c-52d3-4e79-9c04-b7e1a2d63f58\n");
   std::filesystem::permissions(uuid, std::filesystem::perms::owner_read);
-  CHECK(machine_identity(folder.path) == of_card);  // it must not depend on who asks
+  CHECK(machine.identity() == of_card);  // it must not depend on who asks
   std::filesystem::permissions(uuid, std::filesystem::perms::others_read, std::filesystem::perm_options::add);
-  const auto of_pc = machine_identity(folder.path);
+  const auto of_pc = machine.identity();
   CHECK(of_pc != of_card);
-  write("sys/firmware/devicetree/base/serial-number", std::string("100000008a7d\0", 13));
-  const auto of_board = machine_identity(folder.path);
+  machine.write(machine.board, std::string("100000008a7d41f3\0", 17));
+  const auto of_board = machine.identity();
   CHECK(of_board != of_pc);
   CHECK(of_board.size() == 64);
-  write("etc/turnpoint/station", "lab-3\n");
-  CHECK(suggested_station_name(folder.path) == "lab-3");
+  CHECK(machine_traits(machine.folder.path).board == "100000008a7d41f3");
+  machine.write("etc/turnpoint/station", "lab-3\n");
+  CHECK(suggested_station_name(machine.folder.path) == "lab-3");
+}
+
+TEST_CASE("what a maker never set does not make two machines one", "[store]") {
+  const auto plain = Machine().identity();
+  const auto with = [](const std::string& which, const std::string& value) {
+    const Machine machine;
+    machine.write(which, value);
+    return machine.identity();
+  };
+  const Machine names;
+  for (const auto* shared :
+       {"00000000-0000-0000-0000-000000000000\n", "FFFFFFFF-FFFF-FFFF-FFFF-FFFFFFFFFFFF\n",
+        "ffffffff-ffff-ffff-ffff-ffffffffffff\n", "03000200-0400-0500-0006-000700080009\n",
+        "00020003-0004-0005-0006-000700080009\n", "12345678-1234-5678-90AB-CDDEEFAABBCC\n",
+        "12345678-1234-1234-1234-123456789012\n", "11111111-2222-3333-4444-555555555555\n",
+        "00112233-4455-6677-8899-AABBCCDDEEFF\n", "FEFEFEFE-FEFE-FEFE-FEFE-FEFEFEFEFEFE\n",
+        "4C4C4544-0000-2010-8020-80C04F202020\n", "Not Settable\n", "Not Present\n", "\n", "   \n"}) {
+    INFO(shared);
+    CHECK(with(names.uuid, shared) == plain);
+    CHECK(with(names.serial, shared) == plain);
+  }
+  for (const auto* shared : {"Default string\n",
+                             "Default string 1\n",
+                             "To be filled by O.E.M.\n",
+                             "To Be Filled By O.E.M. 01\n",
+                             "None\n",
+                             "N/A\n",
+                             "0\n",
+                             "0000000000000000",
+                             "0123456789\n",
+                             "123456789\n",
+                             "1234567890\n",
+                             "0123456789ABCDEF",
+                             "fedcba9876543210",
+                             "xxxxxxxxxxxx\n",
+                             "............\n",
+                             "SN123456789\n",
+                             "System Serial Number\n",
+                             "Type2 - Board Serial Number\n",
+                             "Base Board Serial Number\n",
+                             "Not Specified\n",
+                             "Not Applicable\n",
+                             "INVALID\n",
+                             "OEM\n",
+                             "empty\n",
+                             "Unknown\n"}) {
+    INFO(shared);
+    CHECK(with(names.board, shared) == plain);
+    CHECK(with(names.serial, shared) == plain);
+  }
+  // Without a machine-id as well, nothing is known, instead of one identity for all of them.
+  for (const auto* which : {&names.board, &names.uuid, &names.serial}) {
+    const Machine bare("");
+    bare.write(*which, "Default string\n");
+    CHECK(bare.identity().empty());
+  }
+  // The next number counts if the first one is not one.
+  const Machine machine;
+  machine.write(machine.uuid, "03000200-0400-0500-0006-000700080009\n");
+  machine.write(machine.serial, "BSS-0123-X7421\n");
+  CHECK(machine_traits(machine.folder.path).board == "BSS-0123-X7421");
+}
+
+TEST_CASE("numbers that makers give to one board each count", "[store]") {
+  std::set<std::string> identities;
+  const std::vector<std::string> given{"100000008a7d41f3",
+                                       "00000000b3f0e1a2",
+                                       "1000000010a0305c",
+                                       "10000000deadbeef",
+                                       "c3d9b8674f4b94f6",
+                                       "/6XKJ9Y2/CN7220059N00A1/",
+                                       "PF2ZKQ7M",
+                                       "L1HF65E00X9",
+                                       "VMware-56 4d 1a 2b 8c 07 f1 3e-a4 5b 6c 90 11 d2 3e 4f",
+                                       "5CG8234TQX",
+                                       "GEBN12400BCX",
+                                       "4C4C4544-0051-3510-8056-B7C04F4D4832",
+                                       "00000000-0000-0000-0000-AC1F6B8D42E0",
+                                       "EC2E1916-9099-7CAF-FD21-012345ABCDEF"};
+  for (const auto& number : given) {
+    const Machine machine;
+    machine.write(machine.board, number);
+    INFO(number);
+    CHECK(machine_traits(machine.folder.path).board == number);
+    identities.insert(machine.identity());
+  }
+  CHECK(identities.size() == given.size());
+  // Virtual machines that share a UUID differ in the machine-id.
+  const Machine one, two("9be07a3c5d1f42e68a0c7b94f2d35e61\n");
+  for (const auto* machine : {&one, &two}) machine->write(machine->uuid, given[11] + "\n");
+  CHECK(one.identity() != two.identity());
+  // Of random numbers, none is taken for what nobody set.
+  std::mt19937_64 random(11);
+  const Machine machine;
+  int lost = 0;
+  for (int k = 0; k < 2000; ++k) {
+    std::filesystem::remove(machine.folder / machine.board);
+    machine.write(machine.board, fmt::format("10000000{:08x}", static_cast<std::uint32_t>(random())));
+    lost += machine_traits(machine.folder.path).board.empty() ? 1 : 0;
+  }
+  CHECK(lost == 0);
+}
+
+TEST_CASE("a machine-id that the next boot replaces is no identity", "[store]") {
+  const std::string serial = "100000008a7d41f3";
+  const Machine board("");
+  board.write(board.board, serial);
+  const auto of_board = board.identity();
+  CHECK_FALSE(of_board.empty());
+  for (const auto* transient :
+       {"\n", " \n", "uninitialized\n", "00000000000000000000000000000000\n",
+        "ffffffffffffffffffffffffffffffff\n", "4c1d\n", "0123456789abcdef0123456789abcdef\n"}) {
+    INFO(transient);
+    const Machine machine(transient);
+    CHECK(machine.identity().empty());
+    machine.write(machine.board, serial);
+    CHECK(machine.identity() == of_board);  // known by the board alone, and the same at each boot
+  }
+  const Machine hidden;
+  std::filesystem::permissions(hidden.folder / "etc/machine-id", std::filesystem::perms::owner_read);
+  CHECK(hidden.identity().empty());
+}
+
+TEST_CASE("a machine-id that systemd has mounted from memory is no identity", "[store]") {
+  const Machine machine;
+  const auto lasting = machine.identity();
+  const auto run = machine.folder / "run", id = machine.folder / "etc/machine-id";
+  std::filesystem::create_directory(run);
+  if (::mount("tmpfs", run.c_str(), "tmpfs", 0, nullptr) != 0) {
+    WARN("skipped: only root can mount; sudo tests/run");
+    return;
+  }
+  machine.write("run/machine-id", "9be07a3c5d1f42e68a0c7b94f2d35e61\n");
+  REQUIRE(::mount((run + "/machine-id").c_str(), id.c_str(), nullptr, MS_BIND, nullptr) == 0);
+  CHECK(machine.identity().empty());
+  ::umount2(id.c_str(), MNT_DETACH);
+  CHECK(machine.identity() == lasting);  // once systemd has written it to the disk, it counts
+  ::umount2(run.c_str(), MNT_DETACH);
 }
 
 TEST_CASE("a database keeps the name of its station, whatever the host is called", "[store]") {
@@ -530,6 +688,61 @@ TEST_CASE("a copied card is noticed, and becomes a station of its own when it is
   CHECK(list_sessions(hub).size() == 3);
   CHECK(list_sessions(hub, {"", "P02@lab-2", ""}).size() == 1);
   for (const auto& path : {db, copy, hub}) CHECK(verify(path).good());
+}
+
+namespace {
+
+/// Makes a backup as another machine would make it.
+std::string backup_of_other_machine(const std::string& db, const std::string& dir, int keep) {
+  const auto made = backup(db, {dir, keep}).path;
+  auto raw = sample::raw(made);
+  raw.execute("PRAGMA journal_mode = DELETE");
+  SealedTransaction change(raw);
+  raw.execute("UPDATE meta SET value = 'board-2' WHERE key = 'backup_machine'");
+  change.commit();
+  std::filesystem::remove(made + ".sha256");
+  return made;
+}
+
+}  // namespace
+
+TEST_CASE("two copies of one database share a folder of backups, and neither loses or gets the other's",
+          "[store]") {
+  if (machine_identity().empty()) {
+    WARN("skipped: this machine has no identity");
+    return;
+  }
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", copy = folder / "copy/a.sqlite", dir = folder / "backups";
+  recorded(db, "P01", "lab", machine_identity());
+  const auto own = backup(db, {dir, 9}).path;
+  sample::raw(db).execute("PRAGMA wal_checkpoint(TRUNCATE)");
+  std::filesystem::create_directory(folder / "copy");
+  std::filesystem::copy_file(db, copy);
+  sample::session(copy, 2, at_station("P02", "lab"));
+  const auto foreign = backup_of_other_machine(copy, dir, 9);
+  const auto newer = backup(db, {dir, 1}).path;  // removes its own first one, and not the other's
+  CHECK_FALSE(std::filesystem::exists(own));
+  CHECK(std::filesystem::exists(foreign));
+  std::filesystem::resize_file(db, 6000);
+  SECTION("a restore takes its own, although the other's is newer") {
+    const auto newest = backup_of_other_machine(copy, dir, 9);
+    const auto restored = restore_backup(db, {dir, ""});
+    CHECK(restored.sessions == 1);
+    CHECK(std::filesystem::exists(newest));
+  }
+  SECTION("a restore asks if there are only the other's") {
+    remove_backup(newer);
+    const auto [kind, message] = sample::failure([&] { restore_backup(db, {dir, ""}); });
+    CHECK(kind == ErrorKind::other_machine);
+    CHECK(sample::contains(message, "of station lab: " + foreign));
+    CHECK(sample::contains(message, "if this machine replaces that one, add --moved"));
+    CHECK(std::filesystem::file_size(db) == 6000);
+    RestoreOptions moved{dir, ""};
+    moved.whose = Whose::moved;
+    CHECK(restore_backup(db, moved).sessions == 2);
+    CHECK(read_station(db).machine == machine_identity());
+  }
 }
 
 TEST_CASE("a replaced board goes on as the same station when somebody has said so", "[store]") {
