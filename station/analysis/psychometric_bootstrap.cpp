@@ -105,24 +105,28 @@ Replicator replicator(const PsychometricFit& fit) {
 }
 
 /// Finds one end of a profile-likelihood interval: the value of the quantity, between the estimate and
-/// `bound`, at which the likelihood ratio reaches `critical`. Returns `bound` if the ratio stays below
-/// `critical`.
+/// `bound`, beyond which the likelihood ratio stays above `critical`. The ratio may rise and fall on the way:
+/// no value that the data allow lies outside. Returns `bound` if the ratio there is at most `critical`.
 double profile_end(const Replicator& base, const Quantity& quantity, Theta start, double bound,
                    double best_cost, double critical) {
-  double inside = start[quantity.parameter], outside = bound;
-  auto at_bound = base.highest(quantity, bound, start);
-  if (2 * (at_bound.negative_log - best_cost) <= critical) return bound;
+  const double estimate = start[quantity.parameter];
+  const auto allowed = [&](double value) {
+    const auto found = base.highest(quantity, value, start);
+    const bool inside = 2 * (found.negative_log - best_cost) <= critical;
+    if (inside) start = found.theta;
+    return inside;
+  };
+  if (allowed(bound)) return bound;
+  constexpr int cells = 16;
+  double inside = estimate, outside = bound;
+  for (int i = 1; i < cells && inside == estimate; ++i)
+    if (const double value = bound + i * (estimate - bound) / cells; allowed(value))
+      inside = value;
+    else
+      outside = value;
   for (int i = 0; i < 40 && std::abs(outside - inside) > 1e-5 * (1 + std::abs(inside)); ++i) {
-    // The end of the interval is usually near the estimate and the bound far away. Therefore each of the
-    // first three steps cuts off three quarters of the distance.
-    const double middle = i < 3 ? inside + (outside - inside) / 4 : (inside + outside) / 2;
-    const auto found = base.highest(quantity, middle, start);
-    if (2 * (found.negative_log - best_cost) <= critical) {
-      inside = middle;
-      start = found.theta;
-    } else {
-      outside = middle;
-    }
+    const double middle = (inside + outside) / 2;
+    (allowed(middle) ? inside : outside) = middle;
   }
   // At the bound itself the search may find a lower maximum than close to it.
   return outside == bound ? bound : (inside + outside) / 2;

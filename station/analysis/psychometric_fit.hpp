@@ -111,7 +111,8 @@ struct BootstrapOptions {
 
 /// Computes intervals by a parametric bootstrap of a fit (Wichmann & Hill 2001b).
 ///
-/// Threshold, slope and 75 % point get profile-likelihood intervals. Their critical value comes from the
+/// Threshold, slope and 75 % point get profile-likelihood intervals. If values apart from each other are
+/// likely enough, the interval reaches from the lowest to the highest. The critical value comes from the
 /// likelihood ratios of the replicates instead of chi-square. Percentile intervals of the slope would be
 /// worse: with ten trials per level they would miss the true value in 1 case of 7 instead of 1 of 20, because
 /// the estimate is biased. BCa intervals of a Weibull's threshold are no better. Lapse and guess get

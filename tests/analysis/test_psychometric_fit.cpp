@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "station/analysis/psychometric_fit.hpp"
@@ -241,38 +242,120 @@ TEST_CASE("A bootstrap depends only on its seed and stream", "[analysis]") {
   CHECK_THROWS_AS(bootstrap(fit, {10, 0.95, 1, 0, 0}), std::invalid_argument);
 }
 
-TEST_CASE("An interval ends where no function with that threshold is likely enough", "[analysis]") {
-  // With the threshold held, a steep and a shallow function are each a maximum of these likelihoods.
-  FitOptions three, detection;
-  three.scale = detection.scale = Scale::log10;
+namespace {
+
+/// -ln likelihood, written apart from the fit. With `p75`, the threshold is the level of three quarters.
+double cost(const FitOptions& options, const std::vector<LevelCount>& data, double threshold, double slope,
+            double lapse, double guess, bool p75) {
+  if (options.guess == Guess::fixed) guess = options.guess_value;
+  double sum = 0;
+  for (const auto& point : data) {
+    double p = guess;
+    if (point.level != kNoise) {
+      double turns = std::pow(point.level / threshold, slope);
+      if (p75) {
+        const double inside = (0.75 - guess) / (1 - guess - lapse);
+        if (!(inside > 0 && inside < 1)) return 1e9;
+        turns *= -std::log(1 - inside);
+      }
+      p += (1 - guess - lapse) * (1 - std::exp(-turns));
+    }
+    p = std::min(std::max(p, 1e-12), 1 - 1e-12);
+    sum -= point.positive * std::log(p) + (point.trials - point.positive) * std::log(1 - p);
+  }
+  return sum;
+}
+
+/// The lowest cost with this threshold: over a grid, then by halved steps from its ten best points.
+double lowest(const FitOptions& options, const std::vector<LevelCount>& data, double threshold, bool p75) {
+  double first = 1e9, last = 0;
+  for (const auto& point : data)
+    if (point.level != kNoise) first = std::min(first, point.level), last = std::max(last, point.level);
+  const double range_dB = 20 * std::log10(last / first), dB = std::log(10) / 20;
+  const std::array<double, 3> low{std::log(0.1 / range_dB / dB), 0, 0},
+      high{std::log(80 / range_dB / dB), options.lapse_high, options.guess_high};
+  const auto at = [&](const std::array<double, 3>& x) {
+    return cost(options, data, threshold, std::exp(x[0]), x[1], x[2], p75);
+  };
+  std::vector<std::pair<double, std::array<double, 3>>> grid;
+  const bool free = options.guess == Guess::fitted;
+  for (int s = 0; s <= 60; ++s)
+    for (int l = 0; l <= 2; ++l)
+      for (int g = 0; g <= (free ? 30 : 0); ++g) {
+        const std::array<double, 3> x{low[0] + s * (high[0] - low[0]) / 60, l * high[1] / 2,
+                                      g * high[2] / 30};
+        grid.push_back({at(x), x});
+      }
+  std::partial_sort(grid.begin(), grid.begin() + 10, grid.end());
+  double best = grid[0].first;
+  for (int i = 0; i < 10; ++i) {
+    auto [here, x] = grid[i];
+    for (double step = 0.05; step > 1e-6;) {
+      bool moved = false;
+      for (std::size_t k = 0; k < (free ? 3u : 2u); ++k)
+        for (const double side : {-1.0, 1.0}) {
+          auto next = x;
+          next[k] = std::clamp(x[k] + side * step * (high[k] - low[k]), low[k], high[k]);
+          if (const double value = at(next); value < here - 1e-12) here = value, x = next, moved = true;
+        }
+      if (!moved) step /= 2;
+    }
+    best = std::min(best, here);
+  }
+  return best;
+}
+
+}  // namespace
+
+TEST_CASE("An interval ends where functions with that threshold stop being likely enough, at both ends alike",
+          "[analysis]") {
+  // With the threshold held, a steep and a shallow function can each be a maximum; the likelihood can fall
+  // quickly where the threshold passes a level, and rise again beyond.
+  FitOptions three, detection, two;
+  two.scale = three.scale = detection.scale = Scale::log10;
   three.guess_value = 1.0 / 3;
   detection.guess = Guess::fitted, detection.guess_high = 0.9;
   const std::vector<std::pair<FitOptions, std::vector<LevelCount>>> sessions{
       {three,
        {{0.049, 18, 7}, {0.089, 18, 6}, {0.137, 18, 14}, {0.253, 18, 14}, {0.421, 18, 16}, {0.708, 18, 18}}},
-      {detection, {{kNoise, 24, 6}, {0.048, 12, 4}, {0.115, 12, 3}, {0.283, 12, 9}, {0.699, 12, 12}}}};
-  for (const auto& [options, data] : sessions) {
-    const auto fit = fit_psychometric(data, options);
-    REQUIRE(fit.parameters);
-    const auto drawn = bootstrap(fit, {200, 0.95, 3, 0, 0});
-    for (const double end : {drawn.threshold->interval.low, drawn.threshold->interval.high}) {
-      double least = 1e9;
-      for (double slope = 0.3; slope < 30; slope *= 1.03)
-        for (const double lapse : {0.0, 0.02, 0.04, 0.06})
-          for (int g = 0; g < (options.guess == Guess::fitted ? 45 : 1); ++g) {
-            const double guess = options.guess == Guess::fitted ? 0.02 * g + 0.01 : options.guess_value;
-            double cost = 0;
-            for (const auto& point : data) {
-              const double p = point.level == kNoise ? guess
-                                                     : probability(options.function, options.scale,
-                                                                   {end, slope, guess, lapse}, point.level);
-              cost -= point.positive * std::log(p) + (point.trials - point.positive) * std::log1p(-p);
-            }
-            least = std::min(least, cost);
-          }
-      CHECK(2 * (least - fit.negative_log_likelihood) > 3.84);
+      {detection, {{kNoise, 24, 6}, {0.048, 12, 4}, {0.115, 12, 3}, {0.283, 12, 9}, {0.699, 12, 12}}},
+      {detection, {{kNoise, 42, 9}, {0.051, 11, 6}, {0.124, 11, 4}, {0.302, 11, 11}, {0.733, 9, 9}}},
+      {detection, {{kNoise, 18, 5}, {0.05, 18, 5}, {0.126, 18, 7}, {0.3175, 18, 9}, {0.8, 18, 17}}},
+      {detection, {{kNoise, 25, 0}, {0.05, 25, 0}, {0.2, 25, 1}, {0.8, 25, 23}}},
+      {detection, {{kNoise, 21, 7}, {0.05, 21, 9}, {0.126, 21, 19}, {0.3175, 21, 21}, {0.8, 21, 21}}},
+      {two, {{0.05, 12, 6}, {0.1, 12, 5}, {0.2, 12, 12}, {0.4, 12, 12}, {0.8, 12, 12}}},
+      {three,
+       {{0.05, 27, 5},
+        {0.0794, 27, 8},
+        {0.126, 27, 9},
+        {0.2, 27, 13},
+        {0.3175, 27, 25},
+        {0.504, 27, 26},
+        {0.8, 27, 27}}},
+      {three, {{0.05, 8, 1}, {0.1, 8, 5}, {0.2, 8, 6}, {0.4, 8, 8}, {0.8, 8, 8}}}};
+  for (std::size_t i = 0; i < sessions.size(); ++i)
+    for (const bool p75 : {false, true}) {
+      INFO("session " << i << (p75 ? ", level of 75 %" : ", threshold"));
+      const auto& [options, data] = sessions[i];
+      const auto fit = fit_psychometric(data, options);
+      REQUIRE(fit.parameters);
+      const auto drawn = bootstrap(fit, {100, 0.95, 3, 0, 0});
+      const auto found = p75 ? drawn.interval_75 : drawn.threshold;
+      REQUIRE(found);
+      const auto ratio = [&, &opts = options, &counts = data](double level) {
+        return 2 * (lowest(opts, counts, level, p75) - fit.negative_log_likelihood);
+      };
+      const double low = found->interval.low, high = found->interval.high, past = std::pow(high / low, 0.005);
+      // the ratio rises from below the critical value to above it within a hundredth of the interval
+      double least = 1e9, most = 0;
+      if (!found->touches_low)
+        least = std::min(least, ratio(low / past)), most = std::max(most, ratio(low * past));
+      if (!found->touches_high)
+        least = std::min(least, ratio(high * past)), most = std::max(most, ratio(high / past));
+      INFO("from " << low << " to " << high << ": inside " << most << ", outside " << least);
+      CHECK(least > 3.84);
+      CHECK(most < least);
     }
-  }
 }
 
 TEST_CASE("The fit agrees with psignifit 4.3 on the same data", "[analysis]") {
