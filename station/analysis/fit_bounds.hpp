@@ -10,7 +10,8 @@ std::vector<LevelCount> checked(const std::vector<LevelCount>& data, const FitOp
 /// rarer as the level rises. The reason does not depend on how the levels were chosen.
 std::optional<Statement> unusable(const std::vector<LevelCount>& data, const FitOptions& options);
 /// Each answer counts `weight` times.
-AxisCounts axis_counts(const std::vector<LevelCount>& data, Function function, Scale scale, double weight = 1);
+AxisCounts axis_counts(const std::vector<LevelCount>& data, Function function, Scale scale,
+                       double weight = 1);
 /// Returns PsychometricFit::weight of checked counts for answers with the probability `fitted`.
 double weight_of(const std::vector<LevelCount>& data, const FitOptions& options, const Psychometric& fitted);
 ThetaBounds theta_bounds(const AxisCounts& counts, const FitOptions& options);

@@ -167,8 +167,9 @@ double weight_of(const std::vector<LevelCount>& data, const FitOptions& options,
   constexpr double least_rest = 0.05;
   double admitted = 0, binomial = 0;
   for (const auto& point : data) {
-    const double p =
-        point.level == kNoise ? fitted.guess : probability(options.function, options.scale, fitted, point.level);
+    const double p = point.level == kNoise
+                         ? fitted.guess
+                         : probability(options.function, options.scale, fitted, point.level);
     admitted += point.admitted;
     binomial += point.trials * p * (1 - p);
   }

@@ -51,8 +51,8 @@ struct PsychometricFit {
   std::optional<Psychometric> parameters;
   AtBound at_bound;
   /// How many forced answers an answer counts as: above 1 if the participant admitted guesses, because a mean
-  /// scatters less than a guess. It is the binomial variance of the answers, divided by what is left of it; all
-  /// log-likelihoods are multiplied by it (quasi-likelihood: Wedderburn 1974).
+  /// scatters less than a guess. It is the binomial variance of the answers, divided by what is left of it;
+  /// all log-likelihoods are multiplied by it (quasi-likelihood: Wedderburn 1974).
   double weight = 1;
   double negative_log_likelihood = 0;  ///< for the individual answers, in nats; without binomial coefficients
   /// deviance from the saturated model, which has one proportion per level
