@@ -640,6 +640,8 @@ def compare_counts(report, session):
     rows = session.all
     report.same("trials", {"presented": len(rows), **{name: sum(r["outcome"] == one for r in rows) for name, one in (
         ("answered", "answered"), ("timeouts", "timeout"), ("anticipations", "anticipation"), ("aborted", "aborted"), ("faults", "fault"))}})
+    if session.kind.name == "unforced":
+        report.same("trials.unsure", sum(r["response"] == "unsure" for r in rows))
     timed = [((r["level"], r["instruction"]), int(r["trial_index"]), float(r["response_time"])) for r in session.answered]
     report.same("trend_response_time_s", within_groups(timed))
     scored = [((r["level"], r["instruction"]), int(r["trial_index"]), float(r["correct"])) for r in session.answered if r["correct"] != "n/a"]
@@ -1443,6 +1445,8 @@ def compare_r(study, folder, kind):
     printed = subprocess.run(["Rscript", SCRIPT.with_suffix(".R"), folder], capture_output=True, text=True, check=True).stdout
     lines = list(csv.reader(printed.splitlines()))
     groups = {group["condition"] or "all trials": group["fit"] for group in document["groups"] if group["fit"]}
+    if kind.name == "unforced":
+        groups = {}  # lme4 knows no answers that count as fractions
     for what in ("threshold", "rate", "log_likelihood"):
         study.check("study.R", [row[1] for row in lines if row[0] == what] == list(groups), f"{what}: {lines}, {list(groups)}")
     for name, fit in groups.items():
