@@ -38,6 +38,7 @@ struct Replicator {
     AxisCounts drawn = counts;
     for (std::size_t i = 0; i < drawn.u.size(); ++i) {
       drawn.positive[i] = 0;
+      drawn.trials[i] = std::max(1.0, std::round(counts.trials[i]));  // whole, unless answers are weighted
       for (int n = 0; n < static_cast<int>(drawn.trials[i]); ++n)
         drawn.positive[i] += draws.uniform() < model[i] ? 1 : 0;
     }
@@ -92,7 +93,7 @@ double saturated(const AxisCounts& counts) {
 Replicator replicator(const PsychometricFit& fit) {
   Replicator result;
   result.options = fit.options;
-  result.counts = axis_counts(fit.data, fit.options.function, fit.options.scale);
+  result.counts = axis_counts(fit.data, fit.options.function, fit.options.scale, fit.weight);
   result.bounds = theta_bounds(result.counts, fit.options);
   const auto& p = *fit.parameters;
   result.best = {axis_position(fit.options.function, fit.options.scale, p.threshold),

@@ -31,6 +31,9 @@ void check(const std::vector<LevelCount>& data, const FitOptions& options) {
     throw std::invalid_argument(
         "bounds of lapse and guess: they must meet 0 <= low <= high, with a lapse of at most 0.5, a guess of "
         "at most 0.9, and a sum below 1");
+  if (options.guess != Guess::fixed &&
+      std::any_of(data.begin(), data.end(), [](const auto& point) { return point.admitted > 0; }))
+    throw std::invalid_argument("unsure answers need a lower asymptote that is known");
   if (options.guess == Guess::fixed && !(options.guess_value >= 0 && options.guess_value < 1))
     throw std::invalid_argument("guess " + core::number(options.guess_value) +
                                 ": it must be at least 0 and below 1");
@@ -95,15 +98,13 @@ std::optional<Statement> refusal(const std::vector<LevelCount>& data, const FitO
   return std::nullopt;
 }
 
-double deviance(const PsychometricFit& fit, const Likelihood& likelihood, const Theta& theta,
-                const AxisCounts& counts) {
+double deviance(const Likelihood& likelihood, const Theta& theta, const AxisCounts& counts) {
   double saturated = 0;
-  for (const auto& point : fit.data) {
-    const double k = point.sum(), n = point.trials;
+  for (std::size_t i = 0; i < counts.u.size(); ++i) {
+    const double k = counts.positive[i], n = counts.trials[i];
     if (k > 0) saturated -= k * std::log(k / n);
     if (k < n) saturated -= (n - k) * std::log((n - k) / n);
   }
-  static_cast<void>(counts);
   return std::max(0.0, 2 * (likelihood.negative_log(theta) - saturated));
 }
 
@@ -160,12 +161,29 @@ void say_what_touches(PsychometricIntervals& intervals) {
   say(intervals.interval_75, "interval-75 % point", "statement.point_of_three_quarters");
 }
 
-AxisCounts axis_counts(const std::vector<LevelCount>& data, Function function, Scale scale) {
+double weight_of(const std::vector<LevelCount>& data, const FitOptions& options, const Psychometric& fitted) {
+  // The rest is smallest for people who admit every guess at levels at which they only guess. An answer that
+  // counts more than this often would claim to know the function from a few of them.
+  constexpr double least_rest = 0.05;
+  double admitted = 0, binomial = 0;
+  for (const auto& point : data) {
+    const double p = point.level == kNoise
+                         ? fitted.guess
+                         : probability(options.function, options.scale, fitted, point.level);
+    admitted += point.admitted;
+    binomial += point.trials * p * (1 - p);
+  }
+  // The square of 1, 0 or the guess rate has the mean p - P(unsure) guess (1 - guess).
+  const double spared = admitted * (1 - options.guess_value);
+  return spared > 0 ? 1 / std::max(1 - spared / binomial, least_rest) : 1;
+}
+
+AxisCounts axis_counts(const std::vector<LevelCount>& data, Function function, Scale scale, double weight) {
   AxisCounts counts;
   for (const auto& point : data) {
     counts.u.push_back(point.level == kNoise ? kNoise : axis_position(function, scale, point.level));
-    counts.trials.push_back(point.trials);
-    counts.positive.push_back(point.sum());
+    counts.trials.push_back(weight * point.trials);
+    counts.positive.push_back(weight * point.sum());
   }
   return counts;
 }
@@ -207,8 +225,9 @@ PsychometricFit fit_psychometric(const std::vector<LevelCount>& data, const FitO
     return fit;
   }
   fit.parameters = from_theta(best.theta, options);
-  fit.negative_log_likelihood = best.negative_log;
-  fit.deviance = deviance(fit, likelihood, best.theta, counts);
+  fit.weight = weight_of(fit.data, options, *fit.parameters);
+  fit.negative_log_likelihood = fit.weight * best.negative_log;
+  fit.deviance = fit.weight * deviance(likelihood, best.theta, counts);
   for (int i = 0; i < 4; ++i)
     if (bounds.low[i] < bounds.high[i] && !(i == 3 && options.guess == Guess::tied_to_lapse))
       ++fit.free_parameters;

@@ -18,7 +18,8 @@ struct LevelCount {
   double level = 0;  ///< kNoise for trials without a signal; their probability is the lower asymptote
   int trials = 0;
   int positive = 0;
-  /// what guesses that were not made would have added to `positive` on average (count_correct())
+  /// what guesses that were not made would have added to `positive` on average (count_correct()); only with
+  /// Guess::fixed, whose value is then the share of such guesses that would have been right
   double admitted = 0;
   double sum() const { return positive + admitted; }
 };
@@ -49,6 +50,10 @@ struct PsychometricFit {
   std::vector<LevelCount> data;  ///< one entry per level, ascending, without levels that have no trials
   std::optional<Psychometric> parameters;
   AtBound at_bound;
+  /// How many forced answers an answer counts as: above 1 if the participant admitted guesses, because a mean
+  /// scatters less than a guess. It is the binomial variance of the answers, divided by what is left of it;
+  /// all log-likelihoods are multiplied by it (quasi-likelihood: Wedderburn 1974).
+  double weight = 1;
   double negative_log_likelihood = 0;  ///< for the individual answers, in nats; without binomial coefficients
   /// deviance from the saturated model, which has one proportion per level
   double deviance = 0;

@@ -51,6 +51,7 @@ Json fit_json(const NamedFit& named, const SessionData& data) {
       p && !posterior ? value(named.fit.negative_log_likelihood) : Json(nullptr);
   json["deviance"] = p && !posterior ? value(named.fit.deviance) : Json(nullptr);
   json["deviance_p"] = value(named.intervals.deviance_p);
+  json["weight"] = named.fit.weight;
   json["replicates"] = named.intervals.replicates;
   json["intervals"] = core::say(describe_intervals(named, data), "en");
   json["prior"] = prior_json(named);

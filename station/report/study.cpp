@@ -229,7 +229,7 @@ GroupFit group_fit(const Study& study, const std::string& condition) {
       }
       people.push_back({person.person,
                         named.positive == group.positive ? named.fit.data : turned(named.fit.data),
-                        known_guess(named)});
+                        known_guess(named), named.fit.weight});
     }
   group.result = analysis::fit_mixed(people, options);
   return group;

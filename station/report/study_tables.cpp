@@ -24,7 +24,7 @@ namespace {
 const char* yes_or_no(bool value) { return value ? "yes" : "no"; }
 
 std::string answers_table(const Study& study) {
-  std::string csv = "participant,excluded,condition,level,axis,trials,positive\n";
+  std::string csv = "participant,excluded,condition,level,axis,trials,positive,weight\n";
   for (const auto& person : study.persons)
     for (const auto& named : person.fits)
       for (const auto& point : named.fit.data) {
@@ -33,7 +33,8 @@ std::string answers_table(const Study& study) {
         csv += csv_field(person.person) + "," + yes_or_no(!person.excluded.empty()) + "," +
                csv_field(named.name) + "," + csv_number(point.level) + "," +
                csv_number(analysis::axis_position(options.function, options.scale, point.level)) + "," +
-               std::to_string(point.trials) + "," + csv_number(point.sum()) + "\n";
+               std::to_string(point.trials) + "," + csv_number(point.sum()) + "," +
+               csv_number(named.fit.weight) + "\n";
       }
   return csv;
 }

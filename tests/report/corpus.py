@@ -129,6 +129,12 @@ class Kind:
             QUESTION + CHOICES + 'correct = "comparison"\n' + TIMES.replace("ZERO", zero) + \
             constant(geometric(self.draw, 0.05, 0.7, self.draw.randint(4, 6)), self.draw.randint(12, 20))
 
+    def unforced(self):
+        """People who may say that they would only guess, and mostly do."""
+        body = self.threshold_2ifc()
+        self.people(threshold=(0.1, 0.3), slope=(0.8, 2.5), unsure=(0.5, 1))
+        return body.replace("correct = ", 'unsure = { en = "?" }\ncorrect = ')
+
     def interval(self, kind, names, alternatives):
         self.people(threshold=(0.1, 0.3), slope=(0.8, 2.0), lapse=(0, 0.04))
         self.fit = {"function": "weibull", "guess": 1 / alternatives}
@@ -274,7 +280,7 @@ class Kind:
             'show = ["psychometric", "ez", "bis", "lisas", "caf"]\nresponse_time_exclude = { below_s = 0.150, mad = 3.5 }\n'
 
 
-KINDS = ["pse", "bisection", "choice", "pse_2ifc", "threshold_2ifc", "mafc", "abx", "match_to_sample", "oddity",
+KINDS = ["pse", "bisection", "choice", "pse_2ifc", "threshold_2ifc", "unforced", "mafc", "abx", "match_to_sample", "oddity",
          "same_different", "yes_no", "confusion", "rating", "magnitude", "line", "setting", "staircase", "quest_plus",
          "response_signal", "diffusion"]
 
@@ -367,6 +373,7 @@ class Function:
 
     def __init__(self, spec, levels, trials, positive, log_scale):
         self.name, self.guess, self.log = spec["function"], spec["guess"], log_scale
+        self.weight = 1.0  # how often each answer counts
         self.n, self.k = numpy.array(trials, float), numpy.array(positive, float)
         self.u = numpy.array([-numpy.inf if level is None else self.axis(level) for level in levels])
         signal = self.u[numpy.isfinite(self.u)]
@@ -420,6 +427,12 @@ class Function:
                                    bounds=[self.bounds[i] for i in free]) for start in starts for method in ("L-BFGS-B", "Nelder-Mead")]
         best = min(found, key=lambda result: result.fun)
         return best.fun, whole(best.x)
+
+    def weigh(self, theta, unsure):
+        """Quasi-likelihood: the variance of forced answers, divided by what is left of it without the admitted guesses."""
+        p = self.probability(theta, self.u)
+        spared = unsure * self.guess * (1 - self.guess) / numpy.sum(self.n * p * (1 - p)) if unsure else 0
+        self.weight = 1 / max(1 - spared, 0.05)
 
     def saturated(self):
         return -numpy.sum(special.xlogy(self.k, self.k / self.n) + special.xlogy(self.n - self.k, (self.n - self.k) / self.n))
@@ -627,6 +640,8 @@ def compare_counts(report, session):
     rows = session.all
     report.same("trials", {"presented": len(rows), **{name: sum(r["outcome"] == one for r in rows) for name, one in (
         ("answered", "answered"), ("timeouts", "timeout"), ("anticipations", "anticipation"), ("aborted", "aborted"), ("faults", "fault"))}})
+    if session.kind.name == "unforced":
+        report.same("trials.unsure", sum(r["response"] == "unsure" for r in rows))
     timed = [((r["level"], r["instruction"]), int(r["trial_index"]), float(r["response_time"])) for r in session.answered]
     report.same("trend_response_time_s", within_groups(timed))
     scored = [((r["level"], r["instruction"]), int(r["trial_index"]), float(r["correct"])) for r in session.answered if r["correct"] != "n/a"]
@@ -875,7 +890,7 @@ def counted(session, condition, log_scale):
             hit = r["response"] == kind.positive
             level = level if r["correct_response"] == kind.positive else None
         else:
-            hit = r["correct"] == "1"
+            hit = kind.fit["guess"] if r["response"] == "unsure" else r["correct"] == "1"
         entry = table.setdefault(level, [0, 0])
         entry[0] += 1
         entry[1] += hit
@@ -899,7 +914,9 @@ def compare_fits(report, session):
         if isinstance(session.kind.fit["guess"], float):
             report.same(path + ".guess", session.kind.fit["guess"])
         if fit["prior"] is None:
-            compare_maximum(report, path, fit, function, reported_theta(fit, function))
+            theirs = reported_theta(fit, function)
+            function.weigh(theirs, sum(r["response"] == "unsure" for r in session.of(condition)))
+            compare_maximum(report, path, fit, function, theirs)
         else:
             compare_posterior(report, path, fit, function)
 
@@ -915,11 +932,11 @@ def reported_theta(fit, function):
 def compare_maximum(report, path, fit, function, theirs):
     mine, best = function.best()
     reported = function.nll(theirs)
-    report.same(path + ".negative_log_likelihood", reported, 1e-8)
+    report.same(path + ".negative_log_likelihood", function.weight * reported, 1e-8)
     report.check(path + ".negative_log_likelihood", reported <= mine + 1e-4, f"SciPy finds {mine:.7f}")
     for name in ("threshold", "slope", "lapse", "guess"):
         report.check(f"{path}.{name}", reported <= mine + 1e-4, f"SciPy finds a higher likelihood at {best}")
-    report.same(path + ".deviance", 2 * (reported - function.saturated()), 1e-6)
+    report.same(path + ".deviance", 2 * function.weight * (reported - function.saturated()), 1e-6)
     if fit.get("level_75") is not None:
         inside = (0.75 - (theirs[2] if function.guess == "tied" else theirs[3] if function.guess == "false alarms" else function.guess))
         guess = theirs[2] if function.guess == "tied" else theirs[3] if function.guess == "false alarms" else function.guess
@@ -937,7 +954,7 @@ def compare_maximum(report, path, fit, function, theirs):
             if interval[end] is None or interval[f"touches_{end}"]:
                 continue
             value = function.axis(interval[end]) if index == 0 else math.log(function.rate(interval[end]))
-            drops.append(2 * (function.best({index: value})[0] - reported))
+            drops.append(2 * function.weight * (function.best({index: value})[0] - reported))
             report.check(f"{path}.{name}_interval.{end}", 3.8 <= drops[-1] <= 9.0, f"the likelihood ratio there is {drops[-1]:.3f}")
         if len(drops) == 2:
             alike = abs(drops[0] - drops[1]) < 0.05 * max(drops)
@@ -945,7 +962,7 @@ def compare_maximum(report, path, fit, function, theirs):
                 ends = [function.axis(interval[end]) if index == 0 else math.log(function.rate(interval[end])) for end in ("low", "high")]
                 steep = drops.index(max(drops))
                 inside = ends[steep] + 0.01 * (ends[1 - steep] - ends[steep])
-                alike = 2 * (function.best({index: inside})[0] - reported) <= min(drops)
+                alike = 2 * function.weight * (function.best({index: inside})[0] - reported) <= min(drops)
             report.check(f"{path}.{name}_interval.low", alike, f"likelihood ratios {drops}")
 
 
@@ -1360,12 +1377,16 @@ def compare_groups(study, sessions):
         fit = group["fit"]
         if not fit:
             continue
-        path, people = f"groups[{i}].fit", []
+        path, people, counts = f"groups[{i}].fit", [], []
         for session in sessions.values():
             condition = group["condition"] or session.conditions[0]
             levels, trials, positive = counted(session, condition, log_scale)
             function = Function(kind.fit, levels, trials, positive, log_scale)
-            people.append((function.u, function.n, function.k))
+            counts.append(function.n.sum())
+            unsure = sum(r["response"] == "unsure" for r in session.of(condition))
+            if unsure:
+                function.weigh(function.best()[1], unsure)
+            people.append((function.u, function.weight * function.n, function.weight * function.k))
         model = Mixed(kind.fit, people, fit["lapse"])
         names = ("intercept", "rate", "intercept_sd", "rate_sd", "correlation")
         at = [fit[name] for name in names]
@@ -1374,7 +1395,7 @@ def compare_groups(study, sessions):
         modes = model.modes
         for j, (effects, person) in enumerate(zip(modes, people)):
             u = -effects[0] / effects[1]
-            study.same(f"{path}.participants[{j}].trials", person[1].sum())
+            study.same(f"{path}.participants[{j}].trials", round(counts[j]))
             study.same(f"{path}.participants[{j}].threshold.value", 10 ** (u / 20) if function.log else u, 1e-3)
             study.same(f"{path}.participants[{j}].slope", math.exp(math.log(effects[1])) / (math.log(10) / 20) if log_scale else 1 / effects[1], 2e-3)
         u = -fit["intercept"] / fit["rate"]
@@ -1424,6 +1445,8 @@ def compare_r(study, folder, kind):
     printed = subprocess.run(["Rscript", SCRIPT.with_suffix(".R"), folder], capture_output=True, text=True, check=True).stdout
     lines = list(csv.reader(printed.splitlines()))
     groups = {group["condition"] or "all trials": group["fit"] for group in document["groups"] if group["fit"]}
+    if kind.name == "unforced":
+        groups = {}  # lme4 knows no answers that count as fractions
     for what in ("threshold", "rate", "log_likelihood"):
         study.check("study.R", [row[1] for row in lines if row[0] == what] == list(groups), f"{what}: {lines}, {list(groups)}")
     for name, fit in groups.items():

@@ -38,8 +38,8 @@ link <- function(name, guess, lapse) {
 for (i in seq_len(nrow(groups))) {
   group <- groups[i, ]
   part <- answers[answers$condition == group$condition, ]
-  if (any(part$positive %% 1 != 0)) {
-    message("no comparison for ", group$condition, ": unsure answers count as fractions, which lme4 rounds")
+  if (any(part$weight != 1)) {
+    message("no comparison for ", group$condition, ": unsure answers count as fractions with a weight, not as lme4 counts")
     next
   }
   # lme4 wants levels of the order of 1
