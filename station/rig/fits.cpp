@@ -50,8 +50,8 @@ void require_agreement(const physics::BoundaryFit& fit, const std::vector<Bounda
 
 BoundaryFit fit_boundaries(const Rig& rig, const std::string& edge, std::vector<BoundaryPoint> points) {
   if (points.size() > kMostBoundaries)
-    throw core::UsageError(fmt::format("{} boundaries are too many for the fit; give at most {}",
-                                       points.size(), kMostBoundaries));
+    throw core::Refusal(
+        core::phrase("series.too_many", {core::plain(points.size()), core::plain(kMostBoundaries)}));
   try {
     physics::MapOptions options;
     options.edge = physics::parse_edge(edge);
