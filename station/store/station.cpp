@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <string_view>
 #include <utility>
@@ -113,11 +115,28 @@ std::string lasting_machine_id(const std::string& root) {
   return is_filler(id) || !everybody_may_read(path) || lasts_until_shutdown(path, root) ? "" : id;
 }
 
-/// The first number that the maker gave to this one board or computer.
-std::string board_number(const std::string& root) {
+/// The folder of the disk (not of its partition) that holds /etc; "" if that is no single disk.
+std::string disk_of_system(const std::string& root) {
+  struct stat state {};
+  std::error_code error;
+  if (::stat((root + "/etc").c_str(), &state) != 0) return "";
+  const auto folder = std::filesystem::canonical(
+      fmt::format("{}/sys/dev/block/{}:{}", root, major(state.st_dev), minor(state.st_dev)), error);
+  if (error) return "";
+  return std::filesystem::exists(folder / "partition", error) ? folder.parent_path().string()
+                                                              : folder.string();
+}
+
+/// The first number that a maker gave to this one board, computer or disk.
+std::string hardware_number(const std::string& root) {
+  std::vector<std::string> places;
   for (const auto* name : {"/sys/firmware/devicetree/base/serial-number", "/sys/class/dmi/id/product_uuid",
-                           "/sys/class/dmi/id/board_serial", "/sys/class/dmi/id/product_serial"}) {
-    const auto path = root + name;
+                           "/sys/class/dmi/id/board_serial", "/sys/class/dmi/id/product_serial"})
+    places.push_back(root + name);
+  if (const auto disk = disk_of_system(root); !disk.empty())
+    for (const auto* name : {"/device/cid", "/wwid", "/device/wwid", "/serial", "/device/serial"})
+      places.push_back(disk + name);
+  for (const auto& path : places) {
     if (!everybody_may_read(path)) continue;
     if (auto value = first_line(path); !is_of_all_machines(value)) return value;
   }
@@ -237,12 +256,12 @@ NamedStation station_in(Database& database) {
 }  // namespace
 
 MachineTraits machine_traits(const std::string& root) {
-  return {lasting_machine_id(root), board_number(root)};
+  return {lasting_machine_id(root), hardware_number(root)};
 }
 
 std::string machine_identity(const std::string& root) {
-  const auto [id, board] = machine_traits(root);
-  return id.empty() && board.empty() ? "" : core::sha256(id + "\n" + board);
+  const auto [id, hardware] = machine_traits(root);
+  return id.empty() && hardware.empty() ? "" : core::sha256(id + "\n" + hardware);
 }
 
 std::string suggested_station_name(const std::string& root) {

@@ -11,18 +11,19 @@ namespace turnpoint::store {
 // host that gets another name changes nothing, and a copy of a card or of an image is noticed.
 
 /// Identifies this machine: a SHA-256 over /etc/machine-id, which a copied card or image shares, and a number
-/// that the board's maker gave to it, which it does not share: the serial number in the device tree, the UUID
-/// of the firmware (DMI), or the serial number there. Values that a maker never set ("Default string", zeros)
-/// and a machine-id that the next boot replaces do not count, so that no two machines are one because of
-/// them, and no machine becomes another one. The result does not depend on who asks: a number counts only if
-/// every user may read it, as the package arranges. "" if nothing is left; such a machine is never taken for
-/// another one. `root` is the folder in which to look; tests give another one.
+/// that a maker gave to the hardware, which it does not share: the serial number of the board in the device
+/// tree, the UUID of the firmware (DMI), the serial number there, or else that of the disk with the system.
+/// Values that a maker never set ("Default string", zeros) and a machine-id that the next boot replaces do
+/// not count, so that no two machines are one because of them, and no machine becomes another one. The result
+/// does not depend on who asks: a number counts only if every user may read it, as the package arranges. ""
+/// if nothing is left; such a machine is never taken for another one. `root` is the folder in which to look;
+/// tests give another one.
 std::string machine_identity(const std::string& root = "");
 
-/// What machine_identity() rests on. Without a board's number, nobody notices that a disk was copied to
-/// another machine; without a lasting machine-id, two virtual machines of one image may count as one.
+/// What machine_identity() rests on. Without a number of the hardware, nobody notices that a disk was copied
+/// to another machine; without a lasting machine-id, two virtual machines of one image may count as one.
 struct MachineTraits {
-  std::string machine_id, board;
+  std::string machine_id, hardware;
 };
 MachineTraits machine_traits(const std::string& root = "");
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <sys/mount.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -512,7 +513,7 @@ TEST_CASE("a machine is known by its machine-id and its board, and an image's na
   const auto of_board = machine.identity();
   CHECK(of_board != of_pc);
   CHECK(of_board.size() == 64);
-  CHECK(machine_traits(machine.folder.path).board == "100000008a7d41f3");
+  CHECK(machine_traits(machine.folder.path).hardware == "100000008a7d41f3");
   machine.write("etc/turnpoint/station", "lab-3\n");
   CHECK(suggested_station_name(machine.folder.path) == "lab-3");
 }
@@ -575,7 +576,7 @@ TEST_CASE("what a maker never set does not make two machines one", "[store]") {
   const Machine machine;
   machine.write(machine.uuid, "03000200-0400-0500-0006-000700080009\n");
   machine.write(machine.serial, "BSS-0123-X7421\n");
-  CHECK(machine_traits(machine.folder.path).board == "BSS-0123-X7421");
+  CHECK(machine_traits(machine.folder.path).hardware == "BSS-0123-X7421");
 }
 
 TEST_CASE("numbers that makers give to one board each count", "[store]") {
@@ -598,7 +599,7 @@ TEST_CASE("numbers that makers give to one board each count", "[store]") {
     const Machine machine;
     machine.write(machine.board, number);
     INFO(number);
-    CHECK(machine_traits(machine.folder.path).board == number);
+    CHECK(machine_traits(machine.folder.path).hardware == number);
     identities.insert(machine.identity());
   }
   CHECK(identities.size() == given.size());
@@ -613,9 +614,38 @@ TEST_CASE("numbers that makers give to one board each count", "[store]") {
   for (int k = 0; k < 2000; ++k) {
     std::filesystem::remove(machine.folder / machine.board);
     machine.write(machine.board, fmt::format("10000000{:08x}", static_cast<std::uint32_t>(random())));
-    lost += machine_traits(machine.folder.path).board.empty() ? 1 : 0;
+    lost += machine_traits(machine.folder.path).hardware.empty() ? 1 : 0;
   }
   CHECK(lost == 0);
+}
+
+TEST_CASE("a copied disk in a computer whose maker set no number is known by its own number", "[store]") {
+  const auto with = [&](const std::string& file, const std::string& number) {
+    const Machine machine;
+    machine.write(machine.uuid, "03000200-0400-0500-0006-000700080009\n");
+    const auto disk = machine.folder / "sys/devices/mmcblk0", blocks = machine.folder / "sys/dev/block";
+    std::filesystem::create_directories(disk + "/mmcblk0p2");
+    std::filesystem::create_directories(blocks);
+    machine.write("sys/devices/mmcblk0/mmcblk0p2/partition", "2\n");
+    machine.write("sys/devices/mmcblk0/" + file, number + "\n");
+    const auto number_of_device = status_of(machine.folder / "etc").st_dev;
+    std::filesystem::create_symlink(
+        disk + "/mmcblk0p2",
+        blocks + fmt::format("/{}:{}", major(number_of_device), minor(number_of_device)));
+    const auto alone = machine.identity();
+    machine.write(machine.serial, "BSS-0123-X7421\n");  // a number of the board comes before that of the disk
+    CHECK(machine_traits(machine.folder.path).hardware == "BSS-0123-X7421");
+    return alone;
+  };
+  const auto plain = Machine().identity();
+  std::set<std::string> identities{plain};
+  for (const auto* number : {"035344534836344780b1f0c2a4015a00", "035344534836344780b1f0c2a5015a00"})
+    identities.insert(with("device/cid", number));
+  identities.insert(with("wwid", "eui.0025385b21404f7a"));
+  identities.insert(
+      with("device/wwid", "t10.ATA     Samsung SSD 860 EVO 250GB               S3YJNB0K512345X"));
+  CHECK(identities.size() == 5);
+  CHECK(with("serial", "00000000000000000000") == plain);
 }
 
 TEST_CASE("a machine-id that the next boot replaces is no identity", "[store]") {
