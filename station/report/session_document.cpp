@@ -15,10 +15,6 @@ using analysis::Estimate;
 using core::phrase, core::plain;
 using Look = Text::Look;
 
-core::Phrase second_minus_first(const std::string& first, const std::string& second) {
-  return {"", "", {name_of(second), plain(" \u2212 "), name_of(first)}};
-}
-
 Cell level_cell(const std::optional<double>& level) { return amount(level, 4, "all"); }
 
 Text right_of(const analysis::Proportion& right) {

@@ -95,10 +95,10 @@ void add_effects(const Study& study, Document& document) {
   if (p_values) table.columns.insert(table.columns.end(), {"p", "p, corrected"});
   for (const auto& effect : study.effects) {
     auto& cells = table.rows.emplace_back();
-    cells = {with_unit(effect.measure, effect.unit),
-             Text(name_of(effect.second)) + " \u2212 " + name_of(effect.first) +
-                 (effect.between_groups ? ", groups" : ""),
-             count(effect.persons), estimated(effect.difference), amount(effect.standardised, 2)};
+    cells = {
+        with_unit(effect.measure, effect.unit),
+        Text(second_minus_first(effect.first, effect.second)) + (effect.between_groups ? ", groups" : ""),
+        count(effect.persons), estimated(effect.difference), amount(effect.standardised, 2)};
     if (!p_values) continue;
     cells.push_back(amount(effect.difference ? effect.difference->p : std::nullopt, 2));
     cells.push_back(amount(effect.corrected_p, 2));
