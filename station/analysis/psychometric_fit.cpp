@@ -245,7 +245,7 @@ template <class Positive>
 std::vector<LevelCount> count(const std::vector<TrialRecord>& trials, double admitted, Positive positive) {
   std::vector<LevelCount> result;
   for (const auto& trial : trials) {
-    if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered || !trial.level) continue;
+    if (!counted(trial) || !trial.level) continue;
     const std::optional<bool> value = positive(trial);
     if (value)
       result.push_back({*trial.level, 1, *value ? 1 : 0});

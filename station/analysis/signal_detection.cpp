@@ -92,8 +92,7 @@ std::vector<Detection> detect(const std::vector<TrialRecord>& trials, const std:
                               Detecting detecting, int positive, std::size_t most_levels) {
   std::map<std::string, Collected> conditions;
   for (const auto& trial : trials)
-    if (trial.type == TrialType::experimental && trial.outcome == Outcome::answered && trial.response &&
-        trial.right_choice)
+    if (counted(trial) && trial.response && trial.right_choice)
       collect(trial, detecting, positive, conditions[trial.instruction]);
   const double scale = detecting == Detecting::forced_choice ? 1 / std::numbers::sqrt2 : 1;
   std::vector<Detection> result;
@@ -180,9 +179,7 @@ std::vector<RatedDetection> curves_of(const std::vector<TrialRecord>& trials,
     RatedDetection all{condition, std::nullopt, none, none, {}, {}, {}};
     std::map<double, std::vector<int>> levels;
     for (const auto& trial : trials) {
-      if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered || !trial.response ||
-          trial.instruction != condition)
-        continue;
+      if (!counted(trial) || !trial.response || trial.instruction != condition) continue;
       const std::optional<Rated> found = rated(trial);
       if (!found) continue;
       const auto at = static_cast<std::size_t>(found->rating);
@@ -203,8 +200,7 @@ std::vector<RatedDetection> rocs(const std::vector<TrialRecord>& trials,
                                  std::size_t most_levels) {
   int degrees = 0;
   for (const auto& trial : trials)
-    if (trial.type == TrialType::experimental && trial.outcome == Outcome::answered && trial.right_choice)
-      degrees = std::max(degrees, trial.confidence.value_or(0));
+    if (counted(trial) && trial.right_choice) degrees = std::max(degrees, trial.confidence.value_or(0));
   return curves_of(trials, order, 2 * degrees, most_levels, [&](const TrialRecord& trial) {
     if (!trial.right_choice || !trial.confidence) return std::optional<Rated>();
     const int rating =

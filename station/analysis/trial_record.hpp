@@ -56,6 +56,11 @@ struct TrialRecord {
   std::size_t part = 0;  ///< number of the analysis to which the trial belongs; 0 if there is only one
 };
 
+/// Whether an analysis of answers counts the trial: it is no practice and no catch trial, and was answered.
+inline bool counted(const TrialRecord& trial) {
+  return trial.type == TrialType::experimental && trial.outcome == Outcome::answered;
+}
+
 /// Returns the conditions of the experimental trials: first those in `order`, then the others in the order in
 /// which they first occur.
 std::vector<std::string> conditions_of(const std::vector<TrialRecord>& trials,

@@ -30,6 +30,12 @@ struct Points {
   std::vector<bool> open;
   int series = 0;
   std::string name;
+
+  /// Adds a marker with an error bar.
+  void add(double at, double height, double from, double to) {
+    x.push_back(at), y.push_back(height);
+    low.push_back(from), high.push_back(to);
+  }
 };
 
 /// A horizontal interval at one height, such as that of a threshold, with a stroke at each end.

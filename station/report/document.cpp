@@ -126,10 +126,10 @@ std::string why_estimates_differ(const std::vector<OwnEstimate>& estimates, bool
         "analysis says. ";
   if (choices.contains(Choice::series))
     why +=
-        "The method of limits takes the middle between the last level with the old answer and the first "
-        "with the new one, in each series. If ascending series change at higher levels than descending "
-        "ones, the participant tended to repeat answers (habituation); if at lower levels, to expect the "
-        "change, or some answers changed by chance. The fit uses all answers, as if neither happened. ";
+        "The method of limits takes the middle between the last level with the old answer and the first with "
+        "the new one, in each series. If ascending series change at higher levels than descending ones, the "
+        "participant tended to repeat answers (habituation); if at lower levels, to expect the change, or "
+        "some answers changed by chance. The fit uses all answers, as if neither happened. ";
   if (!settles_at.empty())
     why += fmt::format(
         "A staircase settles where {} of the answers are right (or are the tracked answer), which need not "

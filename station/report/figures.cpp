@@ -25,10 +25,7 @@ Points observed(const NamedFit& named, int series, const std::string& name) {
   for (const auto& point : named.fit.data) {
     if (point.level == analysis::kNoise) continue;
     const auto interval = analysis::wilson(point.sum(), point.trials);
-    points.x.push_back(point.level);
-    points.y.push_back(point.sum() / point.trials);
-    points.low.push_back(interval.low);
-    points.high.push_back(interval.high);
+    points.add(point.level, point.sum() / point.trials, interval.low, interval.high);
     points.weight.push_back(point.trials);
   }
   return points;
@@ -285,8 +282,7 @@ std::optional<Figure> judgement_figure(const Summary& summary) {
     for (const auto& level : judged.levels) {
       count += level.values.size();
       if (!level.mean) continue;
-      points.x.push_back(level.level), points.y.push_back(level.mean->value);
-      points.low.push_back(level.mean->interval.low), points.high.push_back(level.mean->interval.high);
+      points.add(level.level, level.mean->value, level.mean->interval.low, level.mean->interval.high);
     }
     if (points.x.empty()) continue;
     line.x = points.x, line.y = points.y;
@@ -436,9 +432,8 @@ std::optional<Figure> quantile_probability_figure(const Summary& summary) {
           const int answered = difficulty.right.observed + difficulty.wrong.observed;
           if (answers->observed_quantiles.empty() || answered == 0) continue;
           const auto& observed = answers->observed_quantiles[q];
-          points.x.push_back(static_cast<double>(answers->observed) / answered);
-          points.y.push_back(observed.value);
-          points.low.push_back(observed.interval.low), points.high.push_back(observed.interval.high);
+          points.add(static_cast<double>(answers->observed) / answered, observed.value, observed.interval.low,
+                     observed.interval.high);
           times.push_back(observed.interval.high);
         }
       std::sort(predicted.begin(), predicted.end());
@@ -547,18 +542,12 @@ std::optional<Figure> trade_figure(const Summary& summary) {
     Line bin_line;
     for (const auto& bin : entry.caf) {
       const auto interval = analysis::wilson(bin.correct, bin.trials);
-      bins.x.push_back(bin.mean_time_s);
-      bins.y.push_back(static_cast<double>(bin.correct) / bin.trials);
-      bins.low.push_back(interval.low);
-      bins.high.push_back(interval.high);
+      bins.add(bin.mean_time_s, static_cast<double>(bin.correct) / bin.trials, interval.low, interval.high);
       accuracies.push_back(interval.low);
     }
     for (const auto& cell : entry.cells) {
       if (!cell.mean_correct_s || cell.answered < kFewestOfCell || categories) continue;
-      by_difficulty.x.push_back(*cell.mean_correct_s);
-      by_difficulty.y.push_back(cell.proportion_correct);
-      by_difficulty.low.push_back(cell.accuracy.low);
-      by_difficulty.high.push_back(cell.accuracy.high);
+      by_difficulty.add(*cell.mean_correct_s, cell.proportion_correct, cell.accuracy.low, cell.accuracy.high);
       accuracies.push_back(cell.accuracy.low);
     }
     caf_times.insert(caf_times.end(), bins.x.begin(), bins.x.end());
@@ -606,8 +595,7 @@ std::optional<Figure> macro_figure(const Summary& summary) {
     Line across;
     across.x = {time.interval.low, time.interval.high}, across.y = {height.value, height.value};
     Points point;
-    point.x = {time.value}, point.y = {height.value};
-    point.low = {height.interval.low}, point.high = {height.interval.high};
+    point.add(time.value, height.value, height.interval.low, height.interval.high);
     across.series = point.series = own;
     point.name = words(name_of(entry.instruction));
     chart.layers.insert(chart.layers.end(), {across, point});
@@ -671,10 +659,10 @@ std::optional<Figure> signal_figure(const Summary& summary) {
     points.name = line.name = words(name_of(curve.condition));
     for (const auto& point : curve.points) {
       if (!point.d_prime) continue;
-      points.x.push_back(point.time_s), points.y.push_back(point.d_prime->value);
-      points.low.push_back(point.d_prime->interval.low), points.high.push_back(point.d_prime->interval.high);
+      const auto& interval = point.d_prime->interval;
+      points.add(point.time_s, point.d_prime->value, interval.low, interval.high);
       times.push_back(point.time_s);
-      heights.insert(heights.end(), {point.d_prime->interval.low, point.d_prime->interval.high});
+      heights.insert(heights.end(), {interval.low, interval.high});
     }
     const double last_s = *std::max_element(times.begin(), times.end());
     if (curve.asymptote && curve.rate_per_s && curve.intercept_s)

@@ -15,10 +15,6 @@ using analysis::Estimate;
 using core::phrase, core::plain;
 using Look = Text::Look;
 
-core::Phrase second_minus_first(const std::string& first, const std::string& second) {
-  return {"", "", {name_of(second), plain(" \u2212 "), name_of(first)}};
-}
-
 Cell level_cell(const std::optional<double>& level) { return amount(level, 4, "all"); }
 
 Text right_of(const analysis::Proportion& right) {
@@ -113,10 +109,8 @@ void add_threshold_curves(const Summary& summary, Document& document) {
   }
   document.explain(
       "Means and central 95 % credible intervals of the procedure's posterior, with the prior and the grid "
-      "of the "
-      "protocol. All answers determine the threshold at each place, because the procedure assumes that it "
-      "changes by "
-      "its gradient.");
+      "of the protocol. All answers determine the threshold at each place, because the procedure assumes "
+      "that it changes by its gradient.");
 }
 
 // --- settings, ratings and numbers
@@ -171,10 +165,9 @@ void add_judgements(const Summary& summary, Document& document) {
     document.table(std::move(table));
     document.remark(judged.statements);
   }
-  document.explain(
-      numbers ? "95 % intervals: Student's t of the logarithms. The exponent is the slope of log number "
-                "over log level (Stevens\u2019 law)."
-              : "95 % intervals: Student's t.");
+  document.explain(numbers ? "95 % intervals: Student's t of the logarithms. The exponent is the slope of "
+                             "log number over log level (Stevens\u2019 law)."
+                           : "95 % intervals: Student's t.");
 }
 
 // --- answers by stimulus, and sensitivity
@@ -233,9 +226,9 @@ void add_detections(const Summary& summary, Document& document) {
   const auto yes = static_cast<std::size_t>(data.design == Design::yes_no ? data.positive : 1);
   document.explain(
       "A hit is the answer \u201c" + (yes < data.choices.size() ? data.choices[yes] : "second") +
-      "\u201d in a trial in which this answer is right. A false alarm is the same answer in a trial in "
-      "which it is wrong. A positive criterion means that the participant avoids this answer. Rates have "
-      "the log-linear correction; 95 % intervals are those of Gourevitch and Galanter.");
+      "\u201d in a trial in which this answer is right. A false alarm is the same answer in a trial in which "
+      "it is wrong. A positive criterion means that the participant avoids this answer. Rates have the "
+      "log-linear correction; 95 % intervals are those of Gourevitch and Galanter.");
 }
 
 void add_rocs(const Summary& summary, Document& document) {
@@ -273,16 +266,13 @@ void add_rocs(const Summary& summary, Document& document) {
                ? "Ratings go from the surest no to the surest yes."
                : "Answer and confidence together are a rating, from the surest no to the surest yes.") +
       " Each point counts the trials that are rated at least so high: hits with a signal, false alarms "
-      "without one. An "
-      "area of 0.5 is chance. The area is that under straight lines, which is a little smaller than under a "
-      "smooth "
-      "curve; its 95 % interval is that of Newcombe (2006, method 5). d\u2032 and " +
+      "without one. An area of 0.5 is chance. The area is that under straight lines, which is a little "
+      "smaller than under a smooth curve; its 95 % interval is that of Newcombe (2006, method 5). d\u2032 "
+      "and " +
       unequal +
       " are maximum likelihood fits of normal distributions, without and with a standard deviation of its "
-      "own for "
-      "trials with a signal (1 is that of trials without); their intervals follow from the expected "
-      "information. They "
-      "are left out where the answers do not determine them.");
+      "own for trials with a signal (1 is that of trials without); their intervals follow from the expected "
+      "information. They are left out where the answers do not determine them.");
 }
 
 const char* explanation(analysis::Deciding model) {
@@ -370,22 +360,15 @@ void add_signal(const Summary& summary, Document& document) {
   document.table(std::move(levels));
   document.explain(
       "Only answers within the window after the signal are used. The curve is d\u2032(t) = asymptote (1 "
-      "\u2212 "
-      "exp(\u2212rate (t \u2212 intercept))); t is the mean response time at a lag, so it includes the time "
-      "that people "
-      "need to answer the signal. Each lag has its own criterion. The values are the most probable ones, "
-      "with 95 % "
-      "profile intervals. Priors: the asymptote is half-normal with a standard deviation of 1.8; the rate is "
-      "log-normal "
-      "around 3 per second, with a standard deviation of 1.5 in its natural logarithm; the intercept is "
-      "uniform up to "
-      "the longest mean response time. With few trials a rate is drawn towards 3 per second. An end that the "
-      "answers do "
-      "not determine is named as such. The p values compare the model in which both conditions share one "
-      "parameter with "
-      "two curves of their own (chi squared, one degree of freedom). d\u2032 at each lag has the log-linear "
-      "correction "
-      "and the interval of Gourevitch and Galanter.");
+      "\u2212 exp(\u2212rate (t \u2212 intercept))); t is the mean response time at a lag, so it includes "
+      "the time that people need to answer the signal. Each lag has its own criterion. The values are the "
+      "most probable ones, with 95 % profile intervals. Priors: the asymptote is half-normal with a standard "
+      "deviation of 1.8; the rate is log-normal around 3 per second, with a standard deviation of 1.5 in its "
+      "natural logarithm; the intercept is uniform up to the longest mean response time. With few trials a "
+      "rate is drawn towards 3 per second. An end that the answers do not determine is named as such. The p "
+      "values compare the model in which both conditions share one parameter with two curves of their own "
+      "(chi squared, one degree of freedom). d\u2032 at each lag has the log-linear correction and the "
+      "interval of Gourevitch and Galanter.");
 }
 
 // --- speed and accuracy
@@ -608,22 +591,18 @@ void add_trade(const Summary& summary, Document& document) {
   if (shows(data, "ez"))
     document.explain(
         "Boundary, time outside the decision and drift come from the diffusion model, fitted to all answers, "
-        "with those "
-        "that came too late as decisions not made by the deadline. Times that the exclusion rule leaves out "
-        "elsewhere "
-        "are part of this fit: trimming would change the distribution that is fitted. The numbers are "
-        "medians of the "
-        "posterior distribution, with 95 % intervals.");
+        "with those that came too late as decisions not made by the deadline. Times that the exclusion rule "
+        "leaves out elsewhere are part of this fit: trimming would change the distribution that is fitted. "
+        "The numbers are medians of the posterior distribution, with 95 % intervals.");
   for (const auto& [part, what, more] :
        {std::tuple("lisas", "LISAS", ""),
         {"ies", "The inverse efficiency score",
          ", and suits few errors only, up to 10 % (Bruyer & Brysbaert 2011)"}})
     if (shows(data, part))
-      document.explain(
-          std::string(what) +
-          " combines speed and accuracy, but is not free of the trade-off itself: it can change when only "
-          "the boundary does (Liesefeld & Janczyk 2019)" +
-          more + ". Do not read its differences as differences of ability.");
+      document.explain(std::string(what) +
+                       " combines speed and accuracy, but is not free of the trade-off itself: it can change "
+                       "when only the boundary does (Liesefeld & Janczyk 2019)" +
+                       more + ". Do not read its differences as differences of ability.");
   for (const auto& entry : trade.instructions) document.remark(entry.statements, entry.instruction);
   document.remark(trade.statements);
   add_model(summary, document);
@@ -701,15 +680,12 @@ void add_finger(const Summary& summary, Document& document) {
     document.figure("friction", std::move(friction));
     document.explain(
         "All conditions together. Filled markers: means of 3 or more trials at one planned boundary. Open "
-        "markers: "
-        "single trials, side by side if they have the same boundary. The felt boundary is where friction "
-        "changed under "
-        "the finger; the planned one is the place that the scene\u2019s " +
+        "markers: single trials, side by side if they have the same boundary. The felt boundary is where "
+        "friction changed under the finger; the planned one is the place that the scene\u2019s " +
         Text("edge", Look::code) + " names. They should agree for an edge that friction defines, " +
         Text("{ friction = \u2026 }", Look::code) +
         "; other edges are defined at other places. Along the strip: means of the strokes in bins of 2 mm, "
-        "with bars of "
-        "one standard error, where 3 or more strokes were made.");
+        "with bars of one standard error, where 3 or more strokes were made.");
   }
   Table repeats{{"Level", "Presented", "Presented again because of the movement"}, {}};
   for (const auto& at : summary.data.repeats)
@@ -723,12 +699,9 @@ void add_finger(const Summary& summary, Document& document) {
   }
   document.explain(
       "Answered trials without practice. Force and speed are means over a trial\u2019s strokes; with more "
-      "than 40 "
-      "trials, a marker is the mean of several trials, with a bar from the smallest to the largest. Friction "
-      "is lateral "
-      "force divided by normal force, in the scene presented last. 95 % intervals: Student\u2019s t over "
-      "trials; for a "
-      "single trial, 1.96 standard errors.");
+      "than 40 trials, a marker is the mean of several trials, with a bar from the smallest to the largest. "
+      "Friction is lateral force divided by normal force, in the scene presented last. 95 % intervals: "
+      "Student\u2019s t over trials; for a single trial, 1.96 standard errors.");
 }
 
 }  // namespace

@@ -15,14 +15,12 @@ std::string with_unit(const std::string& name, const std::string& unit) {
 void add_people(const Study& study, Document& document) {
   const auto& n = study.sessions;
   document.heading("Participants");
-  document.say(
-      std::string(
-          "Completed sessions count. A session that was not completed and was begun again later does not "
-          "count. A session that was not completed and not begun again ") +
-      (n.incomplete_count ? "counts" : "does not count") +
-      ", as the protocol decides (incomplete_sessions). Counted: " + std::to_string(n.counted()) + " of " +
-      std::to_string(n.found) + " sessions; begun again later: " + std::to_string(n.superseded) +
-      "; not completed: " + std::to_string(n.incomplete) + ".");
+  document.say(std::string("Completed sessions count. A session that was not completed and was begun again "
+                           "later does not count. A session that was not completed and not begun again ") +
+               (n.incomplete_count ? "counts" : "does not count") +
+               ", as the protocol decides (incomplete_sessions). Counted: " + std::to_string(n.counted()) +
+               " of " + std::to_string(n.found) + " sessions; begun again later: " +
+               std::to_string(n.superseded) + "; not completed: " + std::to_string(n.incomplete) + ".");
   if (study.rules.empty()) {
     document.remark(core::phrase("statement.no_rules"));
   } else {
@@ -79,11 +77,9 @@ void add_groups(const Study& study, Document& document) {
   for (const auto& group : study.groups) add_group(group, study, document);
   document.explain(
       "Partial pooling: across participants, intercept and slope on the function\u2019s axis follow a "
-      "bivariate normal "
-      "distribution. The fit is maximum likelihood with Laplace\u2019s approximation. 95 % intervals of the "
-      "group: delta "
-      "method and Student\u2019s t. The intervals of participants include the uncertainty of the "
-      "distribution.");
+      "bivariate normal distribution. The fit is maximum likelihood with Laplace\u2019s approximation. 95 % "
+      "intervals of the group: delta method and Student\u2019s t. The intervals of participants include the "
+      "uncertainty of the distribution.");
 }
 
 void add_effects(const Study& study, Document& document) {
@@ -95,10 +91,10 @@ void add_effects(const Study& study, Document& document) {
   if (p_values) table.columns.insert(table.columns.end(), {"p", "p, corrected"});
   for (const auto& effect : study.effects) {
     auto& cells = table.rows.emplace_back();
-    cells = {with_unit(effect.measure, effect.unit),
-             Text(name_of(effect.second)) + " \u2212 " + name_of(effect.first) +
-                 (effect.between_groups ? ", groups" : ""),
-             count(effect.persons), estimated(effect.difference), amount(effect.standardised, 2)};
+    cells = {
+        with_unit(effect.measure, effect.unit),
+        Text(second_minus_first(effect.first, effect.second)) + (effect.between_groups ? ", groups" : ""),
+        count(effect.persons), estimated(effect.difference), amount(effect.standardised, 2)};
     if (!p_values) continue;
     cells.push_back(amount(effect.difference ? effect.difference->p : std::nullopt, 2));
     cells.push_back(amount(effect.corrected_p, 2));
@@ -106,25 +102,20 @@ void add_effects(const Study& study, Document& document) {
   document.table(std::move(table));
   document.explain(
       "Each participant counts once, with estimates from the participant\u2019s own trials. 95 % intervals "
-      "of means: "
-      "Student\u2019s t. Effects within participants: Student\u2019s t of the participants\u2019 "
-      "differences, in standard "
-      "deviations of these differences (d" +
+      "of means: Student\u2019s t. Effects within participants: Student\u2019s t of the participants\u2019 "
+      "differences, in standard deviations of these differences (d" +
       Text("z", Look::below) +
       "). Effects between groups: Welch\u2019s t of the difference of the means, in pooled standard "
       "deviations (d" +
       Text("s", Look::below) +
       "). The balanced integration score (BIS) is the z score of accuracy minus that of the mean time of "
-      "right answers; "
-      "both standardise over all participants who count and all their conditions. " +
-      (!p_values
-           ? "The intervals are not corrected for the number of comparisons."
-           : std::string(
-                 "p values are two-sided, of Student\u2019s or Welch\u2019s t; the last column corrects "
-                 "them by Holm\u2019s method for the number of ") +
-                 (holm == protocol::Holm::all ? "all effects in this table"
-                                              : "pairs of conditions that a measure compares") +
-                 ". The intervals are not corrected."));
+      "right answers; both standardise over all participants who count and all their conditions. " +
+      (!p_values ? "The intervals are not corrected for the number of comparisons."
+                 : std::string("p values are two-sided, of Student\u2019s or Welch\u2019s t; the last column "
+                               "corrects them by Holm\u2019s method for the number of ") +
+                       (holm == protocol::Holm::all ? "all effects in this table"
+                                                    : "pairs of conditions that a measure compares") +
+                       ". The intervals are not corrected."));
 }
 
 void add_means(const Study& study, Document& document) {

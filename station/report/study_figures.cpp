@@ -57,10 +57,8 @@ Points answers_of(const Study& study, const GroupFit& group, int series) {
   for (const auto& [at, level] : levels) {
     const auto mean = level.shares.size() < 3 ? std::nullopt : analysis::student_mean(level.shares);
     if (!mean) continue;
-    points.x.push_back(at), points.y.push_back(mean->value);
+    points.add(at, mean->value, std::max(0.0, mean->interval.low), std::min(1.0, mean->interval.high));
     points.weight.push_back(level.trials);
-    points.low.push_back(std::max(0.0, mean->interval.low));
-    points.high.push_back(std::min(1.0, mean->interval.high));
   }
   return points;
 }
@@ -147,10 +145,9 @@ std::optional<Figure> shrinkage_figure(const Study& study) {
       ++number;
       codes.push_back(person.person);
       if (person.threshold) {
-        pooled.x.push_back(number), pooled.y.push_back(person.threshold->value);
-        pooled.low.push_back(person.threshold->interval.low);
-        pooled.high.push_back(person.threshold->interval.high);
-        all.insert(all.end(), {pooled.y.back(), pooled.low.back(), pooled.high.back()});
+        const auto& [low, high, confidence] = person.threshold->interval;
+        pooled.add(number, person.threshold->value, low, high);
+        all.insert(all.end(), {person.threshold->value, low, high});
       }
       for (const auto& single : study.persons)
         for (const auto& named : single.fits)
@@ -238,8 +235,7 @@ std::optional<Chart> course_chart(const Study& study, const std::string& heights
       for (const auto& time : study.means) {
         if (time.measure != wanted || time.condition != condition || !time.mean) continue;
         const auto &x = *time.mean, &y = *height.mean;
-        points.x.push_back(x.value), points.y.push_back(y.value);
-        points.low.push_back(y.interval.low), points.high.push_back(y.interval.high);
+        points.add(x.value, y.value, y.interval.low, y.interval.high);
         Line reach;
         reach.series = points.series;
         reach.x = {x.interval.low, x.interval.high}, reach.y = {y.value, y.value};

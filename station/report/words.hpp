@@ -14,6 +14,10 @@ inline core::Phrase name_of(const std::string& condition) {
   return condition.empty() ? core::phrase("figure.all_trials") : core::plain(condition);
 }
 
+inline core::Phrase second_minus_first(const std::string& first, const std::string& second) {
+  return {"", "", {name_of(second), core::plain(" \u2212 "), name_of(first)}};
+}
+
 /// A name with its unit, or with "no unit" if that is empty.
 inline core::Phrase in_unit(core::Phrase name, core::Phrase unit) {
   if (unit.empty()) unit = core::phrase("report.no_unit");
