@@ -107,7 +107,7 @@ Replicator replicator(const PsychometricFit& fit) {
 
 /// Finds one end of a profile-likelihood interval: the value of the quantity, between the estimate and
 /// `bound`, beyond which the likelihood ratio stays above `critical`. The ratio may rise and fall on the way:
-/// no value that the data allow lies outside. Returns `bound` if the ratio there is at most `critical`.
+/// of 16 values between estimate and bound, none that the data allow lies outside. Returns `bound` if the ratio there is at most `critical`.
 double profile_end(const Replicator& base, const Quantity& quantity, Theta start, double bound,
                    double best_cost, double critical) {
   const double estimate = start[quantity.parameter];

@@ -44,6 +44,7 @@ struct PowerPart {
   /// for each unwanted cue, what an observer could achieve with it alone; set in the first part only
   std::vector<rehearsal::CueReport> cues;
   bool reward = false;  ///< the observer has the boundaries that earn the most
+  std::vector<rehearsal::BestReward> rewards;  ///< the same in all parts
   bool whole = true;  ///< false if a signal stopped the work
 };
 
@@ -193,10 +194,40 @@ Json cue_json(const rehearsal::CueReport& cue) {
           {"error", exact(cue.error)}};
 }
 
+Json to_json(const rehearsal::Trade& trade) {
+  return {{"points_per_minute", exact(trade.points_per_minute)},
+          {"right", exact(trade.right)},
+          {"response_time_s", exact(trade.response_time_s)}};
+}
+
+Json to_json(const std::vector<rehearsal::BestReward>& rewards) {
+  Json list = Json::array();
+  for (const auto& reward : rewards)
+    list.push_back({{"block", reward.block},
+                    {"caution", exact(reward.caution)},
+                    {"at_end", reward.at_end},
+                    {"best", to_json(reward.best)},
+                    {"own", to_json(reward.own)}});
+  return list;
+}
+
+rehearsal::Trade trade_of(const Json& json) {
+  return {number(json.at("points_per_minute")), number(json.at("right")), number(json.at("response_time_s"))};
+}
+
+std::vector<rehearsal::BestReward> rewards_of(const Json& json) {
+  std::vector<rehearsal::BestReward> rewards;
+  for (const auto& one : json)
+    rewards.push_back({one.at("block"), number(one.at("caution")), one.at("at_end"), trade_of(one.at("best")),
+                       trade_of(one.at("own"))});
+  return rewards;
+}
+
 PowerPart part_of(const Json& json) {
   PowerPart part;
   const auto& study = json.at("study");
   part.path = json.at("path"), part.whole = json.at("whole"), part.reward = study.at("reward");
+  part.rewards = rewards_of(json.at("rewards"));
   part.protocol = study.at("protocol"), part.observer = study.at("observer");
   part.options.observers = study.at("observers"), part.options.interval_sessions = study.at("intervals");
   part.options.replicates = study.at("replicates"), part.options.seed = study.at("seed");
@@ -260,6 +291,7 @@ Json to_json(const PowerPart& part) {
           {"path", part.path},
           {"whole", part.whole},
           {"cues", cues},
+          {"rewards", to_json(part.rewards)},
           {"sessions", sessions}};
 }
 
@@ -345,23 +377,6 @@ Json to_json(const std::vector<rehearsal::CueReport>& cues) {
                     {"chance", json_number(cue.chance)},
                     {"accuracy_error", json_number(cue.error)},
                     {"above_chance", cue.above_chance()}});
-  return list;
-}
-
-Json to_json(const rehearsal::Trade& trade) {
-  return {{"points_per_minute", json_number(trade.points_per_minute)},
-          {"right", json_number(trade.right)},
-          {"response_time_s", json_number(trade.response_time_s)}};
-}
-
-Json to_json(const std::vector<rehearsal::BestReward>& rewards) {
-  Json list = Json::array();
-  for (const auto& reward : rewards)
-    list.push_back({{"block", reward.block},
-                    {"caution", json_number(reward.caution)},
-                    {"at_end", reward.at_end},
-                    {"best", to_json(reward.best)},
-                    {"own", to_json(reward.own)}});
   return list;
 }
 
@@ -512,11 +527,9 @@ void join(const Options& options, Context& context) {
   auto all = join_parts(options.join);
   const auto protocol = protocol::parse(all.protocol, all.path);
   all.options.observer = simulation::parse(all.observer);
-  std::vector<rehearsal::BestReward> rewards;
-  if (all.reward) rewards = rehearsal::best_rewards(protocol, all.options);
-  all.options.cautions = rehearsal::cautions_of(rewards);
+  all.options.cautions = rehearsal::cautions_of(all.rewards);
   rehearsal::complete(protocol, all.options, all.sessions);
-  show({rehearsal::power_of(protocol, all.options, all.sessions), all.cues, rewards, protocol.id,
+  show({rehearsal::power_of(protocol, all.options, all.sessions), all.cues, all.rewards, protocol.id,
         protocol.title, ""},
        options, context);
 }
@@ -563,7 +576,6 @@ void power(const Options& options, Context& context) {
   steps.finish = wanted.stop = work.stop();
   steps.progress = [&work](const char* what, int done, int of) { work.show(what, done, of); };
   wanted.progress = steps.counted("simulated sessions");
-  std::vector<rehearsal::BestReward> rewards;
   part.reward = options.reward;
   try {
     const auto survey = protocol::survey(protocol, rig, steps.finish, steps.counted("scenes planned"));
@@ -571,9 +583,9 @@ void power(const Options& options, Context& context) {
     if (options.reward) {
       auto tried = wanted;
       tried.progress = steps.counted("simulated sessions with other boundaries");
-      rewards = rehearsal::best_rewards(protocol, tried);
+      part.rewards = rehearsal::best_rewards(protocol, tried);
     }
-    wanted.cautions = rehearsal::cautions_of(rewards);
+    wanted.cautions = rehearsal::cautions_of(part.rewards);
     part.sessions = rehearsal::simulate_sessions(protocol, wanted);
     if (wanted.part.number == 1) part.cues = rehearsal::cue_guard(protocol, rig, survey, {}, steps).reports;
   } catch (const protocol::Abandoned&) {  // stopped before the first session
@@ -586,7 +598,7 @@ void power(const Options& options, Context& context) {
   if (!options.part.empty())
     context.out << to_json(part).dump(-1, ' ', false, kInvalidBytes) << "\n";
   else if (!part.sessions.empty())
-    show({rehearsal::power_of(protocol, wanted, part.sessions), part.cues, rewards, protocol.id,
+    show({rehearsal::power_of(protocol, wanted, part.sessions), part.cues, part.rewards, protocol.id,
           protocol.title, signal},
          options, context);
 }

@@ -35,8 +35,7 @@ bool names_a_card(const std::string& uri) {
   // other.
   static const std::regex of_card(
       "alsa:(plug:)?['\"]?(hw|plughw|default|sysdefault|front|rear|side|center_lfe|surround[0-9]+|iec958|"
-      "spdif|hdmi"
-      "|dmix|dshare|dsnoop|null)(:(.*))?");
+      "spdif|hdmi|dmix|dshare|dsnoop)(:(.*))?");
   static const std::regex named(
       "(.*,)?CARD=(?![0-9]+([,'\"].*)?$).+|(?!.*CARD=)(?![A-Z]+=)(?![0-9]*([,'\"].*)?$).+");
   std::smatch parts;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <utility>
 
 #include "station/core/records.hpp"
@@ -42,7 +44,10 @@ struct Earned {
     points += more.points, duration_s += more.duration_s, response_time_s += more.response_time_s;
     valued += more.valued, judged += more.judged, right += more.right, answered += more.answered;
   }
-  double rate() const { return 60 * points / duration_s; }
+  /// points per minute; lowest if the block was never reached
+  double rate() const {
+    return duration_s > 0 ? 60 * points / duration_s : -std::numeric_limits<double>::infinity();
+  }
   Trade trade() const {
     return {rate(), judged > 0 ? static_cast<double>(right) / judged : 0,
             answered > 0 ? response_time_s / answered : 0};
@@ -50,25 +55,40 @@ struct Earned {
 };
 using ByBlock = std::map<std::string, Earned>;
 
-/// What all planned sessions of one participant earn, by block. Without `caution`, with the observer's own
-/// boundaries.
+/// The caution in a block; empty for the observer's own boundaries.
+using CautionOf = std::function<std::optional<double>(const std::string& block)>;
+
+/// What all planned sessions of one participant earn, by block.
 ByBlock earned_in(const protocol::Protocol& protocol, const PowerOptions& options, int participant,
-                  std::optional<double> caution) {
+                  const CautionOf& caution_of) {
   const simulation::Observer observer(options.observer);
-  const auto answer = [&](const protocol::Visit&, const trial::TrialSpec&, simulation::Question question) {
-    question.caution = caution;
+  std::map<int, std::vector<std::string>> labels;  // of the blocks, by the visit's number
+  const auto answer = [&](const protocol::Visit& visit, const trial::TrialSpec& trial,
+                          simulation::Question question) {
+    auto [entry, is_new] = labels.try_emplace(visit.session);
+    if (is_new) entry->second = block_labels(protocol, visit);
+    question.caution = caution_of(entry->second.at(static_cast<std::size_t>(trial.block_index)));
     return observer.answer(question);
   };
   ByBlock earned;
   int number = 0;
   for (const auto& session : planned_sessions(protocol, options.seed, participant, observer, answer)) {
-    const auto labels = block_labels(protocol, {participant, ++number});
+    ++number;
     for (const auto& block : session.blocks)
       if (!block.start.practice)
         for (const auto& row : block.trials)
-          earned[labels.at(static_cast<std::size_t>(block.start.block_index))].add(row);
+          earned[labels[number].at(static_cast<std::size_t>(block.start.block_index))].add(row);
   }
   return earned;
+}
+
+/// The sum over so many participants.
+ByBlock earned_by(const protocol::Protocol& protocol, const PowerOptions& options, int participants,
+                  const CautionOf& caution_of) {
+  ByBlock sum;
+  for (int i = 0; i < participants; ++i)
+    for (const auto& [block, earned] : earned_in(protocol, options, i, caution_of)) sum[block].add(earned);
+  return sum;
 }
 
 /// Where the parabola through rates[first] to rates[last] is highest, by least squares; the place of the
@@ -105,42 +125,40 @@ void require_possible(const protocol::Protocol& protocol) {
 
 std::vector<BestReward> best_rewards(const protocol::Protocol& protocol, const PowerOptions& options) {
   require_possible(protocol);
+  const CautionOf own_bound = [](const auto&) { return std::nullopt; };
   int trials = 0;
-  for (const auto& [block, earned] : earned_in(protocol, options, 0, {})) trials += earned.valued;
+  for (const auto& [block, earned] : earned_in(protocol, options, 0, own_bound)) trials += earned.valued;
   if (trials == 0) throw core::UsageError(protocol.path + ": --reward: no trial gives points");
-  const int sessions = std::clamp((kTrialsTried + trials - 1) / trials, 1, kMostPeople);
-  // the last one has the observer's own boundaries
-  std::vector<ByBlock> all(static_cast<std::size_t>(kTried + 1) * static_cast<std::size_t>(sessions));
+  const int people = std::clamp((kTrialsTried + trials - 1) / trials, 1, kMostPeople);
+  std::vector<ByBlock> tried(kTried);
   in_parallel(
-      static_cast<int>(all.size()), options.threads, options.progress,
+      kTried, options.threads, options.progress,
       [&](int i) {
-        const int which = i / sessions;
-        all[static_cast<std::size_t>(i)] =
-            earned_in(protocol, options, i % sessions,
-                      which < kTried ? std::optional(caution_at(which)) : std::nullopt);
+        tried[static_cast<std::size_t>(i)] =
+            earned_by(protocol, options, people, [i](const auto&) { return caution_at(i); });
       },
       options.stop);
   if (options.stop.stop_requested()) return {};
-  std::vector<ByBlock> tried(kTried + 1);
-  for (std::size_t i = 0; i < all.size(); ++i)
-    for (const auto& [block, earned] : all[i])
-      tried[i / static_cast<std::size_t>(sessions)][block].add(earned);
   std::vector<BestReward> rewards;
-  for (const auto& [block, own] : tried.back()) {
+  for (const auto& [block, own] : earned_by(protocol, options, people, own_bound)) {
     if (own.valued == 0) continue;
     std::vector<double> rates;
-    for (int i = 0; i < kTried; ++i) rates.push_back(tried[static_cast<std::size_t>(i)][block].rate());
+    for (auto& blocks : tried) rates.push_back(blocks[block].rate());
     const auto best = static_cast<int>(std::max_element(rates.begin(), rates.end()) - rates.begin());
     BestReward& reward = rewards.emplace_back();
-    reward.block = block;
+    reward.block = block, reward.own = own.trade();
     reward.at_end = best == 0 || best == kTried - 1;
-    reward.best = tried[static_cast<std::size_t>(best)][block].trade();
-    reward.own = own.trade();
     const int first = std::max(0, best - kNeighbours), last = std::min(kTried - 1, best + kNeighbours);
     const double place =
         reward.at_end ? best : std::clamp<double>(vertex_of(rates, first, last), first, last);
     reward.caution = caution_at(place);
   }
+  const auto cautions = cautions_of(rewards);
+  auto earned = earned_by(protocol, options, people, [&](const std::string& block) {
+    const auto found = cautions.find(block);
+    return found == cautions.end() ? std::nullopt : std::optional(found->second);
+  });
+  for (auto& reward : rewards) reward.best = earned[reward.block].trade();
   return rewards;
 }
 

@@ -74,8 +74,7 @@ struct Study {
 };
 
 /// Names of measures that figures of a study look for beside those of analysis/trade.hpp. They are followed
-/// by the bin
-/// ("1 of 5") or the lag ("0.35 s").
+/// by the bin ("1 of 5") or the lag ("0.35 s").
 inline constexpr const char *kBinTime = "mean time in time bin ",
                             *kLagSensitivity = "d' at the signal after ",
                             *kLagTime = "response time at the signal after ";

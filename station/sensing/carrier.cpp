@@ -140,9 +140,16 @@ constexpr double reference_tolerance = 0.03, quadrature_share = 0.05;
 /// A bridge whose samples are equal for this long is silent. Its carrier is never exactly balanced, and even
 /// the noise of a converter with 16 bits changes the last digit more often.
 constexpr double silent_s = 0.002;
-/// The longest block that a stuck driver is expected to repeat. The carrier alone, without any noise, repeats
-/// after 7680 frames at 192 kHz.
+/// The longest block that a stuck driver is expected to repeat.
 constexpr std::int64_t longest_block_frames = 4096;
+
+/// The longest block whose repetition is looked for. The carrier alone, without any noise, repeats as well,
+/// and must not count. If that leaves no block (0 or less), repetitions are not looked for.
+std::int64_t longest_block(double carrier_Hz, std::int64_t rate_Hz) {
+  const auto rate_mHz = 1000 * rate_Hz;
+  const auto period = rate_mHz / std::gcd(rate_mHz, std::llround(1000 * carrier_Hz));
+  return std::min(longest_block_frames, period - static_cast<std::int64_t>(silent_s * rate_Hz) - 1);
+}
 
 double pass_Hz(Band band) { return band == Band::force ? 400 : 1000; }
 double stop_Hz(Band band) { return band == Band::force ? 600 : 2000; }
@@ -183,9 +190,10 @@ BridgeDemodulator::BridgeDemodulator(const BridgeOptions& options)
     cos_[i] = std::cos(options_.rotation_rad[i]);
     sin_[i] = std::sin(options_.rotation_rad[i]);
   }
+  longest_block_ = longest_block(options_.carrier_Hz, options_.rate_Hz);
   silent_until_.fill(std::numeric_limits<std::int64_t>::min());
   repeated_.assign(bridge_count,
-                   Repeated(static_cast<std::size_t>(silent_s * options_.rate_Hz), longest_block_frames));
+                   Repeated(static_cast<std::size_t>(silent_s * options_.rate_Hz), longest_block_));
 }
 
 void BridgeDemodulator::check(const CaptureBlock& block) const {
@@ -234,7 +242,7 @@ void BridgeDemodulator::watch(const std::int32_t* frames, std::int64_t count) no
       const auto value = frames[n * options_.channels + options_.bridges[i]];
       if (unchanged_[i].add(value) >= enough) silent_until_[i] = next_frame_ + n;
       // The next row that comes again ends at most one block later.
-      if (repeated_[i].add(value)) silent_until_[i] = next_frame_ + n + longest_block_frames;
+      if (longest_block_ > 0 && repeated_[i].add(value)) silent_until_[i] = next_frame_ + n + longest_block_;
     }
   }
 }

@@ -218,6 +218,7 @@ class BridgeDemodulator {
   std::int64_t next_frame_ = 0;
   bool started_ = false;
   std::array<Unchanged, bridge_count> unchanged_;
+  std::int64_t longest_block_ = 0;  ///< longest block whose repetition is looked for, in frames
   std::vector<Repeated> repeated_;
   std::array<std::int64_t, bridge_count> silent_until_;  ///< last frame at which the bridge was silent
   BridgePoint point_;

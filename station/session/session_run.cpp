@@ -761,19 +761,22 @@ Flow SessionRun::pass_self_test() {
     return gate_.stop_asked() ? Flow::stop : Flow::go_on;
   }
   const auto what = failures(event.checks);
-  const auto reason = reason_despite(what);
+  const auto mixer = row_of(judged(read_mixer(setup_.rig))).name;
+  for (const auto& check : event.checks)
+    if (check.name == mixer && check.verdict == Verdict::failed) known_mixer_ = check.what;
+  const auto reason = reason_despite("the self-test failed: ", what);
   event.value = reason.empty() ? "failed" : "failed; continued: " + reason;
   log_.event(std::move(event));
-  known_mixer_ = row_of(judged(read_mixer(setup_.rig))).what;
   return gate_.stop_asked() ? Flow::stop : Flow::go_on;
 }
 
-/// Returns the operator's reason for going on although a check failed. Without one, the session is stopped.
-std::string SessionRun::reason_despite(const std::string& failed) {
+/// Returns the operator's reason for going on although a check failed. Without one, the session is stopped;
+/// `stopped_by` begins its reason.
+std::string SessionRun::reason_despite(const std::string& stopped_by, const std::string& failed) {
   auto reason = setup_.despite;
   if (reason.empty() && !gate_.stop_asked())
     reason = gate_.reason_to_continue({FaultKind::self_test, failed});
-  if (reason.empty() && !gate_.stop_asked()) gate_.stop("the self-test failed: " + failed);
+  if (reason.empty() && !gate_.stop_asked()) gate_.stop(stopped_by + failed);
   return reason;
 }
 
@@ -781,9 +784,10 @@ std::string SessionRun::reason_despite(const std::string& failed) {
 /// the self-test, and without pick-ups nothing else shows it.
 Flow SessionRun::pass_mixer() {
   const auto check = row_of(judged(read_mixer(setup_.rig)));
+  if (check.verdict != Verdict::failed) known_mixer_.clear();
   if (check.verdict != Verdict::failed || check.what == known_mixer_) return Flow::go_on;
   known_mixer_ = check.what;
-  const auto reason = reason_despite(check.name + ": " + check.what);
+  const auto reason = reason_despite("", check.name + ": " + check.what);
   const auto answer = reason.empty() ? "" : "; continued: " + reason;
   gate_.keep([&] { log_.event({stage_->now_ns(), "mixer", check.what + answer, {}}); });
   return gate_.stop_asked() ? Flow::stop : Flow::go_on;

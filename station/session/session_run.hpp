@@ -68,7 +68,7 @@ class SessionRun {
   Flow play_example(const protocol::Example& example, Page page);
   Flow pass_self_test();
   Flow pass_mixer();
-  std::string reason_despite(const std::string& failed);
+  std::string reason_despite(const std::string& stopped_by, const std::string& failed);
   Flow rest_if_due(int trials_in_block);
   int trial_index() const { return log_.session().trials; }
   void finish(core::SessionStatus status, const std::string& reason);

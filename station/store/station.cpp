@@ -104,7 +104,7 @@ bool is_of_all_machines(const std::string& value) {
   std::string digits;
   for (const char c : symbols)
     if (c >= '1' && c <= '9') digits += c;
-  return is_filler(symbols) || (digits.size() >= 6 && is_filler(digits));
+  return is_filler(symbols) || (digits.size() >= 8 && is_filler(digits));
 }
 
 /// The machine-id; "" if it is not one that this system made for good.

@@ -154,18 +154,18 @@ Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& bloc
   plan.late_ns = ns(protocol::kLate_s);
   plan.iti_ns = ns(spec.iti_s);
   plan.correct = spec.correct;
-  if (spec.strokes) {
-    plan.answers = 2;  // the two possible "answers": the movement was right or wrong
-    if (block.kind == protocol::BlockKind::training) plan.feedback_ns = ns(protocol::kLate_s);
-    return plan;
-  }
-  const auto& task = protocol.task;
   const auto delay_ns = [&](const protocol::Linear& delay_s) {
     return ns(protocol::evaluate(delay_s, spec.factors));
   };
   plan.wrong_delay_ns = delay_ns(protocol.timing.delay_s.wrong);
   plan.late_delay_ns = delay_ns(protocol.timing.delay_s.late);
   plan.early_delay_ns = delay_ns(protocol.timing.delay_s.early);
+  if (spec.strokes) {
+    plan.answers = 2;  // the two possible "answers": the movement was right or wrong
+    if (block.kind == protocol::BlockKind::training) plan.feedback_ns = ns(protocol::kLate_s);
+    return plan;
+  }
+  const auto& task = protocol.task;
   plan.answers = task.kind == protocol::TaskKind::adjustment ? 1 : protocol::answer_count(task);
   plan.unsure = protocol::answer_index(task, protocol::kUnsure);
   if (task.confidence) plan.confidence = static_cast<int>(task.confidence->labels.size());

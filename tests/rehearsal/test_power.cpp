@@ -14,6 +14,7 @@
 #include "station/rehearsal/rehearsal.hpp"
 #include "station/rehearsal/reward.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/replaced.hpp"
 
 using namespace turnpoint;
 
@@ -22,8 +23,6 @@ namespace {
 protocol::Protocol shipped(const std::string& name) {
   return protocol::load(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
 }
-
-std::string source_of_shipped(const std::string& name) { return shipped(name).source; }
 
 const rehearsal::Recovery& find(const rehearsal::Power& power, std::string_view source,
                                 std::string_view parameter) {
@@ -97,12 +96,13 @@ TEST_CASE("the true values are the observer's own parameters, never estimates", 
       CHECK(recovery.truth == find(power, recovery.source, recovery.parameter).truth);
 }
 
-TEST_CASE("the diffusion's parameters in each condition are recovered, as the report prints them", "[power]") {
+TEST_CASE("the diffusion's parameters in each condition are recovered, as the report prints them",
+          "[power]") {
   // TURNPOINT_POWER_SESSIONS=200 for more
   const char* given = std::getenv("TURNPOINT_POWER_SESSIONS");
   const int sessions = given == nullptr ? 12 : std::atoi(given);
-  const auto power = rehearsal::power(shipped("speed-accuracy"),
-                                      options("sim:threshold=0.15,lapse=0", sessions, sessions));
+  const auto power =
+      rehearsal::power(shipped("speed-accuracy"), options("sim:threshold=0.15,lapse=0", sessions, sessions));
   const double hurried = 0.2 * std::sqrt(0.35 * 0.3);
   CHECK(*find(power, "diffusion speed", "boundary").truth == Approx(hurried));
   CHECK(*find(power, "diffusion accuracy", "time outside the decision").truth == 0.5);
@@ -116,8 +116,8 @@ TEST_CASE("the diffusion's parameters in each condition are recovered, as the re
       CHECK(found.coverage->right >= 0.75 * sessions);
       CHECK_FALSE(found.claimed);  // only differences can be claimed
     }
-  // the accuracy instruction raises the boundary, which most sessions claim; drift is the same, so a claim would
-  // be a false alarm
+  // the accuracy instruction raises the boundary, which most sessions claim; drift is the same, so a claim
+  // would be a false alarm
   CHECK(find(power, "accuracy - speed", "boundary").claimed->value > 0.9);
   REQUIRE(find(power, "accuracy - speed", "drift").claimed);
   CHECK(find(power, "accuracy - speed", "drift").claimed->value < 0.4);
@@ -126,8 +126,9 @@ TEST_CASE("the diffusion's parameters in each condition are recovered, as the re
   CHECK(power.misfits->value < 0.4);
 }
 
-TEST_CASE("curves at a response signal are planned: the truth is the best curve through the observer's answers",
-          "[power]") {
+TEST_CASE(
+    "curves at a response signal are planned: the truth is the best curve through the observer's answers",
+    "[power]") {
   const auto power = rehearsal::power(shipped("response-signal"), options("sim:lapse=0", 8, 8));
   for (const auto* parameter : {"asymptote of d'", "rate of d'", "intercept of d'"}) {
     const auto& found = find(power, "signal", parameter);
@@ -167,8 +168,8 @@ TEST_CASE("studies of several people are planned with the effects that their rep
   // someone who differs in nothing is the observer; the more people differ, the more uncertain a study is
   auto alike = wanted;
   alike.between = simulation::parse_spread("residual=1e-9");
-  CHECK(*find(rehearsal::power(shipped("speed-accuracy"), alike), "mean speed", "time outside the decision").truth ==
-        Approx(0.5));
+  CHECK(*find(rehearsal::power(shipped("speed-accuracy"), alike), "mean speed", "time outside the decision")
+             .truth == Approx(0.5));
   auto uneven = wanted;
   uneven.observers = 10;
   CHECK_THROWS_AS(rehearsal::power(shipped("speed-accuracy"), uneven), std::invalid_argument);
@@ -196,8 +197,9 @@ TEST_CASE("people are drawn around the observer, each parameter by itself", "[po
   }
   CHECK(std::sqrt(squares) == Approx(0.2).epsilon(0.15));
   core::Draws draws({});
-  CHECK_THROWS_WITH(simulation::draw_person(simulation::parse("sim"), simulation::parse_spread("threshold=1"), draws),
-                    Catch::Matchers::ContainsSubstring("write sim:threshold="));
+  CHECK_THROWS_WITH(
+      simulation::draw_person(simulation::parse("sim"), simulation::parse_spread("threshold=1"), draws),
+      Catch::Matchers::ContainsSubstring("write sim:threshold="));
   for (const auto* wrong : {"", "bound", "bound=", "bound=-1", "bound=0", "bounds=1", "bound=0.1;slope=1"})
     CHECK_THROWS_AS(simulation::parse_spread(wrong), core::UsageError);
 }
@@ -216,8 +218,9 @@ TEST_CASE("a fit finds the observer's own threshold and slope", "[power]") {
 TEST_CASE("the fits of every group have a truth", "[power]") {
   std::ifstream file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/friction-2ifc.toml");
   std::string text{std::istreambuf_iterator<char>(file), {}};
-  text += "\n[[factor]]\nname = \"training\"\nlevels = [\"trained\", \"none\"]\ndraw = \"per-participant\"\n"
-          "\n[analysis]\nby = \"training\"\n";
+  text +=
+      "\n[[factor]]\nname = \"training\"\nlevels = [\"trained\", \"none\"]\ndraw = \"per-participant\"\n"
+      "\n[analysis]\nby = \"training\"\n";
   const auto power = rehearsal::power(protocol::parse(text, "groups.toml"), options("sim:threshold=-18", 4));
   REQUIRE(find(power, "fit trained", "threshold").truth);
   CHECK(find(power, "fit trained", "threshold").truth == find(power, "fit none", "threshold").truth);
@@ -447,17 +450,12 @@ TEST_CASE("a procedure with a criterion recovers the observer's criterion, where
   }
 }
 
-// Bogacz et al. 2006: with drift v and bounds b away from the start, a decision takes (b / v) tanh(v b) s and is right
-// with probability 1 / (1 + exp(-2 v b)).
+// Bogacz et al. 2006: with drift v and bounds b away from the start, a decision takes (b / v) tanh(v b) s and
+// is right with probability 1 / (1 + exp(-2 v b)).
 TEST_CASE("the observer who maximises the reward has the boundaries of the closed form", "[power][reward]") {
-  auto text = source_of_shipped("reward-rate");
-  const auto replaced = [](std::string& in, const std::string& what, const std::string& by) {
-    REQUIRE(in.find(what) != std::string::npos);
-    in.replace(in.find(what), what.size(), by);
-  };
-  replaced(text, "deadline_s = 2.0", "deadline_s = 30.0");
-  replaced(text, "explore_s = 4.0", "explore_s = 32.0");
-  const auto protocol = protocol::parse(text, "reward-rate.toml");
+  const auto slow = replaced(shipped("reward-rate").source, "deadline_s = 2.0", "deadline_s = 30.0");
+  const auto protocol =
+      protocol::parse(replaced(slow, "explore_s = 4.0", "explore_s = 32.0"), "reward-rate.toml");
   for (const double threshold : {0.1, 0.25}) {
     const auto study = options("sim:lapse=0,threshold=" + std::to_string(threshold), 1);
     const auto rewards = rehearsal::best_rewards(protocol, study);
@@ -485,6 +483,7 @@ TEST_CASE("the observer who maximises the reward has the boundaries of the close
       CHECK(rate(reward.caution * own_bound) > 0.99 * rate(best));
       CHECK(reward.best.points_per_minute == Approx(rate(best)).epsilon(0.03));
       CHECK(reward.own.right == Approx(right(own_bound)).margin(0.02));
+      CHECK(reward.best.right == Approx(right(reward.caution * own_bound)).margin(0.02));
     }
     CHECK(rewards[1].caution > rewards[0].caution);  // delays make care pay
     // the study's observer has these boundaries, and his sessions earn more
@@ -498,16 +497,14 @@ TEST_CASE("the observer who maximises the reward has the boundaries of the close
   }
 }
 
-TEST_CASE("where guessing at once or endless care pays, the search says that it ended there, and without points it "
-          "refuses",
-          "[power][reward]") {
-  auto text = source_of_shipped("reward-rate");
-  const auto place = text.find("right = 1\n");
-  REQUIRE(place != std::string::npos);
+TEST_CASE(
+    "where guessing at once or endless care pays, the search says that it ended there, and without points it "
+    "refuses",
+    "[power][reward]") {
   const auto with = [&](const std::string& points) {
-    auto changed = text;
-    changed.replace(place, 10, points + "\n");
-    return rehearsal::best_rewards(protocol::parse(changed, "reward-rate.toml"), options("sim:threshold=0.1", 1));
+    const auto text = replaced(shipped("reward-rate").source, "right = 1\n", points + "\n");
+    return rehearsal::best_rewards(protocol::parse(text, "reward-rate.toml"),
+                                   options("sim:threshold=0.1", 1));
   };
   const auto equal = with("right = 1\nwrong = 1\nlate = -5");
   REQUIRE(equal.size() == 2);

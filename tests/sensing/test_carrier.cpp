@@ -222,7 +222,8 @@ TEST_CASE("a wire that is off is a fault with a name", "[sensing]") {
 
 TEST_CASE("a bridge whose samples stop to change is a fault from then on, and one that only reads 0 is none",
           "[sensing]") {
-  const auto [band, stuck] = GENERATE(std::pair{Band::force, 0}, std::pair{Band::force, -12345}, std::pair{Band::wide, 0});
+  const auto [band, stuck] =
+      GENERATE(std::pair{Band::force, 0}, std::pair{Band::force, -12345}, std::pair{Band::wide, 0});
   BridgeSignal signal;
   signal.force_N = [](double) { return 0; };
   signal.noise_V_rtHz = 4e-9;
@@ -240,6 +241,26 @@ TEST_CASE("a bridge whose samples stop to change is a fault from then on, and on
     }
     if (frame < dead - 3400) CHECK(point.fault == WireFault::none);
   }
+}
+
+TEST_CASE("a carrier that repeats within a few frames is no bridge that repeats a block",
+          "[sensing][carrier]") {
+  BridgeOptions options;
+  options.carrier_Hz = 32000;  // a period of 6 frames, here without any noise
+  BridgeDemodulator demodulator(options);
+  CaptureBlock block;
+  block.rate_Hz = options.rate_Hz, block.channels = options.channels;
+  for (int n = 0; n < 40'000; ++n)
+    for (int channel = 0; channel < options.channels; ++channel) {
+      const double amplitude = channel == options.reference ? options.reference_amplitude : 0.01;
+      const double wave = std::sin(2 * std::numbers::pi * (n % 6) / 6 + 0.3);
+      block.samples.push_back(static_cast<std::int32_t>(std::lround(0x1p31 * amplitude * wave)));
+    }
+  int points = 0;
+  demodulator.push(block, [&](const BridgePoint& point) {
+    if (++points > 20) CHECK(point.fault == WireFault::none);
+  });
+  CHECK(points > 40);
 }
 
 TEST_CASE(
