@@ -194,20 +194,20 @@ Json cue_json(const rehearsal::CueReport& cue) {
           {"error", exact(cue.error)}};
 }
 
-Json to_json(const rehearsal::Trade& trade) {
+Json trade_json(const rehearsal::Trade& trade) {
   return {{"points_per_minute", exact(trade.points_per_minute)},
           {"right", exact(trade.right)},
           {"response_time_s", exact(trade.response_time_s)}};
 }
 
-Json to_json(const std::vector<rehearsal::BestReward>& rewards) {
+Json rewards_json(const std::vector<rehearsal::BestReward>& rewards) {
   Json list = Json::array();
   for (const auto& reward : rewards)
     list.push_back({{"block", reward.block},
                     {"caution", exact(reward.caution)},
                     {"at_end", reward.at_end},
-                    {"best", to_json(reward.best)},
-                    {"own", to_json(reward.own)}});
+                    {"best", trade_json(reward.best)},
+                    {"own", trade_json(reward.own)}});
   return list;
 }
 
@@ -291,7 +291,7 @@ Json to_json(const PowerPart& part) {
           {"path", part.path},
           {"whole", part.whole},
           {"cues", cues},
-          {"rewards", to_json(part.rewards)},
+          {"rewards", rewards_json(part.rewards)},
           {"sessions", sessions}};
 }
 
@@ -405,7 +405,7 @@ Json to_json(const Found& found, const std::vector<std::string>& files) {
           {"misfits", share_json(power.misfits, "of")},
           {"people", power.people},
           {"recoveries", recoveries},
-          {"rewards", to_json(found.rewards)},
+          {"rewards", rewards_json(found.rewards)},
           {"cues", to_json(found.cues)},
           {"files", files}};
 }

@@ -147,7 +147,7 @@ constexpr std::int64_t longest_block_frames = 4096;
 /// and must not count. If that leaves no block (0 or less), repetitions are not looked for.
 std::int64_t longest_block(double carrier_Hz, std::int64_t rate_Hz) {
   const auto rate_mHz = 1000 * rate_Hz;
-  const auto period = rate_mHz / std::gcd(rate_mHz, std::llround(1000 * carrier_Hz));
+  const std::int64_t period = rate_mHz / std::gcd(rate_mHz, std::llround(1000 * carrier_Hz));
   return std::min(longest_block_frames, period - static_cast<std::int64_t>(silent_s * rate_Hz) - 1);
 }
 

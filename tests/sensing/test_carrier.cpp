@@ -250,12 +250,14 @@ TEST_CASE("a carrier that repeats within a few frames is no bridge that repeats 
   BridgeDemodulator demodulator(options);
   CaptureBlock block;
   block.rate_Hz = options.rate_Hz, block.channels = options.channels;
+  std::vector<std::int32_t> samples;
   for (int n = 0; n < 40'000; ++n)
     for (int channel = 0; channel < options.channels; ++channel) {
       const double amplitude = channel == options.reference ? options.reference_amplitude : 0.01;
       const double wave = std::sin(2 * std::numbers::pi * (n % 6) / 6 + 0.3);
-      block.samples.push_back(static_cast<std::int32_t>(std::lround(0x1p31 * amplitude * wave)));
+      samples.push_back(static_cast<std::int32_t>(std::lround(0x1p31 * amplitude * wave)));
     }
+  block.samples = samples;
   int points = 0;
   demodulator.push(block, [&](const BridgePoint& point) {
     if (++points > 20) CHECK(point.fault == WireFault::none);
