@@ -288,9 +288,10 @@ Vector mode_from(const Posterior& f, Vector x) {
   return x;
 }
 
-/// A place from which the search can begin, with s = 1.
+/// A place from which the search can begin, with s = 1. If all answers are decisions, it is one at which the
+/// fastest of them is possible.
 std::pair<Shared, std::vector<double>> start_of(const std::vector<DiffusionTrial>& trials,
-                                                std::size_t difficulties) {
+                                                std::size_t difficulties, bool contaminants) {
   std::vector<double> right, all;
   std::vector<int> answered(difficulties), correct(difficulties);
   for (const auto& trial : trials) {
@@ -301,6 +302,7 @@ std::pair<Shared, std::vector<double>> start_of(const std::vector<DiffusionTrial
     right.push_back(trial.time_s);
     ++correct[trial.difficulty];
   }
+  const double fastest = contaminants ? quantile(all, 0.05) : *std::min_element(all.begin(), all.end());
   const double early = quantile(all, 0.05), spread = quantile(all, 0.75) - quantile(all, 0.25);
   DiffusionParameters start{0.1, kDiffusionScale * std::clamp(2 * std::sqrt(spread + 0.05), 0.5, 4.0),
                             0.8 * early};
@@ -311,7 +313,7 @@ std::pair<Shared, std::vector<double>> start_of(const std::vector<DiffusionTrial
       start = *ez;
   Shared at;
   at.boundary = start.boundary / kDiffusionScale;
-  at.nondecision_s = std::max(std::min(start.nondecision_s, 0.9 * early), 1e-3);
+  at.nondecision_s = std::max(std::min(start.nondecision_s, 0.9 * fastest), 1e-3);
   at.contaminants = 0.02, at.drift_sd = 0.5, at.range_s = 0.2 * at.nondecision_s;
   std::vector<double> drift;
   for (std::size_t i = 0; i < difficulties; ++i) {
@@ -589,7 +591,7 @@ DiffusionFit fit_diffusion(const std::vector<DiffusionTrial>& trials, std::size_
   }
   const bool likelihood = options.method == DiffusionOptions::Method::likelihood;
   const Posterior posterior(trials, difficulties, options);
-  const auto [start, drifts] = start_of(trials, difficulties);
+  const auto [start, drifts] = start_of(trials, difficulties, options.contaminants);
   Mode mode;
   if (likelihood)
     mode = maximum(posterior, start, drifts);

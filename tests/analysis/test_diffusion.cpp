@@ -568,6 +568,48 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("One answer that came before all others does not hide the maximum of the likelihood",
+          "[analysis][diffusion]") {
+  // Without contaminants, the time outside the decision must be shorter than it. People of `speed_acc` have
+  // such answers.
+  rnd::Draws draws({10, rnd::Stream::observer, 0, 0, 0});
+  auto trials = simulated(kAccuracy, 0, kCells[0], {100, 100, 100}, draws);
+  for (const double first_s : {0.25, 0.15}) {
+    trials.front().time_s = first_s;
+    DiffusionOptions options;
+    options.contaminants = false, options.start = true, options.method = DiffusionOptions::Method::likelihood;
+    const auto fit = fit_diffusion(trials, 3, 1, 1, options).estimates;
+    REQUIRE(fit);
+    const auto log_likelihood = [&](double boundary, double ter_s, double start,
+                                    const std::vector<double>& drift) {
+      double sum = 0;
+      for (const auto& trial : trials)
+        sum += log_density({drift[trial.difficulty] / 0.1, boundary / 0.1, start}, trial.correct,
+                           trial.time_s - ter_s);
+      return sum;
+    };
+    std::vector<double> drift;
+    for (const auto& one : fit->drift) drift.push_back(one.value);
+    const double highest =
+        log_likelihood(fit->boundary.value, fit->nondecision_s.value, fit->start.value, drift);
+    CHECK(highest == Approx(fit->log_likelihood).margin(1e-6));
+    int higher = 0;
+    for (int i = 0; i < 20000; ++i) {  // near the maximum, and far from it
+      const double far = i % 2 == 0 ? 0.02 : 0.5;
+      std::vector<double> others;
+      for (const double v : drift) others.push_back(v + 0.2 * far * draws.normal());
+      higher +=
+          log_likelihood(fit->boundary.value * std::exp(far * draws.normal()),
+                         std::min(fit->nondecision_s.value * std::exp(far * draws.normal()), 0.999 * first_s),
+                         std::clamp(fit->start.value + 0.3 * far * draws.normal(), 0.01, 0.99),
+                         others) > highest + 1e-6;
+    }
+    CHECK(higher == 0);
+    options.method = DiffusionOptions::Method::posterior;
+    CHECK(fit_diffusion(trials, 3, 1, 1, options).estimates);
+  }
+}
+
 TEST_CASE("An end of an interval hardly depends on which draws were taken", "[analysis][diffusion]") {
   // A condition whose posterior has two modes. Times in ms, below 0 of wrong answers. With the draws of the
   // best round alone, the lower end of the time outside the decision moved by 12 % of the width.
