@@ -1,6 +1,10 @@
 #include "station/store/station.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <linux/fiemap.h>
+#include <linux/fs.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
 #include <unistd.h>
@@ -14,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "station/core/file_descriptor.hpp"
 #include "station/core/letters.hpp"
 #include "station/core/number.hpp"
 #include "station/store/checksum.hpp"
@@ -46,23 +51,28 @@ bool everybody_may_read(const std::string& path) {
   return ::stat(path.c_str(), &status) == 0 && (status.st_mode & S_IROTH) != 0;
 }
 
+/// True for a file whose data have a place on a disk, as the file systems of disks tell every user. Those in
+/// memory have no answer, and an overlay asks the layer that holds the file.
+bool has_place_on_disk(const std::string& path) {
+  const core::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  struct fiemap request {};
+  request.fm_length = FIEMAP_MAX_OFFSET;
+  return ::ioctl(file.get(), FS_IOC_FIEMAP, &request) == 0 && request.fm_mapped_extents > 0;
+}
+
 /// True for a machine-id that the next boot replaces. On a disk that cannot be written, systemd makes one in
-/// memory and mounts it over the file; a system that runs from memory makes one at each start.
+/// memory and mounts it over the file; a system that runs from memory, or keeps all changes there in the
+/// upper layer of an overlay, makes one at each start. The file's time does not tell: many boards set their
+/// clock only after they have made it.
 bool lasts_until_shutdown(const std::string& path, const std::string& root) {
-  const auto folder = root + "/etc";
+  const auto file_system = system::read_disk(path).file_system;
+  if (file_system == "overlay") return !has_place_on_disk(path);
+  if (file_system != "tmpfs" && file_system != "ramfs") return false;
   struct stat file {
   }, above{};
-  if (::stat(path.c_str(), &file) != 0 || ::stat(folder.c_str(), &above) != 0) return true;
-  const auto in_memory = [](const std::string& place) {
-    const auto file_system = system::read_disk(place).file_system;
-    return file_system == "tmpfs" || file_system == "ramfs";
-  };
-  if (file.st_dev != above.st_dev) return in_memory(path);
-  if (!root.empty()) return false;
-  const auto clocks = system::read_clocks();
-  const auto changed_ns = std::int64_t{file.st_ctim.tv_sec} * 1'000'000'000;
-  return in_memory(folder) || (system::read_disk(folder).file_system == "overlay" &&
-                               changed_ns >= clocks.realtime_ns - clocks.boottime_ns);
+  const bool is_mounted = ::stat(path.c_str(), &file) == 0 && ::stat((root + "/etc").c_str(), &above) == 0 &&
+                          file.st_dev != above.st_dev;
+  return root.empty() || is_mounted;  // the folder that a test gives may itself be in memory
 }
 
 std::string lower_letters_and_digits(const std::string& text) {

@@ -421,7 +421,9 @@ TEST_CASE("a withdrawal that was interrupted is completed once its folder of bac
     Statement(writer.database, "INSERT INTO meta VALUES ('erasing', ?)").bind(dir).run();
     transaction.commit();
   }
-  const auto unfinished = [&] { return sample::raw(a).integer("SELECT count(*) FROM meta WHERE key = 'erasing'") == 1; };
+  const auto unfinished = [&] {
+    return sample::raw(a).integer("SELECT count(*) FROM meta WHERE key = 'erasing'") == 1;
+  };
   CHECK(follow_tombstones(a, stones).removed_copies.empty());
   CHECK(unfinished());
   CHECK(follow_tombstones(a, stones, dir).removed_copies.size() == 1);
@@ -683,6 +685,39 @@ TEST_CASE("a machine-id that systemd has mounted from memory is no identity", "[
   ::umount2(id.c_str(), MNT_DETACH);
   CHECK(machine.identity() == lasting);  // once systemd has written it to the disk, it counts
   ::umount2(run.c_str(), MNT_DETACH);
+}
+
+TEST_CASE("a machine-id that an overlay keeps in memory is no identity, and one on a disk is", "[store]") {
+  const Machine first, second("9be07a3c5d1f42e68a0c7b94f2d35e61\n"), machine;
+  const auto etc = machine.folder / "etc";
+  std::string disk = "/var/tmp/turnpoint-test-XXXXXX";  // not where other tests write, which may be memory
+  REQUIRE(::mkdtemp(disk.data()) != nullptr);
+  const auto memory = disk + "/memory", lower = disk + "/lower";
+  for (const auto& name : {memory, lower}) std::filesystem::create_directory(name);
+  std::filesystem::copy_file(first.folder / "etc/machine-id", lower + "/machine-id");
+  if (::mount("tmpfs", memory.c_str(), "tmpfs", 0, nullptr) != 0) {
+    WARN("skipped: only root can mount; sudo tests/run");
+    std::filesystem::remove_all(disk);
+    return;
+  }
+  for (const auto& [upper, lasts] : {std::pair{memory, false}, {disk, true}})
+    for (const auto* inodes : {"", ",xino=on"}) {  // without the option, each layer has numbers of its own
+      INFO(upper << inodes);
+      for (const auto* name : {"/changes", "/work"}) {
+        std::filesystem::remove_all(upper + name);
+        std::filesystem::create_directory(upper + name);
+      }
+      const auto layers =
+          fmt::format("lowerdir={},upperdir={}/changes,workdir={}/work{}", lower, upper, upper, inodes);
+      REQUIRE(::mount("overlay", etc.c_str(), "overlay", 0, layers.c_str()) == 0);
+      CHECK(machine.identity() == first.identity());  // that of the lower layer, which the next boot has too
+      std::filesystem::remove(etc + "/machine-id");
+      machine.write("etc/machine-id", "9be07a3c5d1f42e68a0c7b94f2d35e61\n");
+      CHECK(machine.identity() == (lasts ? second.identity() : ""));
+      ::umount2(etc.c_str(), MNT_DETACH);
+    }
+  ::umount2(memory.c_str(), MNT_DETACH);
+  std::filesystem::remove_all(disk);
 }
 
 TEST_CASE("a database keeps the name of its station, whatever the host is called", "[store]") {
