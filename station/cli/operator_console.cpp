@@ -10,8 +10,10 @@
 #include <utility>
 
 #include "station/cli/run.hpp"
+#include "station/session/programs.hpp"
 #include "station/system/clocks.hpp"
 #include "station/system/stop_signals.hpp"
+#include "station/trial/question.hpp"
 
 namespace turnpoint::cli {
 namespace {
@@ -163,7 +165,13 @@ void run_without_screen(Context& context, const session::Setup& setup) {
   ::signal(SIGPIPE, SIG_IGN);
   session::Inputs inputs;
   const system::OnStopSignal on_signal([&inputs](const std::string& signal) { stop(inputs, signal); });
-  if (!setup.observer.empty()) return show_summary(context, session::run(setup, nullptr, inputs));
+  if (!setup.observer.empty()) {
+    if (!session::is_program(setup.observer))
+      for (const auto& note :
+           trial::observer_notes(setup.protocol, simulation::Observer{simulation::parse(setup.observer)}))
+        fmt::print(context.err, "note: {}\n", core::format(note));
+    return show_summary(context, session::run(setup, nullptr, inputs));
+  }
   OperatorConsole console(setup.rig, inputs, context.err);
   show_summary(context, session::run(setup, &console, inputs), " --headless");
 }

@@ -30,6 +30,7 @@
 #include "station/session/prepare.hpp"
 #include "station/session/programs.hpp"
 #include "station/system/write_file.hpp"
+#include "station/trial/question.hpp"
 
 namespace turnpoint::cli {
 
@@ -571,6 +572,8 @@ void power(const Options& options, Context& context) {
   part.protocol = protocol.source, part.path = protocol.path;
   const auto rig = session::calibrated_rig(session::rig_or_default(options.rig, context.err),
                                            options.calibration, context.err);
+  for (const auto& note : trial::observer_notes(protocol, simulation::Observer{wanted.observer}))
+    fmt::print(context.err, "note: {}\n", core::format(note));
   LongWork work(options.progress);
   rehearsal::Steps steps;
   steps.finish = wanted.stop = work.stop();

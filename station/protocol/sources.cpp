@@ -183,4 +183,12 @@ std::vector<Block> all_blocks(const Protocol& protocol) {
   return blocks;
 }
 
+const Linear* deadline_of_instruction(const Protocol& protocol, const Block& block) {
+  const auto fixed = block.fixed.find("instruction");
+  const auto* name = fixed == block.fixed.end() ? nullptr : std::get_if<std::string>(&fixed->second);
+  const auto found = name != nullptr ? protocol.instructions.find(*name) : protocol.instructions.end();
+  return found != protocol.instructions.end() && found->second.deadline_s ? &*found->second.deadline_s
+                                                                          : nullptr;
+}
+
 }  // namespace turnpoint::protocol

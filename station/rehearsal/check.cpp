@@ -15,6 +15,7 @@
 #include "station/core/draws.hpp"
 #include "station/core/number.hpp"
 #include "station/core/texts.hpp"
+#include "station/protocol/advice_list.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/design_advice.hpp"
 #include "station/protocol/glyphs.hpp"
@@ -25,6 +26,7 @@
 #include "station/rehearsal/rehearsal.hpp"
 #include "station/simulation/observer.hpp"
 #include "station/trial/earlier_trials.hpp"
+#include "station/trial/question.hpp"
 
 namespace turnpoint::rehearsal {
 
@@ -54,14 +56,29 @@ double longest_s(const Protocol& protocol) {
 }
 
 /// Returns the observer of `run --observer sim`, except that setting a slider takes as long as it would take
-/// a person.
+/// a person, and that this observer is as quick as a deadline asks, if people can be so quick, and never too
+/// early.
 Rehearser person(const Protocol& protocol) {
   auto person = rehearser(simulation::Observer{simulation::Parameters{}});
   person.adjust = [adjust = person.adjust, done_s = std::min(setting_s, longest_s(protocol))](
                       const trial::TrialSpec& spec, const simulation::Adjustment& asked) {
     auto setting = adjust(spec, asked);
-    setting.done_s = done_s;
+    setting.done_s = std::min(done_s, 0.9 * asked.within_s);
     return setting;
+  };
+  person.answer = [](const trial::TrialSpec& spec, const simulation::Question& asked) {
+    simulation::Parameters usual;
+    const double outside_s = simulation::Observer(usual).nondecision_s();
+    if (!asked.signal_s && asked.deadline_s >= protocol::shortest_deadline_s &&
+        asked.deadline_s < outside_s + trial::kLeastDecision_s) {
+      const double quicker = 0.5 * asked.deadline_s / outside_s;
+      usual.residual_s *= quicker, usual.travel_s *= quicker;
+    }
+    auto reply = simulation::Observer(usual).answer(asked);
+    constexpr double after_s = 1e-3;
+    if (!asked.signal_s)
+      reply.response_time_s = std::max(reply.response_time_s, spec.anticipation_s + after_s);
+    return reply;
   };
   return person;
 }
@@ -449,6 +466,8 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   check.warnings.insert(check.warnings.end(), drawn.other_languages.begin(), drawn.other_languages.end());
   check.notes = protocol::notes(*protocol);
   for (const auto& note : language_notes(*protocol)) check.notes.push_back(note);
+  for (const auto& note : trial::observer_notes(*protocol, simulation::Observer{{}}))
+    check.notes.push_back(note);
   if (rig::largest_trigger_code(*rig) > 0) check.triggers = protocol::trigger_codes(*protocol);
   try {
     const auto& finish = options.steps.finish;

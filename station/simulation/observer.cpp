@@ -237,7 +237,7 @@ double Observer::bound(const Question& q) const {
   if (q.deadline_s <= 0 || q.signal_s) return parameters_.bound;
   // Without drift, the proportion of decisions later than t is P(T > t) <= 4/pi exp(-pi^2 t / (8 bound^2)).
   // The bound is chosen so that this is 4 %.
-  const double left_s = std::max(0.02, q.deadline_s - nondecision_s() - 0.5 * parameters_.residual_range_s);
+  const double left_s = std::max(0.02, q.deadline_s - nondecision_range_s().second);
   return std::min(parameters_.bound, std::sqrt(0.35 * left_s));
 }
 
@@ -354,6 +354,10 @@ Setting Observer::adjust(const Adjustment& a) const {
     setting.moves.push_back({time_s, std::clamp(wanted + overshoot, a.low, a.high)});
   }
   setting.done_s = time_s + parameters_.travel_s;
+  if (a.within_s <= 0) return setting;
+  const double share = std::min(1.0, 0.9 * a.within_s / setting.done_s);
+  for (auto& move : setting.moves) move.time_s *= share;
+  setting.done_s *= share;
   return setting;
 }
 

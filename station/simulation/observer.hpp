@@ -161,6 +161,9 @@ struct Reply {
 struct Adjustment {
   double start = 0, low = 0, high = 1;
   double equal = 0;
+  /// time from the onset of the scene that the slider changes until the setting must be made; 0: as long as
+  /// the observer likes
+  double within_s = 0;
   core::DrawKey key;
 };
 
@@ -188,6 +191,11 @@ class Observer {
   double bound(const Question& question) const;
   /// Returns the mean non-decision time, in s.
   double nondecision_s() const { return parameters_.residual_s + parameters_.travel_s; }
+  /// Returns the shortest and the longest non-decision time, in s.
+  std::pair<double, double> nondecision_range_s() const {
+    const double half = 0.5 * parameters_.residual_range_s;
+    return {nondecision_s() - half, nondecision_s() + half};
+  }
   /// Returns the mean time from the response signal to the answer, in s.
   double latency_s(const Question& question) const;
   /// Returns the mean drift in s^-1/2. What a positive drift leads to depends on question.decides: the right
@@ -196,7 +204,8 @@ class Observer {
   double drift(const Question& question) const;
   /// Moves the slider in ever smaller steps to where the stimuli seem equal: the bias away from where they
   /// are. The settings follow a normal distribution around that place; its 75 % point is one threshold above
-  /// it (without a threshold: a tenth of the range). In a lapse, the setting is anywhere in the range.
+  /// it (without a threshold: a tenth of the range). In a lapse, the setting is anywhere in the range. If
+  /// time is short, the observer moves the slider faster, and the setting is the same.
   Setting adjust(const Adjustment& adjustment) const;
 
  private:

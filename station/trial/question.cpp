@@ -5,11 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "station/core/number.hpp"
 #include "station/protocol/answers.hpp"
+#include "station/protocol/expression.hpp"
 #include "station/protocol/resolve.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/trial/timing.hpp"
 
 namespace turnpoint::trial {
+
+using core::phrase, core::plain;
 
 namespace {
 
@@ -142,8 +147,70 @@ simulation::Adjustment adjustment_of(const TrialSpec& spec, const protocol::Prot
   adjustment.start = spec.level.value_or(spec.slider->low);
   adjustment.low = spec.slider->low, adjustment.high = spec.slider->high;
   adjustment.equal = equal_setting(protocol, spec.factors);
+  // after the tones there is nothing to feel, and after the deadline nothing counts
+  const auto times = simulated_times(protocol, spec, 0);
+  const auto from_slider_s = [&times](std::int64_t from_onset_ns) {
+    return 1e-9 * static_cast<double>(from_onset_ns - times.slider_ns);
+  };
+  adjustment.within_s = std::min(interval_times(protocol, spec).back().length_s + from_slider_s(0),
+                                 spec.deadline_s + from_slider_s(times.zero_ns));
   adjustment.key = {seed, core::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
   return adjustment;
+}
+
+namespace {
+
+/// The deadlines of the protocol's blocks, each once.
+std::vector<const protocol::Linear*> deadlines_of(const protocol::Protocol& protocol) {
+  std::vector<const protocol::Linear*> deadlines;
+  for (const auto& block : protocol::all_blocks(protocol)) {
+    const auto* deadline = protocol::deadline_of_instruction(protocol, block);
+    if (deadline == nullptr && protocol.timing.deadline_s) deadline = &*protocol.timing.deadline_s;
+    const bool known = std::find(deadlines.begin(), deadlines.end(), deadline) != deadlines.end();
+    if (deadline != nullptr && !known && block.kind == protocol::BlockKind::trials)
+      deadlines.push_back(deadline);
+  }
+  return deadlines;
+}
+
+}  // namespace
+
+std::vector<core::Problem> observer_notes(const protocol::Protocol& protocol,
+                                          const simulation::Observer& observer) {
+  std::vector<core::Problem> notes;
+  if (protocol.task.kind == protocol::TaskKind::adjustment || protocol.timing.signal) return notes;
+  const auto [least_s, most_s] = observer.nondecision_range_s();
+  const auto seconds = [](double s) { return plain(core::number(s, 3)); };
+  const auto end = protocol::stimulus_end(protocol);
+  const double opens_s = end && !protocol::explored(protocol.task) ? end->latest_s : 0;
+  for (const auto* deadline : deadlines_of(protocol)) {
+    const double shortest_s = protocol::bounds(*deadline, protocol.factors).first;
+    const double left_s = shortest_s - most_s;
+    const bool nobody_can = shortest_s < opens_s;  // that is a fact about the protocol
+    if (left_s > kLeastDecision_s - 1e-9 || nobody_can) continue;
+    notes.push_back(
+        {deadline->place,
+         left_s > 0
+             ? phrase("the simulated observer needs %1 s outside its decision (its residual and travel), so "
+                      "a deadline of %2 s leaves it only %3 s to decide, and it guesses; people may be "
+                      "quicker",
+                      {seconds(most_s), seconds(shortest_s), seconds(left_s)})
+             : phrase("the simulated observer needs %1 s outside its decision (its residual and travel), so "
+                      "a deadline of %2 s leaves it no time to decide, and its answers are guesses that "
+                      "come too late; people may be quicker",
+                      {seconds(most_s), seconds(shortest_s)}),
+         phrase("--observer sim:residual=...,travel=... of `run` and `power` simulates quicker people")});
+  }
+  const auto& early = protocol.timing.anticipation_s;
+  if (const double early_s = protocol::bounds(early, protocol.factors).second; early_s > least_s)
+    notes.push_back(
+        {early.place,
+         phrase("the simulated observer may answer after %1 s (its residual and travel), and answers before "
+                "%2 s "
+                "count as too early; people may be slower",
+                {seconds(least_s), seconds(early_s)}),
+         phrase("--observer sim:residual=...,travel=... of `run` and `power` simulates slower people")});
+  return notes;
 }
 
 }  // namespace turnpoint::trial

@@ -130,9 +130,11 @@ std::vector<Event> simulated_events(const SimulatedTimes& times, const simulatio
 }
 
 std::int64_t simulated_done_ns(const SimulatedTimes& times, const TrialSpec& spec, double done_s) {
-  constexpr double press_s = 0.5;
+  const double press_s = std::min(0.5, 0.5 * (spec.deadline_s - spec.anticipation_s));
   const auto done_ns = times.slider_ns + whole_ns(done_s);
-  return done_ns >= times.zero_ns ? done_ns : times.zero_ns + whole_ns(spec.anticipation_s + press_s);
+  return done_ns >= times.zero_ns + whole_ns(spec.anticipation_s)
+             ? done_ns
+             : times.zero_ns + whole_ns(spec.anticipation_s + press_s);
 }
 
 Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec) {

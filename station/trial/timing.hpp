@@ -31,7 +31,7 @@ SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSp
 /// What the simulated participant does then, in order of time.
 std::vector<Event> simulated_events(const SimulatedTimes& times, const simulation::Reply& reply);
 
-/// When the simulated participant presses Done: never before response times count.
+/// When the simulated participant presses Done: never before answers count.
 std::int64_t simulated_done_ns(const SimulatedTimes& times, const TrialSpec& spec, double done_s);
 
 Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec);

@@ -983,6 +983,30 @@ class Measured(Folder):
             self.assertEqual((trial["outcome"], trial["proof"], 0 <= after_signal_s <= 0.4), ("answered", "ok", True), trial)
 
 
+class Observer(Folder):
+    def test_a_deadline_that_is_too_short_for_the_observer_is_a_fact_about_the_observer(self):
+        with open(os.path.join(SOURCE, "protocols", "speed-accuracy.toml"), encoding="utf-8") as file:
+            text = file.read()
+        self.assertIn("deadline_s = 0.8\n", text)
+        with open(os.path.join(self.folder, "speed.toml"), "w", encoding="utf-8") as file:
+            file.write(text.replace("deadline_s = 0.8\n", "deadline_s = 0.5\n"))
+        line = text[:text.index("deadline_s = 0.8\n")].count("\n") + 1
+        session = ["run", "speed.toml", "--rig", "simulated", "--participant", "P01", "--headless"]
+        study = ["power", "speed.toml", "--rig", "simulated", "--observers", "2", "--intervals", "0"]
+        for arguments in (["check", "speed.toml", "--rig", "simulated", "--sessions", "2"],
+                          [*session, "--db", "a.sqlite", "--observer", "sim"], study):
+            status, _, err = run(arguments, self.folder)
+            self.assertEqual(status, 0, err)
+            self.assertIn(f"note: speed.toml:{line}:", err)
+            self.assertIn("the simulated observer needs 0.5 s outside its decision (its residual and travel), so a deadline "
+                          "of 0.5 s leaves it no time to decide", err)
+            self.assertIn("--observer sim:residual=...,travel=...", err)
+        for arguments in ([*session, "--db", "b.sqlite"], study):
+            status, _, err = run([*arguments, "--observer", "sim:residual=0.1,travel=0.1"], self.folder)
+            self.assertEqual(status, 0, err)
+            self.assertNotIn("simulated observer", err)
+
+
 STUDY = ["power", "boundary-constant", "--observers", "12", "--intervals", "4"]
 
 
