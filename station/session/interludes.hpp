@@ -58,7 +58,7 @@ class Interludes {
   Reply reply(const Page& page, const std::function<bool(const Input&)>& accepts);
   std::optional<Reply> ask(const protocol::Interlude& interlude, std::size_t index, bool back);
   void simulate_answer(const protocol::Interlude& interlude, std::size_t index);
-  void simulate(InputKind kind, int value, double number = 0);
+  void simulate(input::Any content);
   void keep_answer(const protocol::Interlude& interlude, const std::string& item, const std::string& answer,
                    double response_time_s);
   /// The items of this questionnaire that have been answered since the last block, in the order of the

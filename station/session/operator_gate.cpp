@@ -34,51 +34,41 @@ OperatorGate::OperatorGate(const Setup& setup, const Pages& pages, const trial::
     : setup_(setup), pages_(pages), director_(director), stage_(stage), log_(log), display_(display) {}
 
 Input OperatorGate::received(Input input) {
-  if (input.kind == InputKind::arm) {
+  if (auto* arm = std::get_if<input::Arm>(&input.content)) {
     auto refusal = stage_.clear();
     if (!refusal) refusal = stage_.arm();
-    input.text = refusal ? "refused: " + core::describe(*refusal) : "armed";
+    arm->result = refusal ? "refused: " + core::describe(*refusal) : "armed";
   }
-  if (input.kind == InputKind::disarm) {
+  if (auto* disarm = std::get_if<input::Disarm>(&input.content)) {
     stage_.disarm();
-    input.text = "disarmed";
+    disarm->result = "disarmed";
   }
   log(input);
-  if (input.kind == InputKind::note && !input.text.empty()) keep([&] { log_.annotate(input.text); });
-  if (input.kind != InputKind::button) return input;
+  if (const auto* note = input.as<input::Note>(); note && !note->text.empty())
+    keep([&] { log_.annotate(note->text); });
+  const auto* button = input.as<input::Button>();
+  if (!button) return input;
   const auto& names = stage_.buttons();
-  const auto index = static_cast<std::size_t>(input.value);
+  const auto index = static_cast<std::size_t>(button->index);
   const auto answer = setup_.protocol.task.device != protocol::Device::touch && index < names.size()
                           ? answer_of(names[index], setup_.protocol.task)
                           : std::nullopt;
-  input.kind = answer ? InputKind::answer : InputKind::touch_down;
-  input.value = answer.value_or(0);
+  if (answer)
+    input.content = input::Answer{*answer};
+  else
+    input.content = input::Touch{};
   return input;
 }
 
 void OperatorGate::note(const Input& input) {
-  switch (input.kind) {
-    case InputKind::stop:
-      stop_asked_ = true;
-      quitting_ = quitting_ || !input.text.empty();
-      stop_reason_ = input.text.empty() ? core::kStoppedReason : input.text;
-      break;
-    case InputKind::failure:
-      stop_asked_ = true;
-      stop_reason_ = input.text;
-      break;
-    case InputKind::pause:
-      pause_asked_ = true;
-      break;
-    case InputKind::fault:
-      fault_ = Fault{input.fault, input.text};
-      break;
-    case InputKind::disarm:
-      fault_ = Fault{FaultKind::disarmed, ""};
-      break;
-    default:
-      break;
+  if (const auto* stopped = input.as<input::Stop>()) {
+    quitting_ = quitting_ || !stopped->by.empty();
+    stop(stopped->by.empty() ? core::kStoppedReason : stopped->by);
   }
+  if (const auto* failure = input.as<input::Failure>()) stop(failure->what);
+  if (input.is<input::Pause>()) pause_asked_ = true;
+  if (const auto* fault = input.as<Fault>()) fault_ = *fault;
+  if (input.is<input::Disarm>()) fault_ = Fault{FaultKind::disarmed, ""};
 }
 
 void OperatorGate::keep(const std::function<void()>& write) {
@@ -108,8 +98,8 @@ bool OperatorGate::space_again(const std::string& detail) {
   while (auto input = stage_.wait_until(kForever)) {
     log(*input);
     note(*input);
-    if (input->kind == InputKind::stop || input->kind == InputKind::failure) return false;
-    if (input->kind == InputKind::next) return true;
+    if (input->is<input::Stop>() || input->is<input::Failure>()) return false;
+    if (input->is<input::Next>()) return true;
   }
   return false;
 }
@@ -129,8 +119,8 @@ Flow OperatorGate::until_armed(const Fault& why) {
     const auto input = received(std::move(*waited));
     note(input);
     if (stop_asked_) return Flow::stop;
-    if (input.kind == InputKind::fault) page = pages_.fault(input.fault, input.text, director_);
-    if (input.kind == InputKind::arm && !armed()) page.detail = input.text;
+    if (const auto* fault = input.as<Fault>()) page = pages_.fault(fault->kind, fault->detail, director_);
+    if (const auto* arm = input.as<input::Arm>(); arm && !armed()) page.detail = arm->result;
   }
   fault_.reset();  // the page has shown all faults that occurred meanwhile, so forget them
   return Flow::go_on;
@@ -158,7 +148,7 @@ std::string OperatorGate::reason_to_continue(const Fault& why) {
     auto waited = stage_.wait_until(kForever);
     if (!waited) continue;
     const auto input = received(std::move(*waited));
-    if (input.kind == InputKind::note && !input.text.empty()) return input.text;
+    if (const auto* reason = input.as<input::Note>(); reason && !reason->text.empty()) return reason->text;
     note(input);
   }
   // Clear the request: the caller ends the session with stop() and gives the reason.
@@ -168,19 +158,13 @@ std::string OperatorGate::reason_to_continue(const Fault& why) {
 
 Flow OperatorGate::end_at_limit(const std::string& what) {
   stage_.close_amplifier();
-  Input fault;
-  fault.time_ns = stage_.now_ns();
-  fault.kind = InputKind::fault;
-  fault.fault = FaultKind::limits;
-  fault.text = what;
-  log(fault);
+  log({stage_.now_ns(), Fault{FaultKind::limits, what}});
   show(pages_.fault(FaultKind::limits, what, director_));
   for (auto over = false; !over;) {
     const auto input = stage_.wait_until(kForever);
     if (!input) continue;
     log(*input);
-    over =
-        input->kind == InputKind::next || input->kind == InputKind::stop || input->kind == InputKind::failure;
+    over = input->is<input::Next>() || input->is<input::Stop>() || input->is<input::Failure>();
   }
   stop(what);
   return Flow::stop;
@@ -224,8 +208,8 @@ Flow OperatorGate::show_and_wait(Page page, double at_least_s) {
       continue;
     }
     // Ignore a press that was made before this page appeared: it was meant for the previous page.
-    if (input.kind == InputKind::next && input.time_ns >= shown_ns) return Flow::go_on;
-    if (buttons_turn && input.kind == InputKind::answer && input.time_ns >= shown_ns + kReading_ns)
+    if (input.is<input::Next>() && input.time_ns >= shown_ns) return Flow::go_on;
+    if (buttons_turn && input.is<input::Answer>() && input.time_ns >= shown_ns + kReading_ns)
       return Flow::go_on;
   }
   return Flow::go_on;
@@ -270,7 +254,7 @@ Flow OperatorGate::pause_if_asked() {
 }
 
 void OperatorGate::log(const Input& input) {
-  if (input.kind != InputKind::heard) log_.event(event_row(input, log_.session().trials));
+  if (!input.is<input::Heard>()) log_.event(event_row(input, log_.session().trials));
 }
 
 }  // namespace turnpoint::session

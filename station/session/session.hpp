@@ -89,7 +89,7 @@ struct Summary {
 
 /// Runs a session to its end on the calling thread, with the real clock, pages on `display` and input from
 /// `inputs`. If the amplifier is real or the session is live, the surface stays silent until an operator has
-/// pushed InputKind::arm; the same holds after each fault of the amplifier. `monitor` may be null.
+/// pushed input::Arm; the same holds after each fault of the amplifier. `monitor` may be null.
 ///
 /// If the setup has an observer, the session runs on the virtual clock and uses no hardware. The only input
 /// with an effect is a request to stop, and it is read only between trials. `display` may then be null.

@@ -319,28 +319,29 @@ void SessionRun::drive_trial(Running& trial, std::optional<trial::EventKind> cut
 }
 
 void SessionRun::handle_in_trial(Input raw, Running& trial) {
-  const bool by_button = raw.kind == InputKind::button;
+  const bool by_button = raw.is<input::Button>();
   const auto input = gate_.received(std::move(raw));
   gate_.note(input);
-  if (input.measured) drift_.follow(*input.measured);
-  if (input.measured) add_measured(trial.row, *input.measured, input.value, trial.measured++ == 0);
-  if (input.forces && !trial.onsets.empty()) {
+  const auto* measured = input.as<input::Measured>();
+  if (measured) drift_.follow(*measured->result);
+  if (measured) add_measured(trial.row, *measured->result, measured->interval, trial.measured++ == 0);
+  if (measured && measured->forces && !trial.onsets.empty()) {
+    const auto& forces = *measured->forces;
     const auto& onset = trial.onsets.front();
-    add_forces(trial.row, *input.forces, {trial.friction_level, part_of(trial.spec)},
-               setup_.rig.output.rate_Hz,
+    add_forces(trial.row, forces, {trial.friction_level, part_of(trial.spec)}, setup_.rig.output.rate_Hz,
                {onset.frame, 1e-9 * static_cast<double>(onset.time_ns - started_ns_)});
-    const bool asked = setup_.protocol.sensing && input.forces->state == sensing::ForcesState::ok;
+    const bool asked = setup_.protocol.sensing && forces.state == sensing::ForcesState::ok;
     // A stimulus that was not the planned one makes the trial void, however the finger moved.
     const bool refuted = trial.row.proof == core::Proof::refused || trial.row.proof == core::Proof::stopped ||
                          trial.row.proof == core::Proof::lost;
-    trial.outside = asked && !refuted && !is_training() && input.forces->movement != sensing::Movement::ok;
+    trial.outside = asked && !refuted && !is_training() && forces.movement != sensing::Movement::ok;
     if (trial.outside && repeats_in_a_row_ < setup_.protocol.sensing->repeats)
       perform(trial.machine.handle({input.time_ns, trial::EventKind::outside, 0}), trial);
     else if (trial.spec.strokes)
-      judge_strokes(input, trial);
+      judge_strokes(forces, input, trial);
   }
-  const bool answers = input.kind == InputKind::answer || input.kind == InputKind::value ||
-                       (trial.slider && input.kind == InputKind::next);
+  const bool answers =
+      input.is<input::Answer>() || input.is<input::Value>() || (trial.slider && input.is<input::Next>());
   if (answers && !trial.spec.strokes && !trial.machine.result().response) {
     trial.row.response_time_quality = name(input.quality);
     trial.by_button = by_button;
@@ -421,10 +422,7 @@ void SessionRun::ask_observer(const Running& trial, std::int64_t onset_ns) {
       participant_->answer(trial::question_of(trial.spec, setup_.protocol, summary_.seed), times, now_ns);
   } catch (const core::ProgramFailed& failed) {
     // The trial ends without a result, and the session is interrupted.
-    Input failure;
-    failure.kind = InputKind::failure;
-    failure.text = failed.what();
-    participant_->will(failure, now_ns);
+    participant_->will({now_ns, input::Failure{failed.what()}}, now_ns);
   }
 }
 
@@ -525,24 +523,24 @@ std::optional<trial::Event> SessionRun::event_in_trial(const Input& input, Runni
   const trial::Event touch{input.time_ns, trial::EventKind::touch, 0};
   const bool confiding = trial.machine.phase() == trial::Phase::confidence;
   const auto& answer = setup_.protocol.task.value;
-  if (input.kind == InputKind::value) {
-    const auto value = answer ? protocol::accepted(*answer, input.number) : std::nullopt;
+  if (const auto* given = input.as<input::Value>()) {
+    const auto value = answer ? protocol::accepted(*answer, given->number) : std::nullopt;
     if (!value || confiding) return touch;
     if (!trial.machine.result().response) trial.value = value;
     return trial::Event{input.time_ns, trial::EventKind::answer, 0};
   }
   // If a number is expected, a button or a touch beside the number pad is no answer. A button cannot give a
   // confidence rating either.
-  if (input.kind == InputKind::answer && (confiding ? by_button : answer.has_value())) return touch;
+  if (input.is<input::Answer>() && (confiding ? by_button : answer.has_value())) return touch;
   if (trial.spec.strokes) {
     const auto event = event_of(input);
     return event && event->kind == trial::EventKind::answer ? touch : event;
   }
   if (!trial.slider) return event_of(input);
   // Ignore slider movements in silence: the participant could not feel their effect.
-  if (input.kind == InputKind::slider && trial.machine.phase() == trial::Phase::stimulus)
-    trial.slider->move(input.number);
-  if (input.kind == InputKind::next) return trial::Event{input.time_ns, trial::EventKind::answer, 0};
+  const auto* slider = input.as<input::Slider>();
+  if (slider && trial.machine.phase() == trial::Phase::stimulus) trial.slider->move(slider->value);
+  if (input.is<input::Next>()) return trial::Event{input.time_ns, trial::EventKind::answer, 0};
   return event_of(input);
 }
 
@@ -583,9 +581,9 @@ bool SessionRun::is_training() const { return director_.block()->kind == protoco
 
 /// Ends a trial in which nothing is asked, once it is known how the finger moved. The trial is void if the
 /// forces are unknown.
-void SessionRun::judge_strokes(const Input& input, Running& trial) {
-  const bool known = input.forces->state == sensing::ForcesState::ok;
-  const int movement = input.forces->movement == sensing::Movement::ok ? 0 : 1;
+void SessionRun::judge_strokes(const sensing::TrialForces& forces, const Input& input, Running& trial) {
+  const bool known = forces.state == sensing::ForcesState::ok;
+  const int movement = forces.movement == sensing::Movement::ok ? 0 : 1;
   if (known) trial.row.response_time_quality = name(input.quality);
   perform(trial.machine.handle({input.time_ns, known ? trial::EventKind::answer : trial::EventKind::refuted,
                                 known ? movement : 0}),
@@ -823,7 +821,7 @@ Flow SessionRun::play_example(const protocol::Example& example, Page page) {
       if (!waited) continue;
       const auto input = gate_.received(std::move(*waited));
       gate_.note(input);
-      if (gate_.stop_asked() || gate_.fault() || input.kind == InputKind::pause) {
+      if (gate_.stop_asked() || gate_.fault() || input.is<input::Pause>()) {
         off_ns = std::min(off_ns, stage_->silence(false));
         break;
       }

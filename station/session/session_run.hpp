@@ -111,7 +111,7 @@ class SessionRun {
 
   // Blocks in which the finger strokes the surface and nothing is asked.
   bool is_training() const;
-  void judge_strokes(const Input& input, Running& trial);
+  void judge_strokes(const sensing::TrialForces& forces, const Input& input, Running& trial);
   Flow finish_friction_table();
   void use_measured_friction();
   sensing::FrictionTable measured_friction(int block_index) const;
@@ -139,7 +139,7 @@ class SessionRun {
   Interludes interludes_;
   Summary summary_;
   std::string known_mixer_;  ///< what the mixer's check found when the operator last went on despite it
-  int examples_ = 0;  ///< examples presented so far
+  int examples_ = 0;         ///< examples presented so far
   int scored_ = 0, right_ = 0;
   int voids_in_a_row_ = 0, refused_in_a_row_ = 0, repeats_in_a_row_ = 0, unanswered_in_a_row_ = 0;
   std::int64_t started_ns_ = 0;

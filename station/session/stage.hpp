@@ -60,7 +60,7 @@ class Stage {
   /// Schedules the intervals of a trial. The first interval begins at the earliest safe frame that is not
   /// before `earliest_ns`; the distances between intervals are exactly those of their start frames. Returns
   /// the onsets. If scheduling fails, returns nothing and pushes a fault to the inputs. Later, the inputs
-  /// report lost frames (InputKind::xrun), and each interval that was played completely (InputKind::heard).
+  /// report lost frames (input::Xrun), and each interval that was played completely (input::Heard).
   virtual std::vector<Onset> present(std::span<const audio::PreparedBurst> intervals,
                                      std::int64_t earliest_ns) = 0;
 
@@ -73,7 +73,7 @@ class Stage {
   /// will be silent. If the converter does not report its position, this time is an upper limit; if the
   /// converter is gone, it is the time of the loss.
   /// `awaits_heard` says that the trial has not ended: it still waits for the report that each interval was
-  /// played (InputKind::heard). No such report comes for an interval that is cancelled, so a fault comes
+  /// played (input::Heard). No such report comes for an interval that is cancelled, so a fault comes
   /// instead.
   virtual std::int64_t silence(bool awaits_heard) = 0;
 

@@ -242,13 +242,11 @@ TEST_CASE("while the slider moves, the operator's page shows the tone that is pl
   const std::vector<double> moves{-15, -3.5, 8, 20, 2};
   std::size_t moved = 0;
   const auto move = [&] {
-    session::Input input;
-    input.time_ns = system::monotonic_ns();
-    const bool done = moved % (moves.size() + 1) == moves.size();
-    input.kind = done ? session::InputKind::next : session::InputKind::slider;
-    if (!done) input.number = moves[moved % (moves.size() + 1)];
-    ++moved;
-    room.inputs.push(input);
+    const auto at = moved++ % (moves.size() + 1);
+    if (at == moves.size())
+      room.push(session::input::Next{});
+    else
+      room.push(session::input::Slider{moves[at]});
   };
   sees.next_move = move;
   room.reacts = [&](const session::Page& page) {

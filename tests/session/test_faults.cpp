@@ -236,7 +236,7 @@ TEST_CASE("clipping causes a fault page", "[session][live][fault]") {
 
 TEST_CASE("an amplifier that nobody has armed causes a fault page", "[session][live][fault]") {
   Mishap mishap;
-  mishap.strikes = [&] { mishap.room.push(InputKind::disarm); };
+  mishap.strikes = [&] { mishap.room.push(input::Disarm{}); };
   mishap.room.reacts = [&](const auto& page) { mishap.react(page); };
   const auto summary = session::run(mishap.setup, &mishap.room, mishap.room.inputs, mishap.devices());
   CHECK(summary.status == core::SessionStatus::completed);

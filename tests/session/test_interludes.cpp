@@ -96,18 +96,14 @@ struct Person : Room {
     reacts = [this](const session::Page& page) { react(page); };
   }
   void react(const session::Page& page) {
-    if (page.kind == PageKind::explanation && !page.playing) return push(InputKind::next);
+    if (page.kind == PageKind::explanation && !page.playing) return push(input::Next{});
     const bool typed = page.kind == PageKind::number || page.kind == PageKind::line;
     if (page.kind != PageKind::question && !typed) return cooperate(page);
-    if (next_reply >= replies.size()) return push(InputKind::stop);
+    if (next_reply >= replies.size()) return push(input::Stop{});
     const double reply = replies[next_reply++];
-    if (reply < 0) return push(InputKind::back);
-    if (!typed) return push(InputKind::answer, static_cast<int>(reply));
-    session::Input input;
-    input.time_ns = system::monotonic_ns();
-    input.kind = InputKind::value;
-    input.number = reply;
-    inputs.push(input);
+    if (reply < 0) return push(input::Back{});
+    if (!typed) return push(input::Answer{static_cast<int>(reply)});
+    push(input::Value{reply});
   }
 };
 
@@ -144,10 +140,10 @@ TEST_CASE("an answer that the item does not allow, and a response button, answer
   person.reacts = [&](const session::Page& page) {
     if (page.kind == PageKind::question) {
       person.press(0);
-      person.push(InputKind::answer, 7);
-      if (!page.back) person.push(InputKind::back);
+      person.push(input::Answer{7});
+      if (!page.back) person.push(input::Back{});
     }
-    if (page.kind == PageKind::question && page.back) return person.push(InputKind::stop);
+    if (page.kind == PageKind::question && page.back) return person.push(input::Stop{});
     react(page);
   };
   const auto summary = session::run(setup, &person, person.inputs, person.devices());
@@ -181,8 +177,8 @@ TEST_CASE("an example is presented as often as the participant wishes", "[sessio
   int wishes = 3, back = 1;
   person.reacts = [&](const session::Page& page) {
     const bool explained = page.kind == PageKind::explanation && !page.playing;
-    if (explained && page.text == "Second." && back-- > 0) return person.push(InputKind::back);
-    if (explained && !page.answers.empty() && wishes-- > 0) return person.push(InputKind::answer, 0);
+    if (explained && page.text == "Second." && back-- > 0) return person.push(input::Back{});
+    if (explained && !page.answers.empty() && wishes-- > 0) return person.push(input::Answer{0});
     react(page);
   };
   const auto summary = session::run(setup, &person, person.inputs, person.devices());

@@ -26,7 +26,6 @@
 #include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
-using live_room::InputKind;
 using live_room::PageKind;
 
 namespace turnpoint {
@@ -233,12 +232,9 @@ TEST_CASE(
   room.reacts = [&, change = change, continues = continues](const session::Page& page) {
     if (page.kind == PageKind::fault && page.fault == core::FaultKind::self_test) {
       ++asked;
-      session::Input input;
-      input.time_ns = system::monotonic_ns();
-      input.kind = continues ? InputKind::note : InputKind::stop;
-      if (continues) input.text = "set back by hand";
       if (change == Change::again) card.controls[0].values = {207, 207};
-      return room.inputs.push(input);
+      return room.push(continues ? live_room::input::Any(live_room::input::Note{"set back by hand"})
+                                 : live_room::input::Stop{});
     }
     if (page.kind == PageKind::stimulus && (change == Change::level || change == Change::again))
       card.controls[0].values = {207, 180};
@@ -313,8 +309,9 @@ TEST_CASE("the mixer's levels belong to a calibration", "[session][alsa][mixer]"
   SECTION("a level that was changed is named with both values") {
     card.controls[0].values = {207, 180};
     CHECK(check().verdict == core::Verdict::failed);
-    CHECK(check().what == "the control \"Digital Playback Volume\" of the sound card is at 207, 180; during the "
-                          "calibration it was at 207, 207");
+    CHECK(check().what ==
+          "the control \"Digital Playback Volume\" of the sound card is at 207, 180; during the "
+          "calibration it was at 207, 207");
   }
   SECTION("a switch and a choice that were changed are named too") {
     card.controls[1].values = {1, 0}, card.controls[2].values = {0, 0};
@@ -323,8 +320,9 @@ TEST_CASE("the mixer's levels belong to a calibration", "[session][alsa][mixer]"
   }
   SECTION("a control that is gone is named") {
     card.controls.erase(card.controls.begin());
-    CHECK(check().what == "the control \"Digital Playback Volume\" of the sound card cannot be read; during the "
-                          "calibration it was at 207, 207");
+    CHECK(check().what ==
+          "the control \"Digital Playback Volume\" of the sound card cannot be read; during the "
+          "calibration it was at 207, 207");
   }
   SECTION("a calibration is not continued with other levels") {
     maintenance::write_calibration(made, rig, path);

@@ -235,7 +235,7 @@ TEST_CASE("a session with people that stops at the page of a failed program can 
   live_room::Room room;
   room.reacts = [&](const auto& page) {
     if (page.kind == live_room::PageKind::fault && page.fault == core::FaultKind::program)
-      room.push(live_room::InputKind::stop);
+      room.push(live_room::input::Stop{});
     else
       room.cooperate(page);
   };

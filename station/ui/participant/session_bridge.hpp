@@ -46,7 +46,7 @@ class SessionBridge : public QObject, public session::Display {
   void guide(const session::Guidance& guidance) override;
 
   /// Stamps each touch and mouse press anywhere on the window with the time. A touch that does not become an
-  /// answer within a moment is reported as `touch_down`.
+  /// answer within a moment is reported as `Touch`.
   Q_INVOKABLE void watch(QObject* window);
 
   PageModel* page() { return &page_; }
@@ -100,9 +100,9 @@ class SessionBridge : public QObject, public session::Display {
   };
 
   void note_touch(int id, QPointF position, const QObject* window);
-  void push_touch(session::InputKind kind, int value, const Pending& touch);
+  void push_touch(session::input::Any content, const Pending& touch);
   void flush();
-  void push(session::InputKind kind, int value = 0, double number = 0);
+  void push(session::input::Any content);
   Clock clock_;
   Sink sink_;
   KernelTime kernel_time_;

@@ -111,12 +111,8 @@ void SessionRunner::run() {
 void SessionRunner::open_touch() {
   touch_ = session::open_touch(setup_.rig, [this](io::TouchPanelState state) {
     if (state == io::TouchPanelState::back) return;
-    session::Input input;
-    input.time_ns = system::monotonic_ns();
-    input.kind = session::InputKind::fault;
-    input.fault = session::FaultKind::touch_gone;
-    input.text = "the touch panel was disconnected";
-    inputs_.push(std::move(input));
+    inputs_.push({system::monotonic_ns(),
+                  session::Fault{session::FaultKind::touch_gone, "the touch panel was disconnected"}});
   });
   if (!touch_) return bridge_.set_kernel_time({});
   bridge_.set_kernel_time(
@@ -143,11 +139,8 @@ void SessionRunner::show_failure() {
 
 void SessionRunner::ask_to_stop() {
   if (!running()) return;
-  session::Input input;
-  input.time_ns = system::monotonic_ns();
-  input.kind = session::InputKind::stop;
-  input.text = "the program was stopped by a signal, or its window was closed";
-  inputs_.push(std::move(input));
+  inputs_.push({system::monotonic_ns(),
+                session::input::Stop{"the program was stopped by a signal, or its window was closed"}});
 }
 
 std::optional<session::Summary> SessionRunner::finish() {
