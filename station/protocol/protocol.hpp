@@ -207,6 +207,7 @@ struct Strokes {
   int repeats = 0;                ///< friction table: number of trials at each displacement
   /// Friction table: trials after the block are planned with the measured table instead of the rig's.
   bool used = false;
+  bool operator==(const Strokes&) const = default;
 };
 
 /// A block as it runs for one participant. block_order() makes such blocks from the `sequence` tables of the

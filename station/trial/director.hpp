@@ -40,6 +40,7 @@ struct TrialSpec {
   std::optional<double> signal_s;
   /// true if the block's instruction sets the deadline; a timeout then counts as a result
   bool timeouts_are_data = false;
+  bool operator==(const TrialSpec&) const = default;
 };
 
 /// The parts of a trial's result on which later trials depend.
