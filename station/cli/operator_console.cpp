@@ -75,8 +75,9 @@ const char* name(PageKind kind) {
 
 /// What the operator can type on the page of a fault.
 std::string what_continues(const session::Page& page) {
-  if (page.fault == session::FaultKind::self_test) return "; note REASON continues, stop ends the session";
-  if (page.fault == session::FaultKind::limits) return "; next ends the session";
+  if (page.fault.kind == session::FaultKind::self_test)
+    return "; note REASON continues, stop ends the session";
+  if (page.fault.kind == session::FaultKind::limits) return "; next ends the session";
   return page.amplifier.empty() ? "; next continues" : "; amplifier " + page.amplifier + ": arm or stop";
 }
 
@@ -94,7 +95,7 @@ OperatorConsole::OperatorConsole(const rig::Rig& rig, session::Inputs& inputs, s
 void OperatorConsole::show(const session::Page& page) {
   std::string text = name(page.kind);
   if (page.kind == PageKind::fault) {
-    text += ": " + page.text + (page.detail.empty() ? "" : " (" + page.detail + ")");
+    text += ": " + page.text + (page.fault.detail.empty() ? "" : " (" + page.fault.detail + ")");
     text += what_continues(page);
   }
   if (page.kind == PageKind::feedback && page.correct) text += *page.correct ? ": right" : ": wrong";

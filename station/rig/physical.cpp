@@ -102,6 +102,13 @@ physics::Surface surface_of(const Rig& rig) {
   return surface;
 }
 
+Outline outline_of(const Rig& rig) {
+  const auto shape = surface_of(rig);
+  const double length_m = rig.surface.length_m;
+  return {1e3 * length_m, 1e3 * physics::half_width_m(shape, 0), 1e3 * physics::half_width_m(shape, length_m),
+          rig.surface.wide_end == WideEnd::left};
+}
+
 physics::FrictionMap friction_of(const Rig& rig) {
   if (!rig.friction.measured) {
     physics::LoadSharing model;

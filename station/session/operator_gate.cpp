@@ -94,7 +94,7 @@ void OperatorGate::keep(const std::function<void()>& write) {
 /// session.
 bool OperatorGate::space_again(const std::string& detail) {
   stage_.close_amplifier();
-  show(pages_.fault(FaultKind::disk_full, detail, director_));
+  show(pages_.fault({FaultKind::disk_full, detail}, director_));
   while (auto input = stage_.wait_until(kForever)) {
     log(*input);
     note(*input);
@@ -110,7 +110,7 @@ bool OperatorGate::armed() const {
 }
 
 Flow OperatorGate::until_armed(const Fault& why) {
-  auto page = pages_.fault(why.kind, why.detail, director_);
+  auto page = pages_.fault(why, director_);
   while (!armed()) {
     page.amplifier = audio::name(stage_.amplifier());
     show(page);
@@ -119,8 +119,8 @@ Flow OperatorGate::until_armed(const Fault& why) {
     const auto input = received(std::move(*waited));
     note(input);
     if (stop_asked_) return Flow::stop;
-    if (const auto* fault = input.as<Fault>()) page = pages_.fault(fault->kind, fault->detail, director_);
-    if (const auto* arm = input.as<input::Arm>(); arm && !armed()) page.detail = arm->result;
+    if (const auto* fault = input.as<Fault>()) page = pages_.fault(*fault, director_);
+    if (const auto* arm = input.as<input::Arm>(); arm && !armed()) page.fault.detail = arm->result;
   }
   fault_.reset();  // the page has shown all faults that occurred meanwhile, so forget them
   return Flow::go_on;
@@ -129,7 +129,7 @@ Flow OperatorGate::until_armed(const Fault& why) {
 Flow OperatorGate::recover() {
   stage_.close_amplifier();
   while (const auto what = std::exchange(fault_, std::nullopt)) {
-    auto page = pages_.fault(what->kind, what->detail, director_);
+    auto page = pages_.fault(*what, director_);
     if (!armed()) {
       if (until_armed(*what) == Flow::stop) return Flow::stop;
       page = pages_.paused(director_);
@@ -143,7 +143,7 @@ Flow OperatorGate::recover() {
 
 std::string OperatorGate::reason_to_continue(const Fault& why) {
   if (!setup_.observer.empty()) return "";
-  show(pages_.fault(why.kind, why.detail, director_));
+  show(pages_.fault(why, director_));
   while (!stop_asked_) {
     auto waited = stage_.wait_until(kForever);
     if (!waited) continue;
@@ -159,7 +159,7 @@ std::string OperatorGate::reason_to_continue(const Fault& why) {
 Flow OperatorGate::end_at_limit(const std::string& what) {
   stage_.close_amplifier();
   log({stage_.now_ns(), Fault{FaultKind::limits, what}});
-  show(pages_.fault(FaultKind::limits, what, director_));
+  show(pages_.fault({FaultKind::limits, what}, director_));
   for (auto over = false; !over;) {
     const auto input = stage_.wait_until(kForever);
     if (!input) continue;

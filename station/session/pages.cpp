@@ -96,12 +96,7 @@ Page Pages::blank(PageKind kind, const protocol::Block* block, const trial::Dire
   page.kind = kind;
   page.language = setup_.language;
   page.run_mode = store::name(setup_.run_mode);
-  const auto& surface = setup_.rig.surface;
-  const auto shape = rig::surface_of(setup_.rig);
-  page.length_mm = 1e3 * surface.length_m;
-  page.wide_half_width_mm = 1e3 * physics::half_width_m(shape, 0);
-  page.narrow_half_width_mm = 1e3 * physics::half_width_m(shape, surface.length_m);
-  page.wide_end_left = surface.wide_end == rig::WideEnd::left;
+  page.surface = rig::outline_of(setup_.rig);
   if (block != nullptr) page.instruction = instruction_of(*block);
   if (director != nullptr) {
     page.trials_done = director->trials_done();
@@ -154,7 +149,7 @@ std::optional<Page> Pages::block_over(const protocol::Block& block, const BlockS
   auto page = blank(PageKind::instructions, &block, &director);
   page.title = core::text("block_over", setup_.language);
   page.instruction.clear();
-  page.length_mm = 0;  // the page shows no surface
+  page.surface = {};  // the page shows no surface
   const auto accuracy = score.accuracy(), time_s = score.median_time_s();
   const auto line = [&](const char* key, std::vector<core::Phrase> values = {}) {
     page.text +=
@@ -186,9 +181,7 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
     return page;
   }
   page.mark_mm = mark_of(spec);
-  page.interval = interval + 1;
-  page.intervals = static_cast<int>(spec.intervals.size());
-  page.interval_names = interval_names(task.kind);
+  page.interval = {interval + 1, static_cast<int>(spec.intervals.size()), interval_names(task.kind)};
   page.text = text(setup_.protocol.task.question);
   page.answers_open = phase == Phase::response || (phase == Phase::stimulus && explored);
   for (const auto& choice : task.choices)
@@ -270,9 +263,7 @@ Page Pages::farewell(const protocol::Localised& words, const trial::Director& di
 void Pages::add_slider(Page& page, const trial::SliderSpan& span, double setting) const {
   page.kind = PageKind::adjust;
   page.answers.clear();
-  page.slider = setting;
-  page.slider_min = span.shown_low, page.slider_max = span.shown_high;
-  page.slider_step = span.step;
+  page.slider = {setting, span.shown_low, span.shown_high, span.step};
 }
 
 Page Pages::between_trials(const protocol::Block* block, const trial::Director& director) const {
@@ -293,15 +284,14 @@ Page Pages::practice_again(const protocol::Block& block, const trial::Director& 
   return page;
 }
 
-Page Pages::fault(FaultKind kind, const std::string& detail, const trial::Director& director) const {
+Page Pages::fault(const Fault& fault, const trial::Director& director) const {
   auto page = blank(PageKind::fault, nullptr, &director);
-  const auto text = core::fault_text(kind, setup_.language);
+  const auto text = core::fault_text(fault.kind, setup_.language);
   page.title = core::text("please_wait", setup_.language);
-  page.fault = kind;
+  page.fault = fault;
   page.text = text.happened;
   page.safe = text.safe;
   page.to_do = text.to_do;
-  page.detail = detail;
   return page;
 }
 

@@ -46,9 +46,8 @@ class Pages {
   /// Adds what a trial was worth to its feedback and, if given, the score.
   void add_points(Page& page, double points, std::optional<double> score) const;
   Page practice_again(const protocol::Block& block, const trial::Director& director) const;
-  /// Makes the page for a fault that stops the session until somebody has repaired it. `detail` is what the
-  /// station found.
-  Page fault(FaultKind kind, const std::string& detail, const trial::Director& director) const;
+  /// Makes the page for a fault that stops the session until somebody has repaired it.
+  Page fault(const Fault& fault, const trial::Director& director) const;
   Page paused(const trial::Director& director) const;
   Page end(const Summary& summary, const trial::Director& director) const;
 

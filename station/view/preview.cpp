@@ -164,13 +164,6 @@ SceneLook Preview::look(const std::string& scene, const protocol::Factors& facto
   return look;
 }
 
-Outline outline_of(const rig::Rig& rig) {
-  const auto shape = rig::surface_of(rig);
-  const double length_m = rig.surface.length_m;
-  return {1e3 * length_m, 1e3 * physics::half_width_m(shape, 0), 1e3 * physics::half_width_m(shape, length_m),
-          rig.surface.wide_end == rig::WideEnd::left};
-}
-
 protocol::Factors factors_for(const protocol::Protocol& protocol, const std::vector<std::string>& set,
                               std::vector<std::string>& assumed) {
   protocol::Factors factors;

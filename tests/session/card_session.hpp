@@ -191,7 +191,8 @@ struct CardSession {
     };
     room.reacts = [this](const session::Page& page) {
       reacts(page);
-      if (page.kind == PageKind::fault) faults.push_back(page.fault), details.push_back(page.detail);
+      if (page.kind == PageKind::fault)
+        faults.push_back(page.fault.kind), details.push_back(page.fault.detail);
       if (page.kind == PageKind::stimulus && (first_answered || room.stimuli > 1))
         later(0.3, [this] { room.push(input::Answer{}); });
       if (page.kind == PageKind::fault) return later(repair_s, [this, page] { room.cooperate(page); });

@@ -49,7 +49,7 @@ struct Saboteur : session::Monitor {
 struct Pages : session::Display {
   std::vector<std::string> faults, messages;
   void show(const session::Page& page) override {
-    if (page.kind == session::PageKind::fault) faults.push_back(page.detail);
+    if (page.kind == session::PageKind::fault) faults.push_back(page.fault.detail);
     if (page.kind == session::PageKind::feedback && !page.correct && !page.text.empty())
       messages.push_back(page.text);
   }

@@ -128,11 +128,11 @@ TEST_CASE("the same setting has a different place on the screen from trial to tr
   session::run(setup_in(folder, "sim"), &pages, inputs);
   std::set<double> lows;
   for (const auto& page : pages.sliders) {
-    CHECK(page.slider_min <= -25);
-    CHECK(page.slider_max >= 25);
-    CHECK(page.slider_max - page.slider_min == Approx(60));
+    CHECK(page.slider.low <= -25);
+    CHECK(page.slider.high >= 25);
+    CHECK(page.slider.high - page.slider.low == Approx(60));
     CHECK(page.answers.empty());
-    lows.insert(page.slider_min);
+    lows.insert(page.slider.low);
   }
   CHECK(lows.size() > 5);
 }

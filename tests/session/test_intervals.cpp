@@ -170,7 +170,7 @@ TEST_CASE("pages of ABX and match-to-sample call the intervals by the letters of
   struct Pages : session::Display {
     std::vector<std::string> names;
     void show(const session::Page& page) override {
-      if (page.kind == session::PageKind::stimulus) names = page.interval_names;
+      if (page.kind == session::PageKind::stimulus) names = page.interval.names;
     }
   };
   using Words = std::vector<std::string>;

@@ -170,7 +170,7 @@ TEST_CASE("a live session reads its force cells through alsa-lib, and stores wha
   live_room::Room room;
   std::string faults;
   room.reacts = [&](const session::Page& page) {
-    if (page.kind == PageKind::fault) faults += page.text + " " + page.detail + "; ";
+    if (page.kind == PageKind::fault) faults += page.text + " " + page.fault.detail + "; ";
     finger.touches_at = page.kind == PageKind::stimulus ? LibraryCard::frame_now() + 20'000 : -1;
     if (page.kind == PageKind::response) return room.press(0);
     if (page.kind != PageKind::stimulus) room.cooperate(page);
@@ -230,7 +230,7 @@ TEST_CASE(
   live_room::Room room;
   int asked = 0;
   room.reacts = [&, change = change, continues = continues](const session::Page& page) {
-    if (page.kind == PageKind::fault && page.fault == core::FaultKind::self_test) {
+    if (page.kind == PageKind::fault && page.fault.kind == core::FaultKind::self_test) {
       ++asked;
       if (change == Change::again) card.controls[0].values = {207, 207};
       return room.push(continues ? live_room::input::Any(live_room::input::Note{"set back by hand"})

@@ -92,10 +92,10 @@ TEST_CASE(
       pressed_ns = system::monotonic_ns();
       return room.lines->set(SharedLines::stop, true, pressed_ns);
     }
-    if (page.kind == PageKind::fault && page.fault == session::FaultKind::stop_pressed &&
+    if (page.kind == PageKind::fault && page.fault.kind == session::FaultKind::stop_pressed &&
         room.lines->level(SharedLines::stop)) {
       // First try to arm while the stop is still pressed: this must be refused.
-      if (page.detail.find("refused") == std::string::npos) return room.push(input::Arm{});
+      if (page.fault.detail.find("refused") == std::string::npos) return room.push(input::Arm{});
       room.lines->set(SharedLines::stop, false, system::monotonic_ns());
     }
     room.cooperate(page);
@@ -129,8 +129,8 @@ TEST_CASE(
   int refused = 0;
   room.reacts = [&](const auto& page) {
     if (page.kind == PageKind::stimulus && room.stimuli == 1) return room.lines->remove();
-    if (page.kind == PageKind::fault && page.fault == session::FaultKind::lines_gone &&
-        page.detail.find("refused: GPIO lines disconnected") == 0 && ++refused == 2)
+    if (page.kind == PageKind::fault && page.fault.kind == session::FaultKind::lines_gone &&
+        page.fault.detail.find("refused: GPIO lines disconnected") == 0 && ++refused == 2)
       room.lines->put_back();
     room.cooperate(page);
   };
@@ -180,7 +180,7 @@ TEST_CASE("continuing before the lost buttons are back shows the fault page agai
   int told = 0;
   room.reacts = [&](const auto& page) {
     if (page.kind == PageKind::stimulus && room.stimuli == 1) return buttons->remove();
-    if (page.kind == PageKind::fault && page.fault == session::FaultKind::lines_gone && ++told == 3) {
+    if (page.kind == PageKind::fault && page.fault.kind == session::FaultKind::lines_gone && ++told == 3) {
       CHECK(page.amplifier.empty());  // the amplifier's lines are on another chip, so it stays armed
       buttons->put_back();
     }

@@ -27,7 +27,7 @@ void ScriptedSession::showWith(const QString& name, const QString& text) {
   for (auto exhibit : gallery("en")) {
     if (exhibit.name != name.toStdString()) continue;
     auto& page = exhibit.page;
-    for (auto* place : {&page.title, &page.text, &page.safe, &page.to_do, &page.detail}) *place = words;
+    for (auto* place : {&page.title, &page.text, &page.safe, &page.to_do, &page.fault.detail}) *place = words;
     for (auto& answer : page.answers) answer.label = words;
     for (auto& line : page.summary) line.value = words;
     return bridge_.show(page);

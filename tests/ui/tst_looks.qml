@@ -137,7 +137,7 @@ Item {
             // The text of a long consent form is cut off on purpose: it scrolls, and a symbol shows that.
             if (row.page !== "consent-form-long") compare(inspector.cutTexts(view), [])
             compare(inspector.brokenWords(view), [])
-            for (const drawing of all(view, item => item.lengthMm !== undefined))
+            for (const drawing of all(view, item => item.xOf !== undefined))
                 verify(!inspector.reachesEdge(drawing))
             const headings = all(view, item => item.objectName === "heading")
             compare(headings.length, row.page.startsWith("fault-") ? 3 : 0)

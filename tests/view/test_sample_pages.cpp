@@ -37,8 +37,8 @@ std::vector<view::SamplePage> samples_of(const std::string& protocol, const std:
 /// What a participant reads on a page: everything but the levels and the counted trials.
 std::string read(const session::Page& page) {
   auto text = std::to_string(static_cast<int>(page.kind)) + page.title + "|" + page.text + "|" +
-              (page.kind == PageKind::rest ? "" : page.instruction) + "|" + std::to_string(page.intervals) +
-              "." + std::to_string(page.interval);
+              (page.kind == PageKind::rest ? "" : page.instruction) + "|" + std::to_string(page.interval.of) +
+              "." + std::to_string(page.interval.number);
   for (const auto& answer : page.answers) text += "|" + answer.label + "/" + answer.caption;
   return text;
 }

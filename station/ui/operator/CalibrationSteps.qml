@@ -56,7 +56,7 @@ Item {
                 theme: root.theme
                 texts: root.texts
                 surface: root.surface
-                boundaryMm: root.reading === "" ? Math.round((root.surface.lengthMm ?? 0) / 2) : Number(root.reading)
+                boundaryMm: root.reading === "" ? Math.round(root.surface.lengthMm / 2) : Number(root.reading)
                 onMoved: (which, mm) => root.guide.enter(mm.toFixed(1))
             }
         }
@@ -69,10 +69,7 @@ Item {
                 id: picture
                 anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
                 height: parent.strip
-                lengthMm: root.surface.lengthMm ?? 0
-                wideHalfWidthMm: root.surface.wideHalfWidthMm ?? 0
-                narrowHalfWidthMm: root.surface.narrowHalfWidthMm ?? 0
-                wideEndLeft: root.surface.wideEndLeft ?? true
+                surface: root.surface
                 showFinger: root.guide.chosen === "friction"
                 textPixels: root.theme.textSmall
                 ink: root.theme.ink

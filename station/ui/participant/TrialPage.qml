@@ -57,10 +57,7 @@ Item {
         /// What is below the surface besides the question.
         readonly property real below: bars.height + pacer.height + ((bars.visible ? 1 : 0) + (pacer.visible ? 1 : 0) + 1) * root.theme.unit
         height: Math.round(Math.max(least, Math.min(0.46 * parent.height, parent.height - answers.height - below - Math.max(asked.height + root.theme.unit, (pacer.visible ? 3.6 : bars.visible ? 3.5 : 9) * root.theme.unit))))
-        lengthMm: root.page.lengthMm
-        wideHalfWidthMm: root.page.wideHalfWidthMm
-        narrowHalfWidthMm: root.page.narrowHalfWidthMm
-        wideEndLeft: root.page.wideEndLeft
+        surface: root.page.surface
         hasMark: root.page.hasMark
         markMm: root.page.markMm
         showFinger: root.cue

@@ -132,7 +132,7 @@ void SessionRunner::show_failure() {
     page.early = refused.early();
   } catch (const std::exception& error) {
     // for the operator; the participant's page does not show it
-    page.detail = core::say(core::phrase_of(error), language_);
+    page.fault.detail = core::say(core::phrase_of(error), language_);
   }
   bridge_.show(page);
 }
