@@ -43,7 +43,7 @@ void take_part(ui::SessionBridge& bridge) {
     return void(::raise(SIGTERM));
   }
   // answers count only after a page has been shown for a while
-  bridge.answer(1, bridge.now_ns() + 300'000'000);
+  bridge.answer(1, {bridge.now_ns() + 300'000'000});
 }
 
 /// Simulates a participant. The program calls it once its window exists. What came too early for a page,

@@ -37,16 +37,16 @@ void SessionBridge::guide(const session::Guidance& guidance) {
 
 void SessionBridge::watch(QObject* window) { window->installEventFilter(this); }
 
-std::int64_t SessionBridge::began_ns(int touch_id) const {
+SessionBridge::Stamp SessionBridge::stamped(int touch_id) const {
   const auto found =
       std::find_if(pending_.rbegin(), pending_.rend(), [&](const Pending& p) { return p.id == touch_id; });
-  return found != pending_.rend() ? found->time_ns : clock_();
+  return found != pending_.rend() ? found->stamp : Stamp{clock_(), 0};
 }
 
-void SessionBridge::answer(int index, std::int64_t time_ns) {
-  const auto found =
-      std::find_if(pending_.begin(), pending_.end(), [&](const Pending& p) { return p.time_ns == time_ns; });
-  Pending touch{kMouse, time_ns, -1, -1};
+void SessionBridge::answer(int index, const Stamp& stamp) {
+  const auto found = std::find_if(pending_.begin(), pending_.end(),
+                                  [&](const Pending& p) { return p.stamp.number == stamp.number; });
+  Pending touch{kMouse, stamp, -1, -1};
   if (found != pending_.end()) {
     touch = *found;
     pending_.erase(found);
@@ -57,21 +57,21 @@ void SessionBridge::answer(int index, std::int64_t time_ns) {
 void SessionBridge::note_touch(int id, QPointF position, const QObject* window) {
   const auto* area = qobject_cast<const QWindow*>(window);
   const double width = area != nullptr ? area->width() : 1, height = area != nullptr ? area->height() : 1;
-  pending_.push_back({id, clock_(), position.x() / width, position.y() / height});
+  pending_.push_back({id, {clock_(), ++touches_}, position.x() / width, position.y() / height});
   if (!flush_.isActive()) flush_.start();
 }
 
 void SessionBridge::flush() {
   const auto due_ns = clock_() - core::kTouchToAnswer_ns;
   for (const auto& touch : pending_)
-    if (touch.time_ns <= due_ns) push_touch(input::Touch{}, touch);
-  std::erase_if(pending_, [&](const Pending& p) { return p.time_ns <= due_ns; });
+    if (touch.stamp.time_ns <= due_ns) push_touch(input::Touch{}, touch);
+  std::erase_if(pending_, [&](const Pending& p) { return p.stamp.time_ns <= due_ns; });
   if (!pending_.empty()) flush_.start();
 }
 
 void SessionBridge::push_touch(input::Any content, const Pending& touch) {
-  const auto kernel_ns = kernel_time_ ? kernel_time_(touch.x, touch.y, touch.time_ns) : std::nullopt;
-  sink_({kernel_ns.value_or(touch.time_ns), std::move(content),
+  const auto kernel_ns = kernel_time_ ? kernel_time_(touch.x, touch.y, touch.stamp.time_ns) : std::nullopt;
+  sink_({kernel_ns.value_or(touch.stamp.time_ns), std::move(content),
          kernel_ns ? session::TimeQuality::kernel : session::TimeQuality::toolkit});
 }
 
