@@ -315,7 +315,7 @@ void check(const Options& options, Context& context) {
   for (const auto& warning : result.warnings) fmt::print(context.err, "warning: {}\n", format(warning));
   for (const auto& note : result.notes) fmt::print(context.err, "note: {}\n", format(note));
   if (context.json)
-    context.out << to_json(result, signal).dump(2, ' ', false, kInvalidBytes) << "\n";
+    print_json(context.out, to_json(result, signal));
   else if (result.problems.empty())
     print(context.out, result, options.protocol);
   if (!signal.empty())

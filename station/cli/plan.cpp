@@ -236,8 +236,7 @@ void plan(const Options& options, Context& context) {
     base = planner.plan(protocol::resolve(protocol, from.base, factors, 0));
   const auto finger = touched(planner, result, base);
   if (context.json)
-    context.out << to_json(planner, result, factors, sound, finger).dump(2, ' ', false, kInvalidBytes)
-                << "\n";
+    print_json(context.out, to_json(planner, result, factors, sound, finger));
   else
     print(context.out, result, sound, finger);
 }

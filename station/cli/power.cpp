@@ -516,7 +516,7 @@ void show(const Found& found, const Options& options, Context& context) {
     files.push_back(path);
   }
   if (context.json)
-    context.out << to_json(found, files).dump(2, ' ', false, kInvalidBytes) << "\n";
+    print_json(context.out, to_json(found, files));
   else
     print(context.out, found.power), print(context.out, found.rewards), print(context.out, found.cues);
   for (const auto& file : files)

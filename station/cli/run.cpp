@@ -105,7 +105,7 @@ void show_summary(Context& context, const session::Summary& summary, const std::
   const bool interrupted = summary.status == core::SessionStatus::interrupted;
   if (interrupted) context.exit_code = 1;
   if (context.json) {
-    context.out << to_json(summary).dump(2, ' ', false, kInvalidBytes) << "\n";
+    print_json(context.out, to_json(summary));
     return;
   }
   print_summary(context.out, summary);
