@@ -13,21 +13,6 @@
 
 namespace turnpoint::analysis {
 
-namespace {
-
-std::optional<double> scaled_z(double p, double factor) {
-  if (!(p >= 0 && p <= 1))
-    throw std::invalid_argument("proportion correct " + std::to_string(p) + ": from 0 to 1");
-  if (p == 0 || p == 1) return std::nullopt;
-  return factor * normal_quantile(p);
-}
-
-}  // namespace
-
-std::optional<double> d_prime_forced_choice(double proportion_correct) {
-  return scaled_z(proportion_correct, std::numbers::sqrt2);
-}
-
 std::optional<double> log_linear_proportion(int successes, int trials) {
   if (successes < 0 || successes > trials)
     throw std::invalid_argument(std::to_string(successes) + " of " + std::to_string(trials) +

@@ -171,11 +171,6 @@ const BridgeOptions& checked(const BridgeOptions& options) {
 
 }  // namespace
 
-double bridge_rotation_rad(const BridgePoint& without, const BridgePoint& with, std::size_t bridge) {
-  return std::atan2(with.quadrature[bridge] - without.quadrature[bridge],
-                    with.ratio[bridge] - without.ratio[bridge]);
-}
-
 BridgeDemodulator::BridgeDemodulator(const BridgeOptions& options)
     : options_(checked(options)),
       // The first stage may let signals alias, but only to frequencies that the second stage stops.

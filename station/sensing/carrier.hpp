@@ -109,7 +109,7 @@ struct BridgeOptions {
   double reference_amplitude = 0.5;  ///< amplitude of the reference signal at calibration; full scale is 1
   /// Ratio of bridge signal to reference signal at the rated load of each cell.
   std::array<double, bridge_count> full_scale{0.4, 0.4, 0.4};
-  /// Phase of each bridge's resistive part against the reference, from bridge_rotation_rad().
+  /// Phase of each bridge's resistive part against the reference.
   std::array<double, bridge_count> rotation_rad{};
 };
 
@@ -169,10 +169,6 @@ struct BridgePoint {
   WireFault fault = WireFault::none;
   std::size_t bridge = 0;  ///< the bridge with the fault `quadrature`, `overload` or `silent`
 };
-
-/// Computes the phase between the resistive part of a bridge and the reference from two points: one with a
-/// load and one without. A constant capacitive part cancels.
-double bridge_rotation_rad(const BridgePoint& without, const BridgePoint& with, std::size_t bridge);
 
 /// Demodulates the bridges with the phase of the played carrier, divides them by the reference, and reduces
 /// the result to points_per_second(). The division cancels gain and drift of converters, buffer and

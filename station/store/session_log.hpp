@@ -57,8 +57,6 @@ class SessionLog {
   ~SessionLog();
 
   const SessionRecord& session() const;  ///< the session's record; its checksum is that of the last commit
-  /// blocks that were in the log when the session was resumed; empty for a new session
-  const std::vector<BlockRecord>& stored_blocks() const;
 
   /// Begins a block. If the log already has a block with this index and attempt, continues that block; its
   /// other values must then be equal.

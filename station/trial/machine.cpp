@@ -182,7 +182,6 @@ bool Machine::step(std::int64_t now_ns) {
 void Machine::begin_interval(std::int64_t onset_ns) {
   const auto& interval = plan_.intervals[static_cast<std::size_t>(interval_)];
   const bool last = interval_ + 1 == static_cast<int>(plan_.intervals.size());
-  result_.onsets_ns.push_back(onset_ns);
   enter(Phase::stimulus, onset_ns + interval.duration_ns);
   if (!last) return;
   switch (plan_.response_zero) {

@@ -109,7 +109,6 @@ struct Result {
   std::optional<std::int64_t> response_time_ns, decision_time_ns, movement_time_ns;
   std::optional<int> confidence;                   ///< degree of confidence; 1 is the least sure
   std::optional<std::int64_t> confidence_time_ns;  ///< time of the confidence rating, counted from the answer
-  std::vector<std::int64_t> onsets_ns;
   std::int64_t started_ns = 0, ended_ns = 0;
   int extra_touches = 0;  ///< late, early, repeated or outdated touches; they are logged but never scored
   int xruns = 0;

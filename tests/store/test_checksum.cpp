@@ -215,7 +215,7 @@ TEST_CASE("rows that were edited and got new checksums differ from a checksum th
   std::string exported;
   {
     auto database = unguarded(db);
-    exported = last_checksum(database, id);
+    exported = verify_session(database, id).last_sha256;
     REQUIRE(exported.size() == 64);
     CHECK(holds_link(database, id, exported));
     database.execute("UPDATE trial SET response_time_s = 0.3 WHERE trial_index = 2; DELETE FROM link");
@@ -329,14 +329,14 @@ TEST_CASE("a session that continued after an export still contains the checksum 
   std::string exported;
   {
     auto database = sample::raw(db);
-    exported = last_checksum(database, id);
+    exported = verify_session(database, id).last_sha256;
   }
   {
     auto log = SessionLog::resume(db, id, sample::segment("resume"));
     log.finish(SessionStatus::completed, "");
   }
   auto database = sample::raw(db);
-  CHECK(last_checksum(database, id) != exported);
+  CHECK(verify_session(database, id).last_sha256 != exported);
   CHECK(holds_link(database, id, exported));
 }
 

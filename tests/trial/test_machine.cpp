@@ -206,7 +206,7 @@ TEST_CASE("lost frames that are reported after the stimulus, or after the answer
     const auto actions = machine.handle({1511 * ms, EventKind::xrun, 1});
     CHECK(has(actions, ActionKind::silence, 0));  // this cancels the second interval
     CHECK(machine.done());
-    CHECK(machine.result().onsets_ns.size() == 1);
+    CHECK(machine.interval() == 0);
     CHECK(machine.result().outcome == Outcome::fault);
   }
   SECTION("after the answer, whatever was shown") {
