@@ -159,15 +159,7 @@ class RealStage : public Stage {
   }
   std::string missing() const override { return devices_.buttons ? devices_.buttons->missing() : ""; }
   audio::Amplifier* guarded_amplifier() override { return devices_.amplifier.get(); }
-  void set_drift(double share) override {
-    if (capture_) capture_->feed().watch().set_drift(share);
-  }
-  std::optional<sensing::FingerNow> finger_now() override {
-    return capture_ ? capture_->feed().watch().finger_now() : std::nullopt;
-  }
-  std::optional<sensing::RawCapture> raw_capture() const override {
-    return capture_ ? std::optional(capture_->feed().watch().raw()) : std::nullopt;
-  }
+  VibrationWatch* watch() override { return capture_ ? &capture_->feed().watch() : nullptr; }
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::string realtime_rights() const override {
     const auto playback = describe(stream_->rights());

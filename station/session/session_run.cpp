@@ -207,7 +207,7 @@ Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
   director_.spend(trial.row.duration_s);
   if (const auto share = drift_.correction(trial_index())) {
     plans_.set_drift(*share);  // a trial that is already planned is planned again
-    stage_->set_drift(*share);
+    if (auto* watch = stage_->watch()) watch->set_drift(*share);
   }
   if (monitor_ != nullptr) monitor_->trial_ended(spec, trial.row);
   return after_trial(trial);
@@ -645,7 +645,8 @@ void SessionRun::move_bars() {
   const bool watched = is_finger_watched();
   if ((!guide_.guides() && !watched) || stage_->now_ns() < guide_due_ns_) return;
   guide_due_ns_ = stage_->now_ns() + Guide::kEvery_ns;
-  const auto finger = stage_->finger_now();
+  auto* watch = stage_->watch();
+  const auto finger = watch ? watch->finger_now() : std::nullopt;
   if (guide_.move(finger) && display_ != nullptr) display_->guide(*guide_.bars());
   if (!watched) return;
   const bool touches = finger && finger->contact;
@@ -922,10 +923,11 @@ core::SignalRow raw_signal(const sensing::RawCapture& raw) {
 /// Adds what was captured last, on all channels, to the row of a void trial. Compressing and storing it takes
 /// a while. Until it is compressed and the amplifier is off, the stage attends to its devices.
 void SessionRun::keep_raw(Running& trial) {
-  if (!trial.is_void() || trial.onsets.empty()) return;
-  auto raw = stage_->raw_capture();
-  if (!raw || raw->samples.empty()) return;
-  auto packed = std::async(std::launch::async, [raw = *std::move(raw)] { return raw_signal(raw); });
+  const auto* watch = stage_->watch();
+  if (!trial.is_void() || trial.onsets.empty() || !watch) return;
+  auto raw = watch->raw();
+  if (raw.samples.empty()) return;
+  auto packed = std::async(std::launch::async, [raw = std::move(raw)] { return raw_signal(raw); });
   stage_->wait_for([&] {
     return packed.wait_for(std::chrono::seconds(0)) == std::future_status::ready &&
            stage_->amplifier() != audio::AmplifierState::enabled;

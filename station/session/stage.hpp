@@ -102,15 +102,8 @@ class Stage {
   virtual audio::Amplifier* guarded_amplifier() { return nullptr; }
   virtual std::optional<CaptureSetup> capture() const { return std::nullopt; }
 
-  /// Tells the stage by what fraction the resonance frequencies of the surface have risen since the
-  /// calibration of the pick-ups.
-  virtual void set_drift(double) {}
-  /// Returns the force and movement of the finger at this moment; empty unless force cells measure them.
-  virtual std::optional<sensing::FingerNow> finger_now() { return std::nullopt; }
-
-  /// Returns the newest captured frames of all channels; empty if the stage captures nothing. Their numbers
-  /// are those of the playback, less the fraction of the loop's delay.
-  virtual std::optional<sensing::RawCapture> raw_capture() const { return std::nullopt; }
+  /// What judges the captured signals; null if the stage captures nothing.
+  virtual VibrationWatch* watch() { return nullptr; }
 
   virtual std::optional<ClockFit> clock_fit() = 0;
   virtual std::string realtime_rights() const = 0;

@@ -146,15 +146,7 @@ class VirtualStage : public Stage {
   std::optional<CaptureSetup> capture() const override {
     return room_ ? std::optional(room_->capture()) : std::nullopt;
   }
-  void set_drift(double share) override {
-    if (watch_) watch_->set_drift(share);
-  }
-  std::optional<sensing::FingerNow> finger_now() override {
-    return watch_ ? watch_->finger_now() : std::nullopt;
-  }
-  std::optional<sensing::RawCapture> raw_capture() const override {
-    return watch_ ? std::optional(watch_->raw()) : std::nullopt;
-  }
+  VibrationWatch* watch() override { return watch_ ? &*watch_ : nullptr; }
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::string realtime_rights() const override { return describe(stream_->rights()); }
   void finish() override {
