@@ -76,8 +76,6 @@ struct Acknowledgements : session::Monitor {
 
   Acknowledgements(World& w, const Room& r, std::string id, const bool& d)
       : world(w), room(r), session_id(std::move(id)), dead(d) {}
-  void trial_begins(const trial::TrialSpec&, const protocol::Block&,
-                    const session::PlanAhead::Plans&) override {}
   void trial_ended(const trial::TrialSpec&, const core::TrialRow& row) override {
     if (dead) return;  // the simulated process is dead, so ignore its reports
     world.trials.acknowledged(session_id, row);

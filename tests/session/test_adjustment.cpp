@@ -193,7 +193,6 @@ struct Operator : session::Monitor {
     expect(Awaited::follow);
     view.surface_follows(spec, plan);
   }
-  void trial_ended(const trial::TrialSpec&, const core::TrialRow&) override {}
 
   /// Makes the first move of a trial, as soon as the view has shown its beginning.
   void begin_moving() {

@@ -89,8 +89,6 @@ TEST_CASE("a pause while the row of a trial is being stored comes before the nex
   struct Storing : session::Monitor {
     PausingRoom& room;
     explicit Storing(PausingRoom& in) : room(in) {}
-    void trial_begins(const trial::TrialSpec&, const protocol::Block&,
-                      const session::PlanAhead::Plans&) override {}
     void trial_ended(const trial::TrialSpec&, const core::TrialRow& row) override {
       // A machine that stalls makes a trial void; then a fault page comes first.
       if (!room.asked && row.outcome == core::Outcome::answered) room.ask();

@@ -280,8 +280,6 @@ TEST_CASE("a procedure that continues goes on where the participant's last sessi
   SECTION("the second session continues, also after an interruption; another person begins anew") {
     struct Cut : session::Monitor {
       int left = 5;
-      void trial_begins(const trial::TrialSpec&, const protocol::Block&,
-                        const session::PlanAhead::Plans&) override {}
       void trial_ended(const trial::TrialSpec&, const core::TrialRow&) override {
         if (--left == 0) throw std::runtime_error("cut");
       }

@@ -39,8 +39,6 @@ std::string demo_with(const TemporaryFolder& folder, const std::string& sensing)
 struct Sensors : session::Monitor {
   std::optional<protocol::Sensing> asked;
   std::map<std::string, std::string> facts;
-  void trial_begins(const trial::TrialSpec&, const protocol::Block&,
-                    const session::PlanAhead::Plans&) override {}
   void trial_ended(const trial::TrialSpec&, const core::TrialRow& row) override {
     facts.clear();
     for (const auto& [label, value] : view::sensors_of(row, asked)) facts[label] = value;

@@ -42,12 +42,6 @@ struct FirstTrials : session::Monitor {
   }
 };
 
-struct Nobody : session::Monitor {
-  void trial_begins(const trial::TrialSpec&, const protocol::Block&,
-                    const session::PlanAhead::Plans&) override {}
-  void trial_ended(const trial::TrialSpec&, const core::TrialRow&) override {}
-};
-
 void run_first(const session::RunRequest& request, session::Monitor& monitor, int trials) {
   session::Inputs inputs;
   FirstTrials first(monitor, trials);
@@ -110,7 +104,7 @@ view::ReportPages forces_exhibit(const std::string& protocol, const std::string&
 
 std::string interrupted_exhibit(const std::string& folder) {
   auto request = request_for("boundary-constant", folder + "/lab.sqlite");
-  Nobody nobody;
+  session::Monitor nobody;
   run_first(request, nobody, 7);
   return request.database;
 }

@@ -167,8 +167,6 @@ TEST_CASE("a failed attempt to resume a session does not change the check of the
   request.database = start.folder / "lab.sqlite";
   request.observer = "sim";
   struct Cut : session::Monitor {
-    void trial_begins(const trial::TrialSpec&, const protocol::Block&,
-                      const session::PlanAhead::Plans&) override {}
     void trial_ended(const trial::TrialSpec&, const core::TrialRow&) override {
       throw std::runtime_error("cut");
     }
