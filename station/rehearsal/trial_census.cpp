@@ -120,10 +120,6 @@ void TrialCensus::add(const Block& block, const TrialSpec& trial) {
   add(block, spec, {trial.level.value_or(0)}, second, 1);
 }
 
-void TrialCensus::add(const TrialCensus& other) {
-  for (const auto& [cell, trials] : other.cells_) cells_[cell] += trials;
-}
-
 std::vector<protocol::Factors> TrialCensus::combinations(const protocol::Factors& cell) const {
   std::vector<protocol::Factors> all{cell};
   for (const auto* factor : relevant_) {

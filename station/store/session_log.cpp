@@ -349,20 +349,4 @@ void annotate(const std::string& path, const std::string& session_id, const std:
   transaction.commit();
 }
 
-void abandon(const std::string& path, const std::string& session_id, const std::string& reason) {
-  auto writer = open_writer(path, IfMissing::fail);
-  const auto session = session_record(writer.database, session_id);
-  if (session.status != SessionStatus::interrupted)
-    throw StoreError(
-        ErrorKind::refused,
-        fmt::format("database {}: session {} is {}; only an interrupted session can be abandoned", path,
-                    session_id, name(session.status)));
-  SealedTransaction transaction(writer.database);
-  Statement(writer.database,
-            "UPDATE session SET status = 'abandoned', status_reason = ? WHERE session_id = ?")
-      .bind(reason, session_id)
-      .run();
-  transaction.commit();
-}
-
 }  // namespace turnpoint::store

@@ -89,8 +89,4 @@ class SessionLog {
 /// StoreError, or core::UsageError for an empty note.
 void annotate(const std::string& database, const std::string& session_id, const std::string& text);
 
-/// Marks an interrupted session as abandoned, because nobody will continue it, and stores the reason. Throws
-/// StoreError (refused) if the session is not interrupted.
-void abandon(const std::string& database, const std::string& session_id, const std::string& reason);
-
 }  // namespace turnpoint::store

@@ -341,30 +341,4 @@ std::int64_t Machine::pause_ns() const {
   return plan_.iti_ns;
 }
 
-const char* name(Phase phase) {
-  switch (phase) {
-    case Phase::idle:
-      return "idle";
-    case Phase::cue:
-      return "cue";
-    case Phase::stimulus:
-      return "stimulus";
-    case Phase::gap:
-      return "gap";
-    case Phase::response:
-      return "response";
-    case Phase::confidence:
-      return "confidence";
-    case Phase::feedback:
-      return "feedback";
-    case Phase::late:
-      return "late";
-    case Phase::interval:
-      return "interval";
-    case Phase::done:
-      return "done";
-  }
-  return "";
-}
-
 }  // namespace turnpoint::trial

@@ -180,6 +180,4 @@ class Machine {
   std::vector<Action> actions_;
 };
 
-const char* name(Phase phase);
-
 }  // namespace turnpoint::trial

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <random>
 
+#include "station/core/usage_error.hpp"
 #include "station/store/export.hpp"
 #include "station/store/fields.hpp"
 #include "station/store/merge.hpp"
@@ -315,6 +316,7 @@ TEST_CASE("a change by somebody else stays visible, however often the program wr
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = sample::session(db, 1);
+  CHECK_THROWS_AS(annotate(db, id, ""), turnpoint::core::UsageError);
   annotate(db, id, "first");
   sample::raw(db).execute("DELETE FROM annotation");
   annotate(db, id, "second");

@@ -12,7 +12,6 @@
 #include <set>
 
 #include "station/core/number.hpp"
-#include "station/core/usage_error.hpp"
 #include "station/store/backup.hpp"
 #include "station/store/backup_folder.hpp"
 #include "station/store/export.hpp"
@@ -364,19 +363,6 @@ TEST_CASE("the next participant after a withdrawal gets the sequence index that 
   withdraw(db, {"P02", "", "", ""});
   const auto id = sample::session(db, 1, sample::start("P04"));
   CHECK(read_session(db, id).session.sequence_index == 1);
-}
-
-TEST_CASE("an interrupted session can be closed for good, but a completed one cannot", "[store]") {
-  TemporaryFolder folder;
-  const auto db = folder / "a.sqlite";
-  const auto open = sample::session(db, 2, sample::start(), SessionStatus::interrupted);
-  const auto done = sample::session(db, 2);
-  REQUIRE(interrupted_session(db));
-  abandon(db, open, "too old");
-  CHECK_FALSE(interrupted_session(db));
-  CHECK(read_session(db, open).session.status_reason == "too old");
-  CHECK(sample::failure([&] { abandon(db, done, ""); }).first == ErrorKind::refused);
-  CHECK_THROWS_AS(annotate(db, done, ""), turnpoint::core::UsageError);
 }
 
 TEST_CASE("a withdrawal that arrives from elsewhere takes all sessions of the person, sent or not",
