@@ -170,12 +170,7 @@ bool is_over(trial::Phase phase) {
 }
 
 core::EventRow event(std::int64_t time_ns, const char* kind, double value, int trial_index) {
-  core::EventRow row;
-  row.time_ns = time_ns;
-  row.kind = kind;
-  row.value = core::number(value, 9);
-  row.trial_index = trial_index;
-  return row;
+  return {time_ns, kind, core::number(value, 9), trial_index};
 }
 
 }  // namespace
@@ -710,9 +705,7 @@ void SessionRun::log_triggers() {
     log_.event(row_of_extra(extra, now, trial_index()));
   }
   if (done.failure.empty()) return;
-  core::EventRow row;
-  row.time_ns = now, row.kind = "notice", row.value = "no more trigger codes on lines: " + done.failure;
-  log_.event(std::move(row));
+  log_.event({now, "notice", "no more trigger codes on lines: " + done.failure, {}});
 }
 
 /// Waits until the last codes have been sent and read back.
@@ -851,11 +844,8 @@ std::optional<trial::TrialSpec> SessionRun::next_trial() {
       log_programs();
       return spec;
     } catch (const core::ProgramFailed& failed) {
-      core::EventRow event;
-      event.time_ns = stage_->now_ns();
-      event.kind = "fault";
-      event.value = core::name(FaultKind::program) + std::string(": ") + failed.what();
-      log_.event(event);
+      log_.event(
+          {stage_->now_ns(), "fault", fmt::format("{}: {}", name(FaultKind::program), failed.what()), {}});
       log_programs();
       if (!setup_.observer.empty()) {
         gate_.stop(failed.what());
@@ -883,26 +873,19 @@ void SessionRun::log_programs() {
   if (programs_ == nullptr) return;
   auto started = programs_->take_started();
   if (started.empty()) return;
-  core::EventRow event;
-  event.time_ns = stage_->now_ns();
-  event.kind = core::kProgramEvent;
-  event.value = started.front().program;
+  core::EventRow event{stage_->now_ns(), core::kProgramEvent, started.front().program, {}};
   event.programs = std::move(started);
-  log_.event(event);
+  log_.event(std::move(event));
 }
 
 /// Stores what the programs of the block have estimated.
 void SessionRun::log_estimates() {
-  core::EventRow event;
+  core::EventRow event{stage_->now_ns(), core::kEstimatesEvent, director_.block()->name, {}};
   for (const auto& found : director_.estimates())
     if (protocol::is_program(setup_.protocol, found.procedure))
       event.estimates.push_back({director_.block_index(), director_.attempt(), found.procedure,
                                  found.parameter, found.mean, found.sd, found.basis});
-  if (event.estimates.empty()) return;
-  event.time_ns = stage_->now_ns();
-  event.kind = core::kEstimatesEvent;
-  event.value = director_.block()->name;
-  log_.event(event);
+  if (!event.estimates.empty()) log_.event(std::move(event));
 }
 
 namespace {
