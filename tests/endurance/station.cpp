@@ -12,6 +12,7 @@
 #include "station/store/error.hpp"
 #include "station/store/read.hpp"
 #include "station/store/sqlite.hpp"
+#include "tests/support/simulated_run.hpp"
 
 namespace endurance {
 
@@ -26,13 +27,7 @@ constexpr std::int64_t kRest_ns =
     2'400'000'000'000;  // longer than the half hour without stimuli that ends a period of exposure
 
 session::Setup prepare(const std::string& protocol, const std::string& database, std::uint64_t seed) {
-  session::RunRequest request;
-  request.protocol = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol;
-  request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
-  request.participant = "P01";
-  request.database = database;
-  request.observer = "sim";
-  request.seed = seed;
+  auto request = simulated_run(TURNPOINT_SOURCE_DIR "/protocols/" + protocol, database, seed);
   request.headless = true;
   return session::prepare(request);
 }

@@ -7,6 +7,7 @@
 #include "station/session/prepare.hpp"
 #include "station/store/read.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/simulated_run.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 // Hashes of everything that must not depend on the machine. They were recorded on amd64 with g++ 12, and
@@ -57,13 +58,8 @@ std::string rendered(const audio::Burst& burst) {
 /// Runs a simulated session of a shipped protocol, with its files in `folder`, and returns its trials.
 std::vector<core::TrialRow> session_of(const std::string& protocol, const TemporaryFolder& folder,
                                        const std::string& output) {
-  session::RunRequest request;
-  request.protocol = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol + ".toml";
-  request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
-  request.participant = "P01";
-  request.database = folder / "a.sqlite";
-  request.observer = "sim";
-  request.seed = 20240229;
+  auto request =
+      simulated_run(TURNPOINT_SOURCE_DIR "/protocols/" + protocol + ".toml", folder / "a.sqlite", 20240229);
   request.headless = true;
   auto setup = session::prepare(request);
   setup.rig.output.uri = output;

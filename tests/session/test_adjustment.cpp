@@ -1,8 +1,5 @@
-#include <unistd.h>
-
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <limits>
 #include <mutex>
 #include <set>
@@ -21,21 +18,12 @@
 #include "tests/session/faulty_stream.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/simulated_run.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
-namespace fs = std::filesystem;
 
 namespace {
-
-struct Folder {
-  fs::path path;
-  Folder() : path(fs::temp_directory_path() / ("turnpoint-adjustment-" + std::to_string(::getpid()))) {
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  ~Folder() { fs::remove_all(path); }
-};
 
 /// Records the pages with a slider. It can simulate a crash after a number of pages.
 struct Pages : session::Display {
@@ -47,15 +35,10 @@ struct Pages : session::Display {
   }
 };
 
-session::Setup setup_in(const Folder& folder, const std::string& observer) {
-  const std::string source = TURNPOINT_SOURCE_DIR;
-  session::RunRequest request;
-  request.protocol = source + "/protocols/boundary-adjustment.toml";
-  request.rig = source + "/tests/support/thin_plate.toml";
-  request.participant = "P01";
-  request.database = (folder.path / "a.sqlite").string();
+session::Setup setup_in(const TemporaryFolder& folder, const std::string& observer) {
+  auto request =
+      simulated_run(TURNPOINT_SOURCE_DIR "/protocols/boundary-adjustment.toml", folder / "a.sqlite", 7);
   request.observer = observer;
-  request.seed = 7;
   return session::prepare(request);
 }
 
@@ -88,7 +71,7 @@ TEST_CASE("a slider stays on its steps and in its range, and the surface follows
 
 TEST_CASE("a protocol file with a slider gives rows with each setting and the movements of the surface",
           "[session]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto setup = setup_in(folder, "sim:threshold=2,bias=4,lapse=0");
   session::Inputs inputs;
   Pages pages;
@@ -122,7 +105,7 @@ TEST_CASE("a protocol file with a slider gives rows with each setting and the mo
 }
 
 TEST_CASE("the same setting has a different place on the screen from trial to trial", "[session]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   session::Inputs inputs;
   Pages pages;
   session::run(setup_in(folder, "sim"), &pages, inputs);
@@ -138,7 +121,7 @@ TEST_CASE("the same setting has a different place on the screen from trial to tr
 }
 
 TEST_CASE("an interrupted adjustment continues with the same settings", "[session]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto setup = setup_in(folder, "sim:bias=3");
   session::Inputs inputs;
   Pages cut;

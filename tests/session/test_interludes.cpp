@@ -12,6 +12,7 @@
 #include "tests/session/live_room.hpp"
 #include "tests/session/screen.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/simulated_run.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
@@ -202,13 +203,8 @@ TEST_CASE("a session killed at any question goes on with the next one", "[sessio
   const TemporaryFolder folder;
   const auto path = folder / "visit.toml";
   std::ofstream(path) << around(protocol_text("buttons"));
-  session::RunRequest request;
-  request.protocol = path;
-  request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
-  request.participant = "P01";
-  request.database = folder / "whole.sqlite";
-  request.observer = "sim";
-  request.seed = 3;  // with this seed, the simulated participant gives a mood that passes the screening
+  // With this seed, the simulated participant gives a mood that passes the screening.
+  auto request = simulated_run(path, folder / "whole.sqlite", 3);
   session::Inputs inputs;
   const auto whole = session::run(session::prepare(request), nullptr, inputs);
   REQUIRE(whole.status == core::SessionStatus::completed);

@@ -20,6 +20,7 @@
 #include "station/store/read.hpp"
 #include "tests/session/screen.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/simulated_run.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
@@ -106,11 +107,7 @@ struct Station {
   explicit Station(const std::string& text) { std::ofstream(protocol) << text; }
 
   session::Setup setup(const std::string& observer) const {
-    session::RunRequest request;
-    request.protocol = protocol;
-    request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
-    request.participant = "P01";
-    request.database = database;
+    auto request = simulated_run(protocol, database);
     request.observer = observer;
     return session::prepare(request);
   }

@@ -21,6 +21,7 @@
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/quick_rig.hpp"
+#include "tests/support/simulated_run.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
@@ -31,13 +32,8 @@ namespace {
 const std::string kRoot = TURNPOINT_SOURCE_DIR;
 
 session::RunRequest training_for(const std::string& participant, const std::string& database) {
-  session::RunRequest request;
-  request.protocol = kRoot + "/protocols/friction-training.toml";
-  request.rig = kRoot + "/tests/support/thin_plate.toml";
+  auto request = simulated_run(kRoot + "/protocols/friction-training.toml", database, 7);
   request.participant = participant;
-  request.database = database;
-  request.observer = "sim";
-  request.seed = 7;
   return request;
 }
 

@@ -1,4 +1,5 @@
 #include "tests/ui/operator_gallery.hpp"
+#include "tests/support/simulated_run.hpp"
 
 #include <QTemporaryDir>
 #include <cmath>
@@ -16,13 +17,8 @@ namespace turnpoint::ui {
 namespace {
 
 session::RunRequest request_for(const std::string& protocol, const std::string& database) {
-  session::RunRequest request;
-  request.protocol = TURNPOINT_SOURCE_DIR "/protocols/" + protocol + ".toml";
-  request.rig = TURNPOINT_SOURCE_DIR "/tests/support/thin_plate.toml";
+  auto request = simulated_run(TURNPOINT_SOURCE_DIR "/protocols/" + protocol + ".toml", database, 20261121);
   request.participant = "P03";
-  request.database = database;
-  request.observer = "sim";
-  request.seed = 20261121;
   return request;
 }
 

@@ -1,4 +1,5 @@
 #include "tests/ui/station_room.hpp"
+#include "tests/support/simulated_run.hpp"
 
 #include <QDir>
 #include <QDirIterator>
@@ -272,12 +273,9 @@ void StationRoom::block(int ms) {
 }
 
 QStringList StationRoom::plannedLevels() const {
-  session::RunRequest request;
-  request.protocol = path("protocols/short.toml");
+  auto request = simulated_run(path("protocols/short.toml"), path("unbroken.sqlite"));
   request.rig = path("rig.toml");
   request.participant = "T1";
-  request.database = path("unbroken.sqlite");
-  request.observer = "sim";
   session::Inputs inputs;
   session::run(session::prepare(request), nullptr, inputs);
   return read(request.database, "trials.csv", "level", {}, {});
