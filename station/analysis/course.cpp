@@ -142,7 +142,8 @@ std::optional<Estimate> post_error_slowing(const std::vector<TrialRecord>& trial
   };
   std::vector<double> gaps_s;
   for (std::size_t i = 2; i + 1 < trials.size(); ++i) {
-    if (trials[i - 2].block_index != trials[i + 1].block_index) continue;
+    const auto follow = [&](std::size_t at) { return follows(trials[at - 1], trials[at]); };
+    if (!follow(i - 1) || !follow(i) || !follow(i + 1)) continue;
     if (is(trials[i - 2], true) && is(trials[i - 1], true) && is(trials[i], false) && is(trials[i + 1], true))
       gaps_s.push_back(*trials[i + 1].response_time_s - *trials[i - 1].response_time_s);
   }
@@ -156,7 +157,7 @@ std::optional<Estimate> repetition(const std::vector<TrialRecord>& trials, const
   std::vector<double> gaps;
   for (std::size_t i = 1; i < trials.size(); ++i) {
     const auto &before = trials[i - 1], &now = trials[i];
-    if (before.block_index != now.block_index || !counts(before) || !counts(now)) continue;
+    if (!follows(before, now) || !counts(before) || !counts(now)) continue;
     gaps.push_back((*now.response == *before.response) - (*now.right_choice == *before.response));
   }
   constexpr std::size_t kFewestPairs = 20;

@@ -53,8 +53,16 @@ struct TrialRecord {
   /// For two intervals of which the level decides which one is right: the number of the chosen and of the
   /// right scene; empty if no interval was right, or without an answer.
   std::optional<int> chosen_scene, right_scene;
-  std::size_t part = 0;  ///< number of the analysis to which the trial belongs; 0 if there is only one
+  std::size_t part = 0;   ///< number of the analysis to which the trial belongs; 0 if there is only one
+  int segment_index = 1;  ///< number of the program run, from 1; a session that was resumed has several
 };
+
+/// Whether `now` was presented just after `before`, in the same block and without an interruption of the
+/// session.
+inline bool follows(const TrialRecord& before, const TrialRecord& now) {
+  return now.block_index == before.block_index && now.segment_index == before.segment_index &&
+         now.trial_index == before.trial_index + 1;
+}
 
 /// Whether an analysis of answers counts the trial: it is no practice and no catch trial, and was answered.
 inline bool counted(const TrialRecord& trial) {

@@ -262,6 +262,17 @@ Json settings_json(const analysis::Settings& settings) {
           {"statements", value(settings.statements)}};
 }
 
+Json dependence_json(const analysis::Dependence& entry) {
+  Json json{{"condition", entry.condition}, {"pairs", entry.pairs}};
+  for (const auto& row : kBefore) {
+    const auto& found = entry.*row.value;
+    json[row.key] = value(found);
+    if (found) json[row.key]["p"] = value(found->p);
+  }
+  json["statements"] = value(entry.statements);
+  return json;
+}
+
 std::string in_english(const std::string& text) { return text; }
 std::string in_english(const core::Phrase& phrase) { return core::say(phrase, "en"); }
 
@@ -303,6 +314,7 @@ std::string to_json(const Summary& summary) {
             {"p", difference.estimate ? value(difference.estimate->p) : Json(nullptr)},
             {"corrected_p", value(difference.corrected_p)}};
   });
+  json["trial_before"] = list_of(summary.dependences, dependence_json);
   json["detection"] = list_of(summary.detections, [](const auto& entry) {
     Json detection{{"condition", entry.condition}, {"level", value(entry.level)}};
     add_counts(entry.counts, detection);

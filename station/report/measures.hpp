@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "station/analysis/dependence.hpp"
 #include "station/analysis/finger.hpp"
 #include "station/analysis/trade.hpp"
 
@@ -49,5 +50,12 @@ inline constexpr Measure<Touched> kFinger[] = {
     {"mu_low", "report.friction_smooth", &Touched::mu_low, "", "", false, "", true},
     {"mu_high", "report.friction_rough", &Touched::mu_high, "", "", false, "", true},
     {"felt_minus_planned_mm", "figure.felt", &Touched::shift_mm, "", "", false, "", true}};
+
+using Before = analysis::Dependence;
+inline constexpr Measure<Before> kBefore[] = {
+    {"stimulus", "report.present_stimulus", &Before::stimulus},
+    {"previous_stimulus", "report.previous_stimulus", &Before::previous_stimulus},
+    {"previous_answer", "report.previous_answer", &Before::previous_answer},
+    {"after_error", "report.after_error", &Before::after_error}};
 
 }  // namespace turnpoint::report

@@ -608,7 +608,57 @@ void add_trade(const Summary& summary, Document& document) {
   add_model(summary, document);
 }
 
-// --- the session and the finger
+// --- the trial before, the session and the finger
+
+/// The effects of the trial before; only for tasks whose answers can be described by them.
+void add_before(const Summary& summary, Document& document) {
+  const auto& entries = summary.dependences;
+  if (entries.empty()) return;
+  using analysis::Answers;
+  const auto options = dependence_options(part_of(summary.data, 0));
+  const bool choices = !judges(summary.data.design) && summary.data.design != Design::adjustment;
+  document.heading(phrase("report.trial_before"));
+  auto table = table_of(entries, &analysis::Dependence::condition);
+  for (const auto& row : kBefore)
+    if (std::any_of(entries.begin(), entries.end(), [&](const auto& one) { return one.*row.value; }))
+      table.rows.push_back(row_of(row, entries));
+  if (table.rows.empty()) {
+    for (const auto& entry : entries) document.remark(entry.statements, entry.condition);
+    return;
+  }
+  auto& pairs = table.rows.emplace_back();
+  pairs.push_back(head("Pairs of trials"));
+  for (const auto& entry : entries) pairs.push_back(count(entry.pairs));
+  document.table(std::move(table));
+  for (const auto& entry : entries) document.remark(entry.statements, entry.condition);
+  if (!choices) {
+    document.explain(summary.data.design == Design::numbers
+                         ? "Slopes of the logarithm of the number over those of stimulus and number in the "
+                           "trial before, with a "
+                           "mean of its own for each level. 95 % intervals: Student\u2019s t."
+                     : summary.data.design == Design::ratings
+                         ? "Slopes of the rating over stimulus and rating of the trial before, with a mean "
+                           "of its own for each "
+                           "level. 95 % intervals: Student\u2019s t."
+                         : "Slopes of the setting over the slider\u2019s start, and over start and setting "
+                           "of the trial before, with a "
+                           "mean of its own for each condition. 95 % intervals: Student\u2019s t.");
+    return;
+  }
+  const bool sides = options && options->answers == Answers::sides;
+  document.explain(
+      Text("Logistic regression of the answer on the stimulus and on the trial before, in log odds. A "
+           "stimulus "
+           "counts in the unit of the level") +
+      (sides ? ", positive if \u201c" + summary.data.choices[1] + "\u201d is right" : std::string()) +
+      (options && options->decibel ? ", with decibels as ratios" : "") +
+      ". The answer before is above 0 for people who repeat themselves, and below 0 for those who alternate. "
+      "After "
+      "an error: what the stimulus weighs more than after a right answer, if levels were fixed before the "
+      "session. "
+      "Pairs are answered trials that follow each other in a block. Penalised likelihood (Firth 1993) with "
+      "95 % profile intervals.");
+}
 
 void add_course(const Summary& summary, Document& document) {
   document.heading(phrase("report.course"));
@@ -732,6 +782,7 @@ Document document(const Summary& summary) {
     add_signal(summary, document);
     add_trade(summary, document);
   }
+  add_before(summary, document);
   add_course(summary, document);
   add_finger(summary, document);
   if (!data.measured.empty()) {

@@ -53,6 +53,7 @@ analysis::TrialRecord record_of(const core::TrialRow& row, const core::BlockStar
   analysis::TrialRecord record;
   record.trial_index = row.trial_index;
   record.block_index = block.block_index;
+  record.segment_index = row.segment_index;
   record.block = block.name;
   record.type = block.practice ? core::TrialType::practice : row.type;
   record.procedure = row.procedure;

@@ -255,6 +255,42 @@ std::vector<analysis::Judgements> judgements_of(const SessionData& data) {
                                                              : Judged::magnitudes);
 }
 
+std::optional<analysis::DependenceOptions> dependence_options(const SessionData& data) {
+  using analysis::Answers;
+  analysis::DependenceOptions options;
+  options.positive = data.positive;
+  options.after_error = data.scored && !data.prior;
+  switch (data.design) {
+    case Design::ratings:
+      options.answers = Answers::values;
+      return options;
+    case Design::numbers:
+      options.answers = Answers::logarithms;
+      options.decibel = data.level_unit == "dB";
+      return options;
+    case Design::adjustment:
+      options.answers = Answers::settings;
+      return options;
+    case Design::categories:
+      return std::nullopt;
+    case Design::forced_choice:
+      options.answers = Answers::sides;
+      options.positive = 1;
+      options.decibel = data.level_unit == "dB";
+      break;
+    case Design::two_sided:
+      options.answers = data.scenes.empty() ? Answers::choices : Answers::sides;
+      if (!data.scenes.empty()) options.positive = 1;
+      options.cut = data.cut;
+      break;
+    case Design::yes_no:
+    case Design::same_different:
+      options.answers = Answers::choices;
+      break;
+  }
+  return data.choices.size() == 2 ? std::optional(options) : std::nullopt;
+}
+
 bool has_confusions(const SessionData& data) {
   return !judges(data.design) && (data.choices.size() > 2 || data.design == Design::categories);
 }
@@ -325,6 +361,8 @@ void append(std::vector<Entry> more, std::vector<Entry>& all) {
 
 /// Adds what the answers at the levels of one analysis say, except for the psychometric functions.
 void add_levels(const SessionData& data, Summary& summary) {
+  if (const auto options = dependence_options(data))
+    append(analysis::serial_dependence(data.trials, data.conditions, *options), summary.dependences);
   if (data.design == Design::adjustment) {
     append(analysis::settings(data.trials, data.conditions), summary.settings);
     return;

@@ -6,6 +6,7 @@
 
 #include "station/analysis/confusion.hpp"
 #include "station/analysis/course.hpp"
+#include "station/analysis/dependence.hpp"
 #include "station/analysis/judgements.hpp"
 #include "station/analysis/response_signal.hpp"
 #include "station/analysis/settings.hpp"
@@ -48,6 +49,8 @@ struct Summary {
   std::vector<analysis::Settings> settings;
   /// for ratings and numbers: one entry for each condition
   std::vector<analysis::Judgements> judgements;
+  /// effects of the trial before, one entry for each condition; empty for three or more answers
+  std::vector<analysis::Dependence> dependences;
   /// force and friction of the finger; empty if no force cells recorded data
   std::optional<analysis::Finger> finger;
 };
@@ -64,6 +67,9 @@ bool has_confusions(const SessionData& data);
 
 /// Returns only the analysis of ratings or numbers; empty for other designs.
 std::vector<analysis::Judgements> judgements_of(const SessionData& data);
+
+/// How the regression of the effects of the trial before sees the answers; empty for three or more answers.
+std::optional<analysis::DependenceOptions> dependence_options(const SessionData& data);
 
 /// False if the data give only a limit for the slope. The slope then lies on a bound of the
 /// maximum-likelihood fit, or the posterior does not determine it.

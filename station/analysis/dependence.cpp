@@ -1,0 +1,316 @@
+#include "station/analysis/dependence.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+namespace turnpoint::analysis {
+
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+/// pairs without which nothing is estimated: for choices; beyond the number of predictors for other answers
+constexpr std::size_t kFewestPairs = 50, kFewestSpare = 10;
+/// errors before a counted trial without which `after_error` is left out
+constexpr int kFewestErrors = 5;
+constexpr double kChiSquare95 = kZ95 * kZ95;
+
+/// The penalised likelihood at one place: its logarithm, its gradient and the expected information.
+struct Local {
+  double log_likelihood = 0;
+  Vector gradient;
+  Matrix information;
+};
+
+class Penalised {
+ public:
+  Penalised(const Matrix& predictors, const Vector& answers) : x_(predictors), y_(answers) {}
+
+  /// Climbs from `at` by scoring. With `held`, that coefficient stays as it is. Empty if the search does not
+  /// come to rest.
+  std::optional<Local> climb(Vector& at, std::optional<Eigen::Index> held) const {
+    auto here = local(at);
+    for (int round = 0;; ++round) {
+      Vector gradient = here.gradient;
+      Matrix information = here.information;
+      if (held) {
+        gradient[*held] = 0;
+        information.row(*held).setZero(), information.col(*held).setZero();
+        information(*held, *held) = 1;
+      }
+      Vector step = information.llt().solve(gradient);
+      const double gain = gradient.dot(step) / 2;  // what a whole step would add
+      if (!std::isfinite(gain)) return std::nullopt;
+      if (gain < 1e-13 || (round == 500 && gain < 1e-8)) return here;
+      if (round == 500) return std::nullopt;
+      auto there = local(at + step);
+      for (int halved = 0; halved < 40 && !(there.log_likelihood >= here.log_likelihood); ++halved) {
+        step /= 2;
+        there = local(at + step);
+      }
+      if (!(there.log_likelihood >= here.log_likelihood))  // only rounding errors are left
+        return gain < 1e-8 ? std::optional(here) : std::nullopt;
+      at += step, here = std::move(there);
+    }
+  }
+
+ private:
+  Local local(const Vector& at) const {
+    const Vector logit = x_ * at;
+    const auto p = (1 / (1 + (-logit.array()).exp())).eval();
+    // ln(1 + e^z), which does not overflow
+    const auto soft = (logit.array().max(0) + (-logit.array().abs()).exp().log1p()).eval();
+    const Matrix weighted = (p * (1 - p)).matrix().asDiagonal() * x_;
+    Local result;
+    result.information = x_.transpose() * weighted;
+    const Eigen::LLT<Matrix> solver(result.information);
+    const Matrix factor = solver.matrixL();
+    // with the penalty, half the logarithm of the determinant of the information
+    result.log_likelihood = (y_.array() * logit.array() - soft).sum() + factor.diagonal().array().log().sum();
+    if (solver.info() != Eigen::Success) result.log_likelihood = -std::numeric_limits<double>::infinity();
+    const auto leverage =
+        (weighted.array() * solver.solve(x_.transpose()).transpose().array()).rowwise().sum().eval();
+    result.gradient = x_.transpose() * (y_.array() - p + leverage * (0.5 - p)).matrix();
+    return result;
+  }
+
+  const Matrix& x_;
+  const Vector& y_;
+};
+
+/// Returns where the profile of the coefficient `k` has fallen by what a 95 % interval allows; `direction` is
+/// -1 or 1.
+std::optional<double> end_of(const Penalised& model, const Vector& best, double most, Eigen::Index k,
+                             double sd, double direction) {
+  const auto fallen = [&](double value, Vector& at) -> std::optional<double> {
+    at[k] = value;
+    const auto there = model.climb(at, k);
+    return there ? std::optional(2 * (most - there->log_likelihood)) : std::nullopt;
+  };
+  double inside = best[k], step = kZ95 * sd;
+  Vector at = best, near = best;
+  double outside = inside + direction * step;
+  for (int i = 0;; ++i) {
+    at = near;
+    const auto drop = fallen(outside, at);
+    if (!drop || i == 60) return std::nullopt;
+    if (*drop > kChiSquare95) break;
+    inside = outside, near = at;
+    outside += direction * (step *= 1.5);
+  }
+  for (int i = 0; i < 60 && std::fabs(outside - inside) > 1e-9 * (sd + std::fabs(inside)); ++i) {
+    const double middle = (inside + outside) / 2;
+    at = near;
+    const auto drop = fallen(middle, at);
+    if (!drop) return std::nullopt;
+    if (*drop > kChiSquare95)
+      outside = middle;
+    else
+      inside = middle, near = at;
+  }
+  return (inside + outside) / 2;
+}
+
+Matrix matrix_of(const std::vector<std::vector<double>>& rows) {
+  Matrix x(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(rows.front().size()));
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    for (Eigen::Index k = 0; k < x.cols(); ++k)
+      x(i, k) = rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
+  return x;
+}
+
+/// Scales each column to a length of the root of its rows, so that steps and tolerances mean the same for all
+/// units. Empty if the columns are linearly dependent.
+std::optional<Vector> scale(Matrix& x) {
+  const Vector unit = (x.colwise().norm() / std::sqrt(static_cast<double>(x.rows()))).transpose();
+  if (!(unit.minCoeff() > 0) || !unit.allFinite()) return std::nullopt;
+  x = x * unit.cwiseInverse().asDiagonal();
+  Eigen::ColPivHouseholderQR<Matrix> solver(x);
+  solver.setThreshold(1e-7);
+  return solver.rank() == x.cols() ? std::optional(unit) : std::nullopt;
+}
+
+Estimate scaled(Estimate estimate, double unit) {
+  estimate.value /= unit, estimate.interval.low /= unit, estimate.interval.high /= unit;
+  return estimate;
+}
+
+/// Linear regression with intervals by Student's t; empty if the predictors are linearly dependent.
+std::vector<Estimate> linear(const std::vector<std::vector<double>>& rows,
+                             const std::vector<double>& answers) {
+  auto x = matrix_of(rows);
+  const auto unit = scale(x);
+  if (!unit || x.rows() <= x.cols()) return {};
+  const Vector y = Eigen::Map<const Vector>(answers.data(), static_cast<Eigen::Index>(answers.size()));
+  const Matrix inverse = (x.transpose() * x).inverse();
+  const Vector value = inverse * (x.transpose() * y);
+  const auto freedom = static_cast<double>(x.rows() - x.cols());
+  const double variance = (y - x * value).squaredNorm() / freedom;
+  const boost::math::students_t law(freedom);
+  std::vector<Estimate> result;
+  for (Eigen::Index k = 0; k < value.size(); ++k) {
+    const double sd = std::sqrt(variance * inverse(k, k)), half = boost::math::quantile(law, 0.975) * sd;
+    Estimate estimate{value[k], {value[k] - half, value[k] + half, 0.95}};
+    if (sd > 0) estimate.p = 2 * boost::math::cdf(law, -std::fabs(value[k]) / sd);
+    result.push_back(scaled(estimate, (*unit)[k]));
+  }
+  return result;
+}
+
+/// A trial as the regression sees it.
+struct TrialSeen {
+  double stimulus = 0, answer = 0;
+};
+
+std::optional<TrialSeen> seen(const TrialRecord& trial, const DependenceOptions& options) {
+  if (!counted(trial) || !trial.level) return std::nullopt;
+  double level = options.decibel ? std::pow(10, *trial.level / 20) : *trial.level;
+  switch (options.answers) {
+    case Answers::sides:
+      if (!trial.response) return std::nullopt;
+      level = std::fabs(level - options.cut);
+      if (level > 0 && !trial.right_choice) return std::nullopt;
+      return TrialSeen{trial.right_choice == options.positive ? level : -level,
+                       *trial.response == options.positive ? 0.5 : -0.5};
+    case Answers::choices:
+      if (!trial.response) return std::nullopt;
+      return TrialSeen{level, *trial.response == options.positive ? 0.5 : -0.5};
+    case Answers::values:
+    case Answers::settings:
+      if (!trial.setting) return std::nullopt;
+      return TrialSeen{level, *trial.setting};
+    case Answers::logarithms:
+      if (!trial.setting || !(*trial.setting > 0) || !(level > 0)) return std::nullopt;
+      return TrialSeen{std::log10(level), std::log10(*trial.setting)};
+  }
+  return std::nullopt;
+}
+
+struct PairOfTrials {
+  TrialSeen before, now;
+  bool error = false;    ///< the answer before was wrong
+  std::size_t mean = 0;  ///< number of the level or condition that has a mean of its own
+};
+
+/// The predictors of one answer: those of Dependence that vary, and the constant or a mean for each level.
+struct Design {
+  std::vector<std::optional<Estimate> Dependence::*> what;
+  std::vector<std::vector<double>> rows;
+};
+
+Design design_of(const std::vector<PairOfTrials>& pairs, const DependenceOptions& options) {
+  const bool means = options.answers == Answers::values || options.answers == Answers::logarithms;
+  const auto varies = [&pairs](double TrialSeen::*what, TrialSeen PairOfTrials::*of) {
+    return std::any_of(pairs.begin(), pairs.end(),
+                       [&](const PairOfTrials& pair) { return pair.*of.*what != pairs.front().*of.*what; });
+  };
+  std::set<std::size_t> mean_of;
+  int errors = 0;
+  for (const auto& pair : pairs) mean_of.insert(pair.mean), errors += pair.error;
+  const bool now = !means && varies(&TrialSeen::stimulus, &PairOfTrials::now),
+             before = varies(&TrialSeen::stimulus, &PairOfTrials::before),
+             answer = varies(&TrialSeen::answer, &PairOfTrials::before);
+  const bool after = options.after_error && now && errors >= kFewestErrors;
+  Design design;
+  if (now) design.what.push_back(&Dependence::stimulus);
+  if (before) design.what.push_back(&Dependence::previous_stimulus);
+  if (answer) design.what.push_back(&Dependence::previous_answer);
+  if (after) design.what.push_back(&Dependence::after_error);
+  for (const auto& pair : pairs) {
+    auto& row = design.rows.emplace_back();
+    if (now) row.push_back(pair.now.stimulus);
+    if (before) row.push_back(pair.before.stimulus);
+    if (answer) row.push_back(pair.before.answer);
+    if (after) row.push_back(pair.error ? pair.now.stimulus : 0);
+    for (const auto number : mean_of) row.push_back(pair.mean == number ? 1 : 0);
+  }
+  return design;
+}
+
+void estimate(const std::vector<PairOfTrials>& pairs, const DependenceOptions& options, Dependence& into) {
+  const bool logistic = options.answers == Answers::sides || options.answers == Answers::choices;
+  const auto design = pairs.empty() ? Design{} : design_of(pairs, options);
+  const auto columns = design.rows.empty() ? 0 : design.rows.front().size();
+  if (const auto fewest = logistic ? kFewestPairs : columns + kFewestSpare; pairs.size() < fewest) {
+    into.statements.push_back({"few-pairs", core::phrase("statement.few_pairs", {core::plain(fewest)})});
+    return;
+  }
+  std::vector<bool> choices;
+  std::vector<double> values;
+  for (const auto& pair : pairs) choices.push_back(pair.now.answer > 0), values.push_back(pair.now.answer);
+  const auto found = design.what.empty() ? std::vector<Estimate>{}
+                     : logistic          ? penalised_logistic(design.rows, choices)
+                                         : linear(design.rows, values);
+  for (std::size_t i = 0; i < design.what.size() && i < found.size(); ++i) into.*design.what[i] = found[i];
+  if (found.empty())
+    into.statements.push_back({"confounded-pairs", core::phrase("statement.confounded_pairs")});
+}
+
+}  // namespace
+
+std::vector<Estimate> penalised_logistic(const std::vector<std::vector<double>>& rows,
+                                         const std::vector<bool>& answers) {
+  if (rows.empty()) return {};
+  auto x = matrix_of(rows);
+  const auto unit = scale(x);
+  if (!unit) return {};
+  Vector y(x.rows());
+  for (Eigen::Index i = 0; i < y.size(); ++i) y[i] = answers[static_cast<std::size_t>(i)] ? 1 : 0;
+  const Penalised model(x, y);
+  Vector best = Vector::Zero(x.cols());
+  const auto top = model.climb(best, std::nullopt);
+  if (!top) return {};
+  const Matrix covariance = top->information.inverse();
+  std::vector<Estimate> result;
+  for (Eigen::Index k = 0; k < x.cols(); ++k) {
+    const double sd = std::sqrt(covariance(k, k));
+    const auto low = end_of(model, best, top->log_likelihood, k, sd, -1),
+               high = end_of(model, best, top->log_likelihood, k, sd, 1);
+    Vector without = best;
+    without[k] = 0;
+    const auto null = model.climb(without, k);
+    if (!low || !high || !null) return {};
+    const double ratio = std::max(0.0, 2 * (top->log_likelihood - null->log_likelihood));
+    result.push_back(scaled({best[k], {*low, *high, 0.95}, std::erfc(std::sqrt(ratio / 2))}, (*unit)[k]));
+  }
+  return result;
+}
+
+std::vector<Dependence> serial_dependence(const std::vector<TrialRecord>& trials,
+                                          const std::vector<std::string>& order,
+                                          const DependenceOptions& options) {
+  const auto conditions = conditions_of(trials, order);
+  const bool pooled = options.answers == Answers::settings;
+  const bool by_level = options.answers == Answers::values || options.answers == Answers::logarithms;
+  std::vector<std::vector<PairOfTrials>> pairs(pooled ? 1 : conditions.size());
+  std::map<double, std::size_t> levels;
+  for (std::size_t i = 1; i < trials.size(); ++i) {
+    const auto &before = trials[i - 1], &now = trials[i];
+    if (!follows(before, now)) continue;
+    const auto first = seen(before, options), second = seen(now, options);
+    if (!first || !second) continue;
+    const auto condition =
+        static_cast<std::size_t>(std::ranges::find(conditions, now.instruction) - conditions.begin());
+    PairOfTrials pair{*first, *second, before.correct == false};
+    if (pooled) pair.mean = condition;
+    if (by_level) pair.mean = levels.try_emplace(second->stimulus, levels.size()).first->second;
+    pairs[pooled ? 0 : condition].push_back(pair);
+  }
+  std::vector<Dependence> all;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    auto& one = all.emplace_back();
+    if (!pooled) one.condition = conditions[i];
+    one.pairs = static_cast<int>(pairs[i].size());
+    estimate(pairs[i], options, one);
+  }
+  return all;
+}
+
+}  // namespace turnpoint::analysis

@@ -1,0 +1,266 @@
+#include "station/analysis/dependence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <map>
+
+#include "station/core/draws.hpp"
+#include "tests/analysis/dependence_table.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::analysis;
+
+namespace {
+
+turnpoint::core::Draws draws_of(int set) {
+  return turnpoint::core::Draws({17, turnpoint::core::Stream::observer, 0, 0, set});
+}
+
+double chance(double log_odds) { return 1 / (1 + std::exp(-log_odds)); }
+
+int number_in(const char* variable, int otherwise) {
+  const char* text = std::getenv(variable);
+  return text ? std::atoi(text) : otherwise;
+}
+
+/// A session, how it is analysed, and the true effects.
+struct Session {
+  const char* name;
+  DependenceOptions options;
+  std::map<const char*, double> truth;
+  std::vector<TrialRecord> (*trials)(turnpoint::core::Draws&);
+};
+
+constexpr int kTrials = 240;
+
+/// 2IFC with five strengths: the answer follows the strength, on the side of the interval with the target,
+/// and the trial before.
+std::vector<TrialRecord> two_intervals(turnpoint::core::Draws& draws) {
+  std::vector<TrialRecord> trials;
+  double before = 0, answer = 0;
+  bool error = false;
+  for (int i = 0; i < kTrials; ++i) {
+    TrialRecord trial;
+    trial.trial_index = i;
+    trial.level = 0.25 * (1 + static_cast<double>(draws.below(5)));
+    trial.right_choice = static_cast<int>(draws.below(2));
+    const double x = *trial.right_choice == 1 ? *trial.level : -*trial.level;
+    trial.response =
+        draws.uniform() < chance(0.1 + 2 * x + 0.4 * before + 0.5 * answer - (error ? 0.6 * x : 0)) ? 1 : 0;
+    trial.correct = trial.response == trial.right_choice;
+    before = x, answer = *trial.response - 0.5, error = !*trial.correct;
+    trials.push_back(trial);
+  }
+  return trials;
+}
+
+/// The same without any effect of the trial before, with a Weibull function and lapses: the regression
+/// assumes another curve.
+std::vector<TrialRecord> without_memory(turnpoint::core::Draws& draws) {
+  std::vector<TrialRecord> trials;
+  for (int i = 0; i < kTrials; ++i) {
+    TrialRecord trial;
+    trial.trial_index = i;
+    trial.level = 0.25 * (1 + static_cast<double>(draws.below(5)));
+    trial.right_choice = static_cast<int>(draws.below(2));
+    trial.correct = draws.uniform() < 0.98 - 0.48 * std::exp(-std::pow(*trial.level / 0.6, 3.0));
+    trial.response = *trial.correct ? *trial.right_choice : 1 - *trial.right_choice;
+    trials.push_back(trial);
+  }
+  return trials;
+}
+
+/// Bisection: two answers, none of them right.
+std::vector<TrialRecord> bisection(turnpoint::core::Draws& draws) {
+  std::vector<TrialRecord> trials;
+  double before = 0, answer = 0;
+  for (int i = 0; i < kTrials; ++i) {
+    TrialRecord trial;
+    trial.trial_index = i;
+    trial.level = 2 + static_cast<double>(draws.below(7));
+    const double past = i > 0 ? -0.3 * (before - 5) + 1.0 * answer : 0;
+    trial.response = draws.uniform() < chance(1.2 * (*trial.level - 5) + past) ? 1 : 0;
+    before = *trial.level, answer = *trial.response - 0.5;
+    trials.push_back(trial);
+  }
+  return trials;
+}
+
+/// Magnitude estimation with assimilation to the number before.
+std::vector<TrialRecord> numbers(turnpoint::core::Draws& draws) {
+  std::vector<TrialRecord> trials;
+  double stimulus = 0, number = 0;
+  for (int i = 0; i < kTrials; ++i) {
+    TrialRecord trial;
+    trial.trial_index = i;
+    trial.level = std::pow(2.0, static_cast<double>(draws.below(6)));
+    const double x = std::log10(*trial.level);
+    const double y = 1 + 0.7 * x + (i > 0 ? -0.1 * stimulus + 0.3 * (number - 1) : 0) + 0.12 * draws.normal();
+    trial.setting = std::pow(10.0, y);
+    stimulus = x, number = y;
+    trials.push_back(trial);
+  }
+  return trials;
+}
+
+/// Settings of a slider to two targets, drawn to its start and to start and setting before.
+std::vector<TrialRecord> settings(turnpoint::core::Draws& draws) {
+  std::vector<TrialRecord> trials;
+  double before = 0, start = 0;
+  for (int i = 0; i < 80; ++i) {
+    TrialRecord trial;
+    trial.trial_index = i;
+    trial.instruction = draws.below(2) ? "far" : "near";
+    trial.level = draws.uniform() * 20 - 10;
+    trial.setting = (trial.instruction == "far" ? 5 : 2) + 0.1 * *trial.level + 0.25 * before + 0.05 * start +
+                    draws.normal();
+    before = *trial.setting, start = *trial.level;
+    trials.push_back(trial);
+  }
+  return trials;
+}
+
+const std::vector<Session> kSessions{
+    {"two intervals",
+     {Answers::sides, 1, 0, false, true},
+     {{"stimulus", 2}, {"previous stimulus", 0.4}, {"previous answer", 0.5}, {"after an error", -0.6}},
+     two_intervals},
+    {"two intervals, Weibull, no memory",
+     {Answers::sides, 1, 0, false, true},
+     {{"previous stimulus", 0}, {"previous answer", 0}},
+     without_memory},
+    {"bisection",
+     {Answers::choices},
+     {{"stimulus", 1.2}, {"previous stimulus", -0.3}, {"previous answer", 1}},
+     bisection},
+    {"numbers", {Answers::logarithms}, {{"previous stimulus", -0.1}, {"previous answer", 0.3}}, numbers},
+    {"settings",
+     {Answers::settings},
+     {{"stimulus", 0.1}, {"previous stimulus", 0.05}, {"previous answer", 0.25}},
+     settings}};
+
+const std::optional<Estimate>& effect(const Dependence& found, const std::string& name) {
+  return name == "stimulus"            ? found.stimulus
+         : name == "previous stimulus" ? found.previous_stimulus
+         : name == "previous answer"   ? found.previous_answer
+                                       : found.after_error;
+}
+
+}  // namespace
+
+TEST_CASE("The effects of the trial before equal those of another program, with the ends of their intervals",
+          "[analysis]") {
+  for (const auto& known : kDependence) {
+    std::vector<TrialRecord> trials;
+    for (std::size_t i = 0; i < known.levels.size(); ++i) {
+      TrialRecord trial;
+      trial.trial_index = static_cast<int>(i);
+      trial.level = known.levels[i];
+      if (known.choices) {
+        trial.response = static_cast<int>(known.answers[i]);
+        trial.right_choice = known.levels[i] > 0 ? 1 : 0;
+        trial.correct = trial.response == trial.right_choice;
+      } else {
+        trial.setting = known.answers[i];
+      }
+      trials.push_back(trial);
+    }
+    DependenceOptions options;
+    options.answers = known.choices ? Answers::sides : Answers::logarithms;
+    options.after_error = known.choices;
+    const auto all = serial_dependence(trials, {}, options);
+    REQUIRE(all.size() == 1);
+    CHECK(all[0].pairs == static_cast<int>(trials.size()) - 1);
+    std::vector<std::optional<Estimate>> found{all[0].previous_stimulus, all[0].previous_answer};
+    if (known.choices)
+      found = {all[0].stimulus, all[0].previous_stimulus, all[0].previous_answer, all[0].after_error};
+    REQUIRE(found.size() == known.effects.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      INFO(trials.size() << " trials, effect " << i);
+      REQUIRE(found[i]);
+      CHECK(found[i]->value == Approx(known.effects[i][0]).margin(2e-6));
+      CHECK(found[i]->interval.low == Approx(known.effects[i][1]).margin(2e-6));
+      CHECK(found[i]->interval.high == Approx(known.effects[i][2]).margin(2e-6));
+      CHECK((*found[i]->p < 0.05) == (found[i]->interval.low > 0 || found[i]->interval.high < 0));
+    }
+    if (!known.choices) continue;
+    // the level alone says the same where the positive choice belongs to the levels above 0
+    options.answers = Answers::choices;
+    const auto plain = serial_dependence(trials, {}, options);
+    CHECK(plain[0].previous_answer->value == all[0].previous_answer->value);
+  }
+}
+
+// TURNPOINT_DEPENDENCE_SETS=500 prints the coverage for every kind of session; TURNPOINT_DEPENDENCE_FIRST=500
+// begins with another session, so that a long run can be done in parts.
+TEST_CASE("The intervals of the effects of the trial before contain the true value", "[analysis]") {
+  const int sets = number_in("TURNPOINT_DEPENDENCE_SETS", 60),
+            first = number_in("TURNPOINT_DEPENDENCE_FIRST", 0);
+  const bool asked = std::getenv("TURNPOINT_DEPENDENCE_SETS") != nullptr;
+  for (const auto& session : kSessions) {
+    std::map<std::string, int> held, found;
+    std::map<std::string, double> sum;
+    for (int set = first; set < first + sets; ++set) {
+      auto draws = draws_of(set);
+      const auto all = serial_dependence(session.trials(draws), {}, session.options);
+      REQUIRE(all.size() == 1);
+      for (const auto& [name, truth] : session.truth) {
+        const auto& estimate = effect(all[0], name);
+        if (!estimate) continue;
+        ++found[name];
+        sum[name] += estimate->value;
+        held[name] += estimate->interval.low <= truth && truth <= estimate->interval.high;
+      }
+    }
+    for (const auto& [name, truth] : session.truth) {
+      INFO(session.name << ", " << name);
+      CHECK(found[name] == sets);
+      CHECK(held[name] >= (asked ? 0.93 : 0.85) * found[name]);  // 0.85: fewer in 1 of 1000 runs of 60
+      if (asked)
+        std::cout << session.name << ", " << name << ": " << held[name] << " of " << found[name] << " ("
+                  << 100.0 * held[name] / found[name] << " %), mean " << sum[name] / found[name] << " of "
+                  << truth << "\n";
+    }
+  }
+}
+
+TEST_CASE("Effects of the trial before are left out where the answers do not tell", "[analysis]") {
+  auto draws = draws_of(0);
+  const DependenceOptions options{Answers::sides, 1, 0, false, true};
+  const auto all = two_intervals(draws);
+  const auto code = [&](std::vector<TrialRecord> trials) {
+    const auto found = serial_dependence(trials, {}, options).at(0);
+    CHECK_FALSE(found.previous_answer);
+    return found.statements.empty() ? "" : found.statements[0].code;
+  };
+  CHECK(code({all.begin(), all.begin() + 50}) == "few-pairs");
+  auto apart = all;  // each trial is in another block, run of the program, or has another one before it
+  for (auto& trial : apart) trial.block_index = trial.trial_index;
+  CHECK(code(apart) == "few-pairs");
+  apart = all;
+  for (auto& trial : apart) trial.segment_index = trial.trial_index;
+  CHECK(code(apart) == "few-pairs");
+  apart = all;
+  for (auto& trial : apart) trial.trial_index *= 2;
+  CHECK(code(apart) == "few-pairs");
+  apart = all;  // the trial before may be of another condition
+  for (auto& trial : apart) trial.instruction = trial.trial_index % 2 ? "a" : "b";
+  const auto both = serial_dependence(apart, {"b"}, options);
+  REQUIRE(both.size() == 2);
+  CHECK(both[0].condition == "b");
+  CHECK(both[0].pairs + both[1].pairs == static_cast<int>(all.size()) - 1);
+  CHECK(both[1].previous_answer);
+  auto perfect = all;  // always right at one strength: the stimulus before says what the answer before was
+  for (auto& trial : perfect) trial.level = 1, trial.correct = true, trial.response = trial.right_choice;
+  CHECK(code(perfect) == "confounded-pairs");
+  // Always right at several strengths: the penalised likelihood has a maximum, and its intervals ends.
+  perfect = all;
+  for (auto& trial : perfect) trial.correct = true, trial.response = trial.right_choice;
+  const auto found = serial_dependence(perfect, {}, options).at(0);
+  REQUIRE(found.stimulus);
+  CHECK(std::isfinite(found.stimulus->interval.high));
+  CHECK(found.stimulus->interval.low > 0);
+  CHECK_FALSE(found.after_error);  // no error
+}
