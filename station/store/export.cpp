@@ -170,9 +170,11 @@ void for_each_row(Database& database, const ProtocolSelection& selection, const 
     session_cells.self_test = newest_self_test(stored);
     rows.sessions(cells_of(columns.sessions, session_cells));
     for (const auto& block : stored.blocks)
-      for (const auto& trial : block.trials) {
+      for (std::size_t i = 0; i < block.trials.size(); ++i) {
+        const auto& trial = block.trials[i];
         ExportRow row{&stored.session, &block.start, &trial};
         row.span = span_of(spans, trial);
+        row.previous = previous_trial(block, i);
         rows.trials(cells_of(columns.trials, row));
         for (const auto& tone : trial.tones) {
           row.tone = &tone;

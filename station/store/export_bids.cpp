@@ -353,10 +353,11 @@ class BidsWriter {
       const auto columns = bids_trial_columns(selection_.factors);
       TableFile trials(base + "_beh.tsv", kBids, names_of(columns));
       for (const auto& block : stored.blocks)
-        for (const auto& trial : block.trials)
-          if (trial.segment_index == segment) {
+        for (std::size_t at = 0; at < block.trials.size(); ++at)
+          if (const auto& trial = block.trials[at]; trial.segment_index == segment) {
             ExportRow row{&stored.session, &block.start, &trial};
             row.span = span_of(spans, trial);
+            row.previous = previous_trial(block, at);
             trials.row(cells_of(columns, row));
           }
       trials.finish(files_);

@@ -29,6 +29,21 @@ ExportColumn session(const std::string& csv) {
 }
 ExportColumn block(const std::string& csv) { return exported(block_table(), csv, &ExportRow::block); }
 ExportColumn trial(const std::string& csv) { return exported(trial_table(), csv, &ExportRow::trial); }
+/// A column of the trial before, with the same meaning as in its own line.
+ExportColumn previous(const std::string& csv) {
+  auto column = exported(trial_table(), csv, &ExportRow::trial);
+  column.column.name = "previous_" + csv;
+  column.column.description =
+      "The same column of the trial presented just before in this block; n/a for the first trial of an "
+      "attempt "
+      "or after an interruption";
+  column.cell = [cell = std::move(column.cell)](const ExportRow& row) {
+    ExportRow before = row;
+    before.trial = row.previous;
+    return row.previous ? cell(before) : Cell{};
+  };
+  return column;
+}
 ExportColumn tone(const std::string& csv) { return exported(tone_table(), csv, &ExportRow::tone); }
 ExportColumn event(const std::string& csv) { return exported(event_table(), csv, &ExportRow::event); }
 
@@ -242,6 +257,7 @@ ExportColumns trial_columns(const std::vector<ExportedFactor>& factors) {
        "mu",
        "silence_db",
        "silence_tone_db"});
+  add(columns, previous, {"level", "correct_response", "response", "correct", "outcome"});
   columns.push_back(columns_version());
   add_factors(columns, at, factors);
   return columns;

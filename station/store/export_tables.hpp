@@ -57,7 +57,17 @@ struct ExportRow {
   const EstimateRow* estimate = nullptr;    ///< an estimate in `event`
   const AnswerRow* answer = nullptr;        ///< the answer in `event`
   const EventRow* self_test = nullptr;      ///< the newest self-test of the session; null if there was none
+  const TrialRow* previous = nullptr;       ///< see previous_trial(); null if there was none
 };
+
+/// The trial of this block that was presented just before the trial at `index`, whatever became of it. Null
+/// for the first trial of an attempt at the block, and for the first one after an interruption of the
+/// session.
+inline const TrialRow* previous_trial(const BlockRecord& block, std::size_t index) {
+  if (index == 0) return nullptr;
+  const auto &trial = block.trials[index], &before = block.trials[index - 1];
+  return before.segment_index == trial.segment_index ? &before : nullptr;
+}
 
 /// A column of an exported table: its description, and the function that computes the column's value in a
 /// line.
