@@ -53,6 +53,10 @@ ConstantStimuli::ConstantStimuli(const Spec& spec, const Context& context, const
   total_ = static_cast<int>(queue_.size());
 }
 
+/// Whether an order is found depends on the draws. A protocol is checked with these, which are therefore
+/// taken if a session's own find none.
+constexpr core::DrawKey kSureOrder{0, core::Stream::level_order, 0, 0, 0};
+
 std::vector<ConstantStimuli::Item> ConstantStimuli::items(core::Draws& draws) const {
   const auto repeats = static_cast<std::size_t>(spec_.repeats);
   std::vector<Item> all(repeats * spec_.values.size());
@@ -73,7 +77,27 @@ std::vector<ConstantStimuli::Item> ConstantStimuli::items(core::Draws& draws) co
   return all;
 }
 
+void ConstantStimuli::order_by_rules(std::vector<Item>& items, core::Draws& draws) const {
+  std::vector<OrderedItem> list;
+  for (const auto& item : items) {
+    const auto first = std::ranges::find(spec_.values, spec_.values[item.value]) - spec_.values.begin();
+    list.push_back(
+        {{static_cast<std::size_t>(first)}, spec_.shuffle == Shuffle::within_repeat ? item.repeat : 0});
+    list.back().values.insert(list.back().values.end(), item.balance.begin(), item.balance.end());
+  }
+  auto found = in_order(list, spec_.rules, draws);
+  if (!found.problem.empty()) {
+    core::Draws sure(kSureOrder);
+    found = in_order(list, spec_.rules, sure);
+  }
+  if (!found.problem.empty()) throw NoOrder(std::move(found));
+  std::vector<Item> ordered;
+  for (const auto at : found.items) ordered.push_back(items[at]);
+  items = std::move(ordered);
+}
+
 void ConstantStimuli::order(std::vector<Item>& items, core::Draws& draws) const {
+  if (!spec_.rules.empty()) return order_by_rules(items, draws);
   if (spec_.shuffle == Shuffle::none) return;
   const auto n = spec_.shuffle == Shuffle::within_repeat ? spec_.values.size() : items.size();
   for (std::size_t first = 0; first < items.size(); first += n) {
@@ -90,7 +114,7 @@ bool ConstantStimuli::in_repeat(std::size_t at) const {
 
 std::vector<Candidate> ConstantStimuli::candidates() const {
   if (!next()) return {};
-  if (spec_.shuffle == Shuffle::none) return {{choice(0)}};
+  if (spec_.shuffle == Shuffle::none || !spec_.rules.empty()) return {{choice(0)}};
   // This is called for each trial, and a list may be long: the search ends once all kinds of items are known.
   std::vector<Candidate> all;
   std::map<Kind, std::size_t> known;
@@ -102,7 +126,8 @@ std::vector<Candidate> ConstantStimuli::candidates() const {
   const bool in_block = spec_.shuffle == Shuffle::within_block;
   std::vector<bool> soon(spec_.values.size());  // the values that the present repeat still has
   auto at = position_;
-  for (; at < queue_.size() && in_repeat(at) && known.size() < (in_block ? left_.size() : queue_.size()); ++at) {
+  for (; at < queue_.size() && in_repeat(at) && known.size() < (in_block ? left_.size() : queue_.size());
+       ++at) {
     ++look(at).in_repeat;
     soon[queue_[at].value] = true;
   }
@@ -142,6 +167,10 @@ std::optional<Proposal> ConstantStimuli::next() const {
 }
 
 void ConstantStimuli::record(Answer answer) {
+  if (answer == Answer::none && !context_.unanswered_are_data && !spec_.rules.empty()) {
+    ++requeued_;
+    return;
+  }
   auto item = queue_[position_++];
   if (const auto left = left_.find(kind_of(item)); --left->second == 0) left_.erase(left);
   if (spec_.stop.right && answer != Answer::none) answers_.push_back(answer == Answer::one);
@@ -166,6 +195,18 @@ std::uint64_t ConstantStimuli::state_hash() const {
   for (const bool right : answers_) hash.add(right ? 1 : 0);
   for (std::size_t i = position_; i < queue_.size(); ++i) hash.add(queue_[i].value);
   return hash.value();
+}
+
+NoOrder::NoOrder(ListOrder order)
+    : std::invalid_argument(core::say(order.problem, "en")), found(std::move(order)) {}
+
+std::optional<Problem> order_problem(const Spec& spec, const Context& context) {
+  try {
+    ConstantStimuli(spec, context, kSureOrder);
+  } catch (const NoOrder& none) {
+    return Problem{"order", none.found.problem, none.found.allowed};
+  }
+  return std::nullopt;
 }
 
 extern const Description constant_stimuli{

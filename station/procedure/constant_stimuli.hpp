@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -10,8 +12,8 @@ namespace turnpoint::procedure {
 
 /// Presents every value `repeats` times. Combinations of the balanced factors occur equally often, as far as
 /// possible. The order is shuffled.
-/// Unanswered trials are repeated later. Ends early if enough of the last answers were right (Stop::right,
-/// Stop::of_last).
+/// Unanswered trials are repeated later; with rules of the order (Spec::rules), at once. Ends early if enough
+/// of the last answers were right (Stop::right, Stop::of_last).
 class ConstantStimuli : public Procedure {
  public:
   ConstantStimuli(const Spec& spec, const Context& context, const core::DrawKey& key);
@@ -30,9 +32,11 @@ class ConstantStimuli : public Procedure {
     std::size_t value = 0, repeat = 0;
     std::vector<std::size_t> balance;
   };
-  using Kind = std::pair<std::size_t, std::vector<std::size_t>>;  ///< value and levels of the balanced factors
+  using Kind =
+      std::pair<std::size_t, std::vector<std::size_t>>;  ///< value and levels of the balanced factors
   static Kind kind_of(const Item& item) { return {item.value, item.balance}; }
   std::vector<Item> items(core::Draws& draws) const;
+  void order_by_rules(std::vector<Item>& items, core::Draws& draws) const;
   bool in_repeat(std::size_t at) const;
   void order(std::vector<Item>& items, core::Draws& draws) const;
 
@@ -46,5 +50,15 @@ class ConstantStimuli : public Procedure {
   std::vector<bool> answers_;
   int recorded_ = 0, requeued_ = 0, total_ = 0;
 };
+
+/// Thrown by the constructor if no order of the list keeps Spec::rules.
+struct NoOrder : std::invalid_argument {
+  explicit NoOrder(ListOrder found);
+  ListOrder found;
+};
+
+/// Says why no order of the list keeps Spec::rules; empty if there is one. The context needs the numbers of
+/// levels.
+std::optional<Problem> order_problem(const Spec& spec, const Context& context);
 
 }  // namespace turnpoint::procedure

@@ -148,7 +148,7 @@ std::optional<double> most_trials(const Protocol& protocol, const Block& block) 
     const auto* spec = find_procedure(protocol, name);
     if (!spec) return std::nullopt;
     if (!spec->values.empty())
-      trials += static_cast<double>(spec->values.size()) * spec->repeats;
+      trials += static_cast<double>(procedure::list_trials(*spec));
     else if (spec->stop.trials && spec->stop.rule == procedure::StopRule::any)
       trials += *spec->stop.trials;
     else

@@ -5,6 +5,7 @@
 
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
+#include "station/protocol/sources.hpp"
 
 namespace turnpoint::protocol {
 
@@ -102,6 +103,31 @@ void read_practice(TableReader& reader, Block& block, const Reading& reading) {
   inner.finish();
 }
 
+/// Reports what would come between the trials of a list whose order has rules, or end it before it is done.
+void check_order_rules(TableReader& reader, const Block& block, const Reading& reading) {
+  for (const auto& name : block.procedures) {
+    const auto* spec = find_procedure(reading.protocol, name);
+    if (!spec || spec->rules.empty()) continue;
+    const auto refuse = [&](const char* key, core::Phrase what) {
+      reader.problem(key, std::move(what), phrase("leave it out, or leave out the rules of the order"));
+    };
+    if (block.procedures.size() > 1 && block.interleave != Interleave::none)
+      refuse("interleave",
+             phrase("trials of other procedures would come between those of \"%1\", whose order has "
+                    "rules",
+                    {plain(name)}));
+    if (block.catch_trials)
+      refuse("catch",
+             phrase("catch trials would come between those of \"%1\", whose order has rules", {plain(name)}));
+    const bool early =
+        block.trials && static_cast<std::size_t>(*block.trials) < procedure::list_trials(*spec);
+    if (!spec->rules.equally.empty() && (block.lasts_s || early))
+      refuse(block.lasts_s ? "lasts_s" : "trials",
+             phrase("the block ends before each value of \"%1\" has followed each other one equally often",
+                    {plain(name)}));
+  }
+}
+
 void read_block_keys(TableReader& reader, Block& block, const Reading& reading) {
   block.place = reader.place();
   read_what(reader, block, reading);
@@ -123,6 +149,7 @@ void read_block_keys(TableReader& reader, Block& block, const Reading& reading) 
                                             : Interleave::none;
   if (std::set(block.procedures.begin(), block.procedures.end()).size() > 1) reader.require("interleave");
   read_catch(reader, block, reading);
+  check_order_rules(reader, block, reading);
   read_break(reader, block, reading);
   if (const auto name = reader.maybe_string("instruction")) {
     std::vector<std::string> known;
