@@ -83,6 +83,7 @@ struct Task {
   Sound sound = Sound::none;  ///< sound that is played while the surface vibrates
   Place sound_place;
   Localised question;
+  std::string question_shows;  ///< the factor whose value stands for %1 in the question; "" if there is none
   /// If the answer is a value, there is one choice, which says that a value was given.
   std::vector<Choice> choices;
   /// What the participant may answer instead of guessing; empty if everybody must choose. It is no choice,

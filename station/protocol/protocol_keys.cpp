@@ -225,6 +225,7 @@ Keys task() {
       word("sound", {"none", "masking_noise"}, "noise on the rig's headphones while the surface vibrates")
           .by_default("\"none\""),
       localised("question", "what is asked").required(),
+      string("question_shows", "a factor whose value in the trial stands for %1 in the question"),
       choices("the answers").holding(1, most_choices),
       localised("unsure", "an answer for those who do not want to guess")
           .only_with("kind", {"2ifc", "3ifc", "4ifc", "oddity", "abx", "match-to-sample"}),

@@ -407,6 +407,22 @@ void read_correct(TableReader& reader, Task& task, const Reading& reading) {
   }
 }
 
+/// Reads the factor whose value the question shows.
+void read_shown(TableReader& reader, Task& task, const Reading& reading) {
+  const auto name = reader.maybe_string("question_shows");
+  if (!name) return;
+  if (!find_factor(reading.protocol.factors, *name))
+    return reader.problem("question_shows", phrase("unknown factor \"%1\"", {plain(*name)}),
+                          core::suggestion(*name, names(reading.protocol.factors)));
+  task.question_shows = *name;
+  for (const auto& [language, text] : task.question)
+    if (text.find("%1") == std::string::npos)
+      reader.problem(
+          "question",
+          phrase("the question in \"%1\" does not show the value of \"%2\"", {plain(language), plain(*name)}),
+          plain("%1"));
+}
+
 }  // namespace
 
 void read_task(TableReader& file, Reading& reading) {
@@ -429,6 +445,7 @@ void read_task(TableReader& file, Reading& reading) {
   if (reader.maybe_word("sound") == "masking_noise") task.sound = Sound::masking_noise;
   task.sound_place = reader.place("sound");
   task.question = read_localised(reader, "question", reading);
+  read_shown(reader, task, reading);
   read_judgement(reader, task, reading);
   read_confidence(reader, task, reading);
   read_times(reader, task);

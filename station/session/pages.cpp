@@ -116,10 +116,26 @@ Page Pages::instructions(const protocol::Block& block, const trial::Director& di
     page.text = core::text(training ? "training_text" : "measuring_text", setup_.language);
     return page;
   }
-  const auto question = text(setup_.protocol.task.question);
+  const auto question = question_in(nullptr);
   page.text += (page.text.empty() ? "" : "\n\n") + question;
   if (const auto* goal = goal_of(block)) page.text += "\n\n" + in_words(*goal, setup_.language);
   return page;
+}
+
+/// The question of a trial; without one, an ellipsis stands for the value that it shows.
+std::string Pages::question_in(const trial::TrialSpec* spec) const {
+  const auto& task = setup_.protocol.task;
+  auto question = text(task.question);
+  if (task.question_shows.empty()) return question;
+  std::string value = "\u2026";
+  if (const auto found = spec ? spec->factors.find(task.question_shows) : protocol::Factors::const_iterator();
+      spec && found != spec->factors.end()) {
+    const auto* number = std::get_if<double>(&found->second);
+    value = number ? core::number(*number) : std::get<std::string>(found->second);
+  }
+  for (auto at = question.find("%1"); at != std::string::npos; at = question.find("%1", at + value.size()))
+    question.replace(at, 2, value);
+  return question;
 }
 
 /// The goal of a block; null if it has none.
@@ -182,7 +198,7 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
   }
   page.mark_mm = mark_of(spec);
   page.interval = {interval + 1, static_cast<int>(spec.intervals.size()), interval_names(task.kind)};
-  page.text = text(setup_.protocol.task.question);
+  page.text = question_in(&spec);
   page.answers_open = phase == Phase::response || (phase == Phase::stimulus && explored);
   for (const auto& choice : task.choices)
     page.answers.push_back({choice.id, task.rating ? choice.id : text(choice.label)});

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -25,19 +26,20 @@ using namespace turnpoint;
 
 namespace {
 
-/// Records the pages with a slider. It can simulate a crash after a number of pages.
+/// Records the pages, and those with a slider. It can simulate a crash after a number of pages.
 struct Pages : session::Display {
   int left = std::numeric_limits<int>::max();
-  std::vector<session::Page> sliders;
+  std::vector<session::Page> all, sliders;
   void show(const session::Page& page) override {
+    all.push_back(page);
     if (page.kind == session::PageKind::adjust) sliders.push_back(page);
     if (--left == 0) throw std::runtime_error("the plug was pulled");
   }
 };
 
-session::Setup setup_in(const TemporaryFolder& folder, const std::string& observer) {
-  auto request =
-      simulated_run(TURNPOINT_SOURCE_DIR "/protocols/boundary-adjustment.toml", folder / "a.sqlite", 7);
+session::Setup setup_in(const TemporaryFolder& folder, const std::string& observer,
+                        const std::string& protocol = "boundary-adjustment") {
+  auto request = simulated_run(TURNPOINT_SOURCE_DIR "/protocols/" + protocol + ".toml", folder / "a.sqlite", 7);
   request.observer = observer;
   return session::prepare(request);
 }
@@ -102,6 +104,35 @@ TEST_CASE("a protocol file with a slider gives rows with each setting and the mo
   CHECK(summary.estimates[0].parameter == "pse");
   CHECK(summary.estimates[0].mean == Approx(sum / 18));
   CHECK(*trials.back().threshold_est == Approx(sum / 18));
+}
+
+TEST_CASE("a question shows the value that a factor has in its trial", "[session]") {
+  const TemporaryFolder folder;
+  for (const auto* protocol : {"magnitude-production", "cross-modal-matching"}) {
+    const auto setup = setup_in(folder, "sim", protocol);
+    const auto& shown = setup.protocol.task.question_shows;
+    session::Inputs inputs;
+    Pages pages;
+    const auto summary = session::run(setup, &pages, inputs);
+    std::vector<std::string> expected, found;
+    for (const auto& trial : trials_of(setup, summary.session_id)) {
+      const auto& value = trial.factors.at(shown);
+      const auto* number = std::get_if<double>(&value);
+      auto text = setup.protocol.task.question.at("en");
+      text.replace(text.find("%1"), 2, number ? core::number(*number) : std::get<std::string>(value));
+      if (expected.empty() || expected.back() != text) expected.push_back(text);
+    }
+    for (const auto& page : pages.sliders)
+      if (found.empty() || found.back() != page.text) found.push_back(page.text);
+    CHECK(found.size() > 4);
+    CHECK(found == expected);
+    const auto about = std::find_if(pages.all.begin(), pages.all.end(), [](const auto& page) {
+      return page.kind == session::PageKind::instructions;
+    });
+    REQUIRE(about != pages.all.end());
+    CHECK(about->text.find("\u2026") != std::string::npos);
+    CHECK(about->text.find("%1") == std::string::npos);
+  }
 }
 
 TEST_CASE("the same setting has a different place on the screen from trial to trial", "[session]") {
