@@ -39,7 +39,8 @@ struct Pages : session::Display {
 
 session::Setup setup_in(const TemporaryFolder& folder, const std::string& observer,
                         const std::string& protocol = "boundary-adjustment") {
-  auto request = simulated_run(TURNPOINT_SOURCE_DIR "/protocols/" + protocol + ".toml", folder / "a.sqlite", 7);
+  auto request =
+      simulated_run(TURNPOINT_SOURCE_DIR "/protocols/" + protocol + ".toml", folder / "a.sqlite", 7);
   request.observer = observer;
   return session::prepare(request);
 }
