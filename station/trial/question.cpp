@@ -173,6 +173,14 @@ std::vector<const protocol::Linear*> deadlines_of(const protocol::Protocol& prot
   return deadlines;
 }
 
+/// How long after response zero a simulated observer's answers are taken at the latest.
+double answers_from_s(const protocol::Protocol& protocol) {
+  if (protocol::explored(protocol.task)) return 0;
+  if (const auto end = protocol::stimulus_end(protocol)) return end->latest_s;
+  const double whole_s = protocol.task.duration_s.value_or(0);
+  return protocol.timing.response_zero == ResponseZero::first_contact ? whole_s - reach_s(whole_s) : 0;
+}
+
 }  // namespace
 
 std::vector<core::Problem> observer_notes(const protocol::Protocol& protocol,
@@ -181,13 +189,20 @@ std::vector<core::Problem> observer_notes(const protocol::Protocol& protocol,
   if (protocol.task.kind == protocol::TaskKind::adjustment || protocol.timing.signal) return notes;
   const auto [least_s, most_s] = observer.nondecision_range_s();
   const auto seconds = [](double s) { return plain(core::number(s, 3)); };
-  const auto end = protocol::stimulus_end(protocol);
-  const double opens_s = end && !protocol::explored(protocol.task) ? end->latest_s : 0;
+  const double opens_s = answers_from_s(protocol);
   for (const auto* deadline : deadlines_of(protocol)) {
     const double shortest_s = protocol::bounds(*deadline, protocol.factors).first;
     const double left_s = shortest_s - most_s;
-    const bool nobody_can = shortest_s < opens_s;  // that is a fact about the protocol
-    if (left_s > kLeastDecision_s - 1e-9 || nobody_can) continue;
+    if (shortest_s < opens_s) {
+      notes.push_back(
+          {deadline->place,
+           phrase("the simulated observer can answer only when the last interval has ended, up to "
+                  "%1 s after \"%2\", so a deadline of %3 s is over before",
+                  {seconds(opens_s), plain(name(protocol.timing.response_zero)), seconds(shortest_s)}),
+           phrase("a longer deadline, or %1", {plain("response_zero = \"interval_off\"")})});
+      continue;
+    }
+    if (left_s > kLeastDecision_s - 1e-9) continue;
     notes.push_back(
         {deadline->place,
          left_s > 0

@@ -79,9 +79,10 @@ core::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& 
   return spec.strokes ? core::ResponseZero::interval_off : protocol.timing.response_zero;
 }
 
+double reach_s(double length_s) { return std::min(0.2, 0.5 * length_s); }
+
 SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSpec& spec,
                                std::int64_t onset_ns) {
-  constexpr double reach_s = 0.2;
   const auto last = interval_times(protocol, spec).back();
   SimulatedTimes times{onset_ns, onset_ns, {}, {}, onset_ns};
   if (spec.strokes || !protocol::explored(protocol.task)) times.open_ns += whole_ns(last.length_s);
@@ -97,11 +98,11 @@ SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSp
       times.zero_ns += whole_ns(last.length_s);
       break;
     case core::ResponseZero::first_contact:
-      times.touch_ns = times.zero_ns += whole_ns(std::min(reach_s, 0.5 * last.length_s));
+      times.touch_ns = times.zero_ns += whole_ns(reach_s(last.length_s));
       times.slider_ns = std::max(times.slider_ns, times.zero_ns);
       break;
     case core::ResponseZero::lift_off:
-      times.touch_ns = onset_ns + whole_ns(std::min(reach_s, 0.5 * last.length_s));
+      times.touch_ns = onset_ns + whole_ns(reach_s(last.length_s));
       times.lift_ns = times.zero_ns += whole_ns(last.length_s);
       break;
   }

@@ -28,6 +28,9 @@ struct SimulatedTimes {
 SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSpec& spec,
                                std::int64_t onset_ns);
 
+/// How long after the onset of an interval of this length the simulated finger touches the surface.
+double reach_s(double length_s);
+
 /// What the simulated participant does then, in order of time.
 std::vector<Event> simulated_events(const SimulatedTimes& times, const simulation::Reply& reply);
 

@@ -154,10 +154,18 @@ TEST_CASE("times that do not suit the simulated observer are facts about the obs
   REQUIRE(of_observer(instructed).size() == 1);
   CHECK(of_observer(instructed)[0].find("a deadline of 0.5 s") != std::string::npos);
   CHECK(of_observer(checked_with("speed-accuracy", "deadline_s = 0.8", "deadline_s = 0.8")).empty());
-  // nobody can answer in time, which is another thing
-  CHECK(of_observer(checked_with("friction-2ifc", "response_zero = \"interval_off\"\ndeadline_s = 3.0",
-                                 "response_zero = \"go_cue\"\ndeadline_s = 0.4"))
-            .empty());
+  // answers are not taken before the deadline
+  for (const std::string zero : {"go_cue", "first_contact"}) {
+    const auto closed = checked_with("friction-2ifc", "response_zero = \"interval_off\"\ndeadline_s = 3.0",
+                                     "response_zero = \"" + zero + "\"\ndeadline_s = 0.4");
+    REQUIRE(of_observer(closed).size() == 1);
+    CHECK(of_observer(closed)[0].find("can answer only when the last interval has ended") !=
+          std::string::npos);
+    CHECK(std::any_of(closed.warnings.begin(), closed.warnings.end(), [](const auto& warning) {
+      return core::say(warning.what, "en").find("answers are accepted when the last interval") !=
+             std::string::npos;
+    }));
+  }
   // after a signal the observer is as quick as it has to be
   CHECK(of_observer(checked_with("response-signal", "window_s = 0.4", "window_s = 0.2")).empty());
 }
