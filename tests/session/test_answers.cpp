@@ -105,7 +105,9 @@ TEST_CASE("a second press within the guard time is never stored as the confidenc
   auto devices = room.devices();
   devices.buttons = io::open_buttons(io::ButtonsConfig{"gpio:left=A,right=B"}, std::nullopt, handlers,
                                      [&](const auto&) { return std::make_unique<SharedLines>(lines); });
+  int asked = 0;
   room.reacts = [&](const session::Page& page) {
+    if (page.kind == PageKind::confidence) ++asked;
     if (page.kind == PageKind::confidence) return;
     if (page.kind != PageKind::stimulus) return room.cooperate(page);
     const auto now = system::monotonic_ns();
@@ -116,6 +118,8 @@ TEST_CASE("a second press within the guard time is never stored as the confidenc
   };
   const auto summary = session::run(setup, &room, room.inputs, std::move(devices));
   CHECK(summary.status == core::SessionStatus::completed);
+  // a page takes one answer each time it is shown, so it is shown again after each press that was none
+  CHECK(asked >= 2 * 2);
   const auto trials = trials_of(setup.database, summary);
   REQUIRE(trials.size() == 2);
   for (const auto& trial : trials) {

@@ -267,6 +267,34 @@ Item {
             tryCompare(script, "inputs", ["answer 1"])
         }
 
+        // As if the program had been held up: the tap waited for the page for longer than taps are ignored.
+        function test_a_tap_that_had_to_wait_is_no_confidence() {
+            show("confidence")
+            const until = Date.now() + 500
+            while (Date.now() < until) continue
+            wait(0)
+            mouseClick(visibleItem("answer1"))
+            wait(2 * settleMs)
+            compare(script.inputs, [])
+            wait(400)
+            mouseClick(visibleItem("answer1"))
+            tryCompare(script, "inputs", ["answer 1"])
+        }
+
+        function test_a_confidence_that_was_not_accepted_is_asked_again() {
+            show("confidence")
+            tryCompare(item("touchField"), "open", true)
+            mouseClick(visibleItem("answer1"))
+            tryCompare(script, "inputs", ["answer 1"])
+            wait(2 * settleMs)
+            mouseClick(visibleItem("answer2"))
+            wait(2 * settleMs)
+            compare(script.inputs, ["answer 1"])
+            show("confidence")
+            mouseClick(visibleItem("answer2"))
+            tryCompare(script, "inputs", ["answer 1", "answer 2"])
+        }
+
         function test_every_fault_page_says_what_happened_what_is_safe_and_what_to_do_data() {
             const goOn = ["touch_gone", "disk_full", "limits", "stimulus_missed"]
             return ["converter_gone", "converter_rate", "converter_saturated", "suspended", "amplifier", "enable_line",

@@ -39,12 +39,24 @@ Item {
     }
 
     // Tapping an answer twice by accident must not also count as a confidence rating: the page ignores taps for a
-    // moment.
+    // moment. If the program was held up, taps of that moment arrive only after its end, so the page waits for those too.
     readonly property bool confides: page.kind === PageModel.Confidence
+    readonly property bool guarded: second.running || waiting.running
     onConfidesChanged: if (confides) second.restart()
     Timer {
         id: second
         interval: 350
+        onTriggered: waiting.restart()
+    }
+    Timer {
+        id: waiting
+        interval: 50
+    }
+    // The session shows the question again if a tap was no answer, because it began too early by the kernel's time.
+    Connections {
+        target: root.bridge
+        enabled: root.confides
+        function onShown() { field.again() }
     }
 
     SurfaceDrawing {
@@ -224,6 +236,6 @@ Item {
         columns: answers.columns
         gap: answers.gap
         pixelsPerMm: root.theme.pixelsPerMm
-        open: root.visible && root.asks && !second.running
+        open: root.visible && root.asks && !root.guarded
     }
 }

@@ -25,6 +25,11 @@ void TouchField::set_open(bool open) {
   Q_EMIT openChanged();
 }
 
+void TouchField::again() {
+  judge_.again();
+  update_pressed();
+}
+
 int TouchField::target_at(QPointF position) const {
   if (row_ == nullptr || count_ <= 0) return -1;
   const QPointF inside = mapToItem(row_, position);

@@ -16,6 +16,8 @@ void TouchJudge::close() {
   given_ = -1;
 }
 
+void TouchJudge::again() { given_ = -1; }
+
 void TouchJudge::down(const Touch& touch) {
   const bool alone = !last_down_ns_ || touch.time_ns - *last_down_ns_ > rules_.settle_ns;
   last_down_ns_ = touch.time_ns;

@@ -36,6 +36,7 @@ class TouchJudge {
 
   void open();   ///< Opens the answers. Touches that are already down can never answer.
   void close();  ///< Closes the answers.
+  void again();  ///< Takes one more answer: the session did not accept the last one.
   bool is_open() const { return open_; }
 
   /// Reports that a finger came down. There is no call for lifting a finger, because lifting does not
