@@ -346,7 +346,7 @@ void SessionRun::handle_in_trial(Input raw, Running& trial) {
   if (const auto event = event_in_trial(input, trial, by_button))
     perform(trial.machine.handle(*event), trial);
   // A page takes one answer each time it is shown.
-  if (confides && input.kind == InputKind::answer && !by_button &&
+  if (confides && input.is<input::Answer>() && !by_button &&
       trial.machine.phase() == trial::Phase::confidence)
     show_phase(trial::Phase::confidence, trial);
   if (!answered && trial.machine.result().response) trigger(protocol::TriggerEvent::response, trial);
