@@ -151,6 +151,10 @@ constexpr Recorded kSessions[] = {
     {"response-signal-flash", "ef371dbbfaebe6ce", "5d99f9739e94ada6"},
     {"friction-rating", "293a46da12ce06a1", "4932411790c12386"},
     {"two-spots-oddity", "d84ae5fc63983e76", "b2d2fee42b03d1aa"},
+    {"bisection", "ae550ca70047cc3d", "50fc20b5293afa01"},
+    {"matching", "956105f02a555da2", "ae638d3967bea142"},
+    {"cross-modal-matching", "1e46099c3fd86a6a", "5552cf2f25a46b34"},
+    {"magnitude-production", "b11aa8788bf7da84", "3765c78298ddceec"},
 };
 
 }  // namespace
