@@ -152,8 +152,10 @@ simulation::Adjustment adjustment_of(const TrialSpec& spec, const protocol::Prot
   const auto from_slider_s = [&times](std::int64_t from_onset_ns) {
     return 1e-9 * static_cast<double>(from_onset_ns - times.slider_ns);
   };
-  adjustment.within_s = std::min(interval_times(protocol, spec).back().length_s + from_slider_s(0),
-                                 spec.deadline_s + from_slider_s(times.zero_ns));
+  constexpr double least_s = 0.05;  // where there is no time at all, the setting comes too late anyway
+  adjustment.within_s =
+      std::max(least_s, std::min(interval_times(protocol, spec).back().length_s + from_slider_s(0),
+                                 spec.deadline_s + from_slider_s(times.zero_ns)));
   adjustment.key = {seed, core::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
   return adjustment;
 }
@@ -173,12 +175,13 @@ std::vector<const protocol::Linear*> deadlines_of(const protocol::Protocol& prot
   return deadlines;
 }
 
-/// How long after response zero a simulated observer's answers are taken at the latest.
-double answers_from_s(const protocol::Protocol& protocol) {
-  if (protocol::explored(protocol.task)) return 0;
-  if (const auto end = protocol::stimulus_end(protocol)) return end->latest_s;
-  const double whole_s = protocol.task.duration_s.value_or(0);
-  return protocol.timing.response_zero == ResponseZero::first_contact ? whole_s - reach_s(whole_s) : 0;
+/// How long after response zero a simulated observer's answers are taken at the earliest and at the latest.
+std::pair<double, double> answers_from_s(const protocol::Protocol& protocol) {
+  if (protocol::explored(protocol.task)) return {0, 0};
+  if (const auto end = protocol::stimulus_end(protocol)) return {end->earliest_s, end->latest_s};
+  if (protocol.timing.response_zero != ResponseZero::first_contact) return {0, 0};
+  const double whole_s = protocol.task.duration_s.value_or(0), open_s = whole_s - reach_s(whole_s);
+  return {open_s, open_s};
 }
 
 }  // namespace
@@ -189,7 +192,7 @@ std::vector<core::Problem> observer_notes(const protocol::Protocol& protocol,
   if (protocol.task.kind == protocol::TaskKind::adjustment || protocol.timing.signal) return notes;
   const auto [least_s, most_s] = observer.nondecision_range_s();
   const auto seconds = [](double s) { return plain(core::number(s, 3)); };
-  const double opens_s = answers_from_s(protocol);
+  const auto [first_open_s, opens_s] = answers_from_s(protocol);
   for (const auto* deadline : deadlines_of(protocol)) {
     const double shortest_s = protocol::bounds(*deadline, protocol.factors).first;
     const double left_s = shortest_s - most_s;
@@ -217,7 +220,8 @@ std::vector<core::Problem> observer_notes(const protocol::Protocol& protocol,
          phrase("--observer sim:residual=...,travel=... of `run` and `power` simulates quicker people")});
   }
   const auto& early = protocol.timing.anticipation_s;
-  if (const double early_s = protocol::bounds(early, protocol.factors).second; early_s > least_s)
+  if (const double early_s = protocol::bounds(early, protocol.factors).second;
+      early_s > std::max(least_s, first_open_s))
     notes.push_back(
         {early.place,
          phrase("the simulated observer may answer after %1 s (its residual and travel), and answers before "

@@ -154,6 +154,12 @@ TEST_CASE("times that do not suit the simulated observer are facts about the obs
   REQUIRE(of_observer(instructed).size() == 1);
   CHECK(of_observer(instructed)[0].find("a deadline of 0.5 s") != std::string::npos);
   CHECK(of_observer(checked_with("speed-accuracy", "deadline_s = 0.8", "deadline_s = 0.8")).empty());
+  // answers are not taken before 1.5 s, so that none is too early
+  const std::string times = "\ndeadline_s = 3.0\niti_s = { uniform = [0.8, 1.2] }\nanticipation_s = ";
+  for (const auto& [early, notes] : {std::pair{"0.9", 0}, {"1.6", 1}})
+    CHECK(of_observer(checked_with("friction-2ifc", "response_zero = \"interval_off\"" + times + "0.0",
+                                   "response_zero = \"go_cue\"" + times + early))
+              .size() == static_cast<std::size_t>(notes));
   // answers are not taken before the deadline
   for (const std::string zero : {"go_cue", "first_contact"}) {
     const auto closed = checked_with("friction-2ifc", "response_zero = \"interval_off\"\ndeadline_s = 3.0",

@@ -12,6 +12,7 @@ struct SurfaceOutline : rig::Outline {
   Q_GADGET
   QML_ANONYMOUS
   Q_PROPERTY(double lengthMm MEMBER length_mm)
+  Q_PROPERTY(bool wideEndLeft MEMBER wide_end_left)
  public:
   bool operator==(const SurfaceOutline&) const = default;
 };
