@@ -44,60 +44,66 @@ std::vector<std::size_t> combination(const Levels& factors, std::size_t repeat) 
 
 }  // namespace
 
+/// Whether an order is found depends on the draws. A protocol is checked with the list that these give, which
+/// a session therefore takes if its own draws give none.
+constexpr core::DrawKey kSureOrder{0, core::Stream::level_order, 0, 0, 0};
+
 ConstantStimuli::ConstantStimuli(const Spec& spec, const Context& context, const core::DrawKey& key)
     : spec_(spec), context_(context), key_(key) {
   core::Draws draws({key.seed, core::Stream::level_order, key.block, key.attempt, 0});
-  queue_ = items(draws);
-  order(queue_, draws);
+  queue_ = items(spec_, context_, draws);
+  if (spec_.rules.empty())
+    shuffle(queue_, draws);
+  else if (!order_by_rules(spec_, queue_, draws).problem.empty())
+    queue_ = sure_order(spec_, context_);
   for (const auto& item : queue_) ++left_[kind_of(item)];
   total_ = static_cast<int>(queue_.size());
 }
 
-/// Whether an order is found depends on the draws. A protocol is checked with these, which are therefore
-/// taken if a session's own find none.
-constexpr core::DrawKey kSureOrder{0, core::Stream::level_order, 0, 0, 0};
+std::vector<ConstantStimuli::Item> ConstantStimuli::sure_order(const Spec& spec, const Context& context) {
+  core::Draws draws(kSureOrder);
+  auto list = items(spec, context, draws);
+  if (auto found = order_by_rules(spec, list, draws); !found.problem.empty()) throw NoOrder(std::move(found));
+  return list;
+}
 
-std::vector<ConstantStimuli::Item> ConstantStimuli::items(core::Draws& draws) const {
-  const auto repeats = static_cast<std::size_t>(spec_.repeats);
-  std::vector<Item> all(repeats * spec_.values.size());
+std::vector<ConstantStimuli::Item> ConstantStimuli::items(const Spec& spec, const Context& context,
+                                                          core::Draws& draws) {
+  const auto repeats = static_cast<std::size_t>(spec.repeats);
+  std::vector<Item> all(repeats * spec.values.size());
   for (std::size_t i = 0; i < all.size(); ++i)
-    all[i].value = i % spec_.values.size(), all[i].repeat = i / spec_.values.size();
+    all[i].value = i % spec.values.size(), all[i].repeat = i / spec.values.size();
   Levels shuffled;
-  for (const auto& factor : spec_.balance) shuffled.emplace_back(context_.factor_levels.at(factor));
+  for (const auto& factor : spec.balance) shuffled.emplace_back(context.factor_levels.at(factor));
   const auto cells = crossed(shuffled);
-  for (std::size_t value = 0; value < spec_.values.size(); ++value)
+  for (std::size_t value = 0; value < spec.values.size(); ++value)
     for (std::size_t repeat = 0; repeat < repeats; ++repeat) {
       if (repeat % cells == 0)
         for (auto& levels : shuffled) {
           std::iota(levels.begin(), levels.end(), 0);
           draws.shuffle(levels);
         }
-      all[repeat * spec_.values.size() + value].balance = combination(shuffled, repeat);
+      all[repeat * spec.values.size() + value].balance = combination(shuffled, repeat);
     }
   return all;
 }
 
-void ConstantStimuli::order_by_rules(std::vector<Item>& items, core::Draws& draws) const {
+ListOrder ConstantStimuli::order_by_rules(const Spec& spec, std::vector<Item>& items, core::Draws& draws) {
   std::vector<OrderedItem> list;
   for (const auto& item : items) {
-    const auto first = std::ranges::find(spec_.values, spec_.values[item.value]) - spec_.values.begin();
+    const auto first = std::ranges::find(spec.values, spec.values[item.value]) - spec.values.begin();
     list.push_back(
-        {{static_cast<std::size_t>(first)}, spec_.shuffle == Shuffle::within_repeat ? item.repeat : 0});
+        {{static_cast<std::size_t>(first)}, spec.shuffle == Shuffle::within_repeat ? item.repeat : 0});
     list.back().values.insert(list.back().values.end(), item.balance.begin(), item.balance.end());
   }
-  auto found = in_order(list, spec_.rules, draws);
-  if (!found.problem.empty()) {
-    core::Draws sure(kSureOrder);
-    found = in_order(list, spec_.rules, sure);
-  }
-  if (!found.problem.empty()) throw NoOrder(std::move(found));
+  auto found = in_order(list, spec.rules, draws);
   std::vector<Item> ordered;
   for (const auto at : found.items) ordered.push_back(items[at]);
   items = std::move(ordered);
+  return found;
 }
 
-void ConstantStimuli::order(std::vector<Item>& items, core::Draws& draws) const {
-  if (!spec_.rules.empty()) return order_by_rules(items, draws);
+void ConstantStimuli::shuffle(std::vector<Item>& items, core::Draws& draws) const {
   if (spec_.shuffle == Shuffle::none) return;
   const auto n = spec_.shuffle == Shuffle::within_repeat ? spec_.values.size() : items.size();
   for (std::size_t first = 0; first < items.size(); first += n) {
@@ -202,7 +208,7 @@ NoOrder::NoOrder(ListOrder order)
 
 std::optional<Problem> order_problem(const Spec& spec, const Context& context) {
   try {
-    ConstantStimuli(spec, context, kSureOrder);
+    ConstantStimuli::sure_order(spec, context);
   } catch (const NoOrder& none) {
     return Problem{"order", none.found.problem, none.found.allowed};
   }

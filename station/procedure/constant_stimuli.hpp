@@ -35,10 +35,14 @@ class ConstantStimuli : public Procedure {
   using Kind =
       std::pair<std::size_t, std::vector<std::size_t>>;  ///< value and levels of the balanced factors
   static Kind kind_of(const Item& item) { return {item.value, item.balance}; }
-  std::vector<Item> items(core::Draws& draws) const;
-  void order_by_rules(std::vector<Item>& items, core::Draws& draws) const;
+  static std::vector<Item> items(const Spec& spec, const Context& context, core::Draws& draws);
+  /// Puts the items in an order that keeps the rules; or says why there is none, and leaves none.
+  static ListOrder order_by_rules(const Spec& spec, std::vector<Item>& items, core::Draws& draws);
+  /// The list that every session can have. Throws NoOrder.
+  static std::vector<Item> sure_order(const Spec& spec, const Context& context);
+  friend std::optional<Problem> order_problem(const Spec& spec, const Context& context);
   bool in_repeat(std::size_t at) const;
-  void order(std::vector<Item>& items, core::Draws& draws) const;
+  void shuffle(std::vector<Item>& items, core::Draws& draws) const;
 
   Spec spec_;
   Context context_;

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "station/core/number.hpp"
@@ -17,9 +20,12 @@ namespace {
 
 using Values = std::vector<std::size_t>;
 
-/// Walks that are tried for runs longer than 1, and steps of one search for an order and its number of
-/// searches.
+/// Walks that are tried for runs longer than 1; steps of one search for an order, besides two for each item,
+/// and searches.
 constexpr int kMostWalks = 500, kMostSteps = 20'000, kMostSearches = 10;
+/// Elementary operations of all searches for an order of a list, which end within seconds. A list is read
+/// with each file, and ordered at the start of each session.
+constexpr double kMostOperations = 2e8;
 /// Sequences of values that follow each other; no list is so long.
 constexpr double kMostPaths = 1e6;
 
@@ -203,7 +209,8 @@ ListOrder equally_often(const std::vector<OrderedItem>& items, const OrderRules&
     result.allowed = phrase("a multiple of %1", {plain(static_cast<int>(before.front()))});
     return result;
   }
-  for (int attempt = 0; attempt < kMostWalks; ++attempt) {
+  const auto most_walks = std::min(1.0 * kMostWalks, kMostOperations / static_cast<double>(items.size()));
+  for (int attempt = 0; attempt < most_walks; ++attempt) {
     result.items.clear();
     auto left = groups;
     for (auto& group : left) draws.shuffle(group.items);
@@ -226,21 +233,58 @@ ListOrder equally_often(const std::vector<OrderedItem>& items, const OrderRules&
 
 // --- only pairs that never come, and limits of runs
 
+/// The same items with only those differences that rules can see: factors without rules have one value, and
+/// so have all values that no rule of a factor tells apart.
+std::vector<OrderedItem> as_ruled(std::vector<OrderedItem> items, const OrderRules& rules) {
+  constexpr auto other = std::numeric_limits<std::size_t>::max();
+  const auto factors = items.front().values.size();
+  std::vector<bool> has_run(factors);
+  for (const auto& run : rules.runs) has_run[run.factor] = true;
+  std::vector<std::set<std::size_t>> named(factors);
+  for (const auto& never : rules.never)
+    named[never.factor].insert(never.before), named[never.factor].insert(never.now);
+  for (auto& item : items)
+    for (std::size_t factor = 0; factor < factors; ++factor)
+      if (!has_run[factor] && !named[factor].contains(item.values[factor])) item.values[factor] = other;
+  return items;
+}
+
 /// Looks for an order, item by item, and takes back items after which there is none.
 class Search {
  public:
-  Search(const std::vector<OrderedItem>& items, const OrderRules& rules) : items_(items), rules_(rules) {
-    Values all(items.front().values.size());
+  Search(const std::vector<OrderedItem>& items, const OrderRules& rules)
+      : items_(as_ruled(items, rules)), rules_(rules) {
+    Values all(items_.front().values.size());
     std::iota(all.begin(), all.end(), 0);
-    kinds_ = groups_of(items, all);
-    kind_of_.resize(items.size());
+    kinds_ = groups_of(items_, all);
+    kind_of_.resize(items_.size());
     for (std::size_t k = 0; k < kinds_.size(); ++k)
       for (const auto item : kinds_[k].items) kind_of_[item] = k;
+    std::set<std::size_t> ruled;
+    for (const auto& never : rules_.never) ruled.insert(never.factor);
+    for (const auto& run : rules_.runs) ruled.insert(run.factor);
+    if (ruled.size() > 1) factors_.assign(ruled.begin(), ruled.end());
+  }
+
+  std::size_t kinds() const { return kinds_.size(); }
+  /// The largest number of kinds with which a list of this length can be ordered.
+  std::size_t most_kinds() const {
+    std::size_t most = 1;
+    while (operations(most + 1) <= kMostOperations / 2) ++most;
+    return most;
+  }
+
+  /// False if even a search that takes little back would need too many operations.
+  bool prepare() {
+    if (operations(kinds_.size()) > kMostOperations / 2) return false;
     relations_.push_back(relation_of([](const Values& values) { return values; }));
-    for (std::size_t factor = 0; factor < all.size(); ++factor)
+    for (const auto factor : factors_)
       relations_.push_back(
           relation_of([factor](const Values& values) { return Values{values[factor]}; }, factor));
-    for (const auto& item : items) repeats_ = std::max(repeats_, item.repeat + 1);
+    for (const auto& item : items_)
+      repeat_at_.push_back(item.repeat), repeats_ = std::max(repeats_, item.repeat + 1);
+    std::ranges::sort(repeat_at_);
+    return true;
   }
 
   enum class End { found, none, given_up };
@@ -248,41 +292,46 @@ class Search {
   End run(core::Draws& draws) {
     const auto n = items_.size();
     left_.assign(repeats_, std::vector<int>(kinds_.size()));
-    std::vector<std::size_t> repeat_at;
-    for (std::size_t r = 0; r < repeats_; ++r)
-      for (std::size_t i = 0; i < n; ++i)
-        if (items_[i].repeat == r) ++left_[r][kind_of_[i]], repeat_at.push_back(r);
+    for (std::size_t i = 0; i < n; ++i) ++left_[items_[i].repeat][kind_of_[i]];
     chosen_.clear();
-    std::vector<std::vector<std::size_t>> open{choices(repeat_at[0], draws)};
-    for (int steps = 0; steps < kMostSteps;) {
+    std::vector<std::vector<std::size_t>> open{choices(repeat_at_[0], draws)};
+    const auto take_back = [&] {
+      ++left_[repeat_at_[chosen_.size() - 1]][chosen_.back()];
+      chosen_.pop_back();
+    };
+    const auto most_steps = kMostSteps + 2 * n;
+    for (std::size_t steps = 0; steps < most_steps && spent_ < kMostOperations;) {
       if (open.back().empty()) {
         open.pop_back();
         if (open.empty()) return End::none;
-        ++left_[repeat_at[chosen_.size() - 1]][chosen_.back()];
-        chosen_.pop_back();
+        take_back();
+        continue;
+      }
+      chosen_.push_back(open.back().back());
+      open.back().pop_back();
+      const auto repeat = repeat_at_[chosen_.size() - 1];
+      --left_[repeat][chosen_.back()];
+      if (!can_go_on(repeat)) {
+        take_back();
         continue;
       }
       ++steps;
-      chosen_.push_back(open.back().back());
-      open.back().pop_back();
-      const auto repeat = repeat_at[chosen_.size() - 1];
-      --left_[repeat][chosen_.back()];
       if (chosen_.size() == n) return End::found;
-      open.push_back(choices(repeat_at[chosen_.size()], draws));
+      open.push_back(choices(repeat_at_[chosen_.size()], draws));
     }
     return End::given_up;
   }
+
+  bool may_try_again() const { return spent_ < kMostOperations; }
 
   /// The order that was found. Items of one kind and repeat come in a random order.
   std::vector<std::size_t> order(core::Draws& draws) const {
     std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> left;
     for (std::size_t i = 0; i < items_.size(); ++i) left[{items_[i].repeat, kind_of_[i]}].push_back(i);
     for (auto& [which, list] : left) draws.shuffle(list);
-    std::vector<std::size_t> repeat_at, result;
-    for (const auto& item : items_) repeat_at.push_back(item.repeat);
-    std::ranges::sort(repeat_at);
+    std::vector<std::size_t> result;
     for (std::size_t at = 0; at < chosen_.size(); ++at) {
-      auto& list = left[{repeat_at[at], chosen_[at]}];
+      auto& list = left[{repeat_at_[at], chosen_[at]}];
       result.push_back(list.back());
       list.pop_back();
     }
@@ -290,23 +339,39 @@ class Search {
   }
 
  private:
-  /// The kinds that may come next, in random order: the more often one is left, the later, which is tried
-  /// first.
+  /// Operations of a search that takes nothing back, if the list had this many kinds.
+  double operations(std::size_t kinds) const {
+    const auto k = static_cast<double>(kinds);
+    const auto rules = static_cast<double>(rules_.never.size() + rules_.runs.size());
+    return (2 + static_cast<double>(factors_.size())) * k * k *
+           (static_cast<double>(items_.size()) + rules + k / kBits);
+  }
+
+  /// The kinds that may come next, in random order; the last one is tried first. It is that of a random item
+  /// of those left, the one before it that of a random item of the other kinds, and so on.
   std::vector<std::size_t> choices(std::size_t repeat, core::Draws& draws) {
-    std::vector<std::pair<double, std::size_t>> ranked;
+    std::vector<std::size_t> kinds, result;
+    std::uint64_t items = 0;
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
-      auto& left = left_[repeat][k];
+      const auto left = left_[repeat][k];
       if (left == 0 || (!chosen_.empty() && !relations_[0].may[chosen_.back()][k]) || makes_long(k)) continue;
-      double rank = 0;
-      for (int i = 0; i < left; ++i) rank = std::max(rank, draws.uniform());
-      chosen_.push_back(k), --left;
-      if (can_go_on(repeat)) ranked.emplace_back(rank, k);
-      chosen_.pop_back(), ++left;
+      kinds.push_back(k), items += static_cast<std::uint64_t>(left);
     }
-    std::ranges::sort(ranked);
-    std::vector<std::size_t> result;
-    for (const auto& [rank, kind] : ranked) result.push_back(kind);
+    spent_ += static_cast<double>(kinds_.size() * (1 + rules_.runs.size()) + kinds.size() * kinds.size());
+    while (!kinds.empty()) {
+      auto item = draws.below(items);
+      std::size_t at = 0;
+      for (; item >= left_of(repeat, kinds[at]); ++at) item -= left_of(repeat, kinds[at]);
+      items -= left_of(repeat, kinds[at]);
+      result.push_back(kinds[at]);
+      kinds.erase(kinds.begin() + static_cast<std::ptrdiff_t>(at));
+    }
+    std::ranges::reverse(result);
     return result;
+  }
+
+  std::uint64_t left_of(std::size_t repeat, std::size_t kind) const {
+    return static_cast<std::uint64_t>(left_[repeat][kind]);
   }
 
   int run_of(const OrderRules::Run& run) const {
@@ -348,13 +413,18 @@ class Search {
     }
     const auto n = first.size();
     relation.may.assign(n, std::vector<bool>(n));
-    relation.narrower.assign(n, std::vector<bool>(n, true));
-    for (std::size_t a = 0; a < n; ++a)
-      for (std::size_t b = 0; b < n; ++b) relation.may[a][b] = may_follow(first[a], first[b], rules);
+    relation.narrower.assign(n, std::vector<bool>(n));
+    std::vector<std::vector<std::uint64_t>> before(n, std::vector<std::uint64_t>(n / kBits + 1));
     for (std::size_t a = 0; a < n; ++a)
       for (std::size_t b = 0; b < n; ++b)
-        for (std::size_t c = 0; c < n; ++c)
-          if (relation.may[c][a] && !relation.may[c][b]) relation.narrower[a][b] = false;
+        if (may_follow(first[a], first[b], rules)) {
+          relation.may[a][b] = true;
+          before[b][a / kBits] |= std::uint64_t{1} << (a % kBits);
+        }
+    for (std::size_t a = 0; a < n; ++a)
+      for (std::size_t b = 0; b < n; ++b)
+        relation.narrower[a][b] = std::ranges::equal(
+            before[a], before[b], [](std::uint64_t of_a, std::uint64_t of_b) { return (of_a & ~of_b) == 0; });
     return relation;
   }
 
@@ -377,11 +447,13 @@ class Search {
 
   /// False if the rest of this repeat cannot be ordered: not enough can come before some of its items, or a
   /// value comes too often for its runs.
-  bool can_go_on(std::size_t repeat) const {
+  bool can_go_on(std::size_t repeat) {
     const auto& left = left_[repeat];
     const auto last = chosen_.back();
-    for (const auto& relation : relations_)
+    for (const auto& relation : relations_) {
+      spent_ += static_cast<double>(relation.may.size() * relation.may.size() + left.size());
       if (!has_enough_before(relation, left, last)) return false;
+    }
     const int all = std::accumulate(left.begin(), left.end(), 0);
     return std::ranges::all_of(rules_.runs, [&](const auto& run) {
       std::map<std::size_t, int> counts;
@@ -394,11 +466,16 @@ class Search {
     });
   }
 
-  const std::vector<OrderedItem>& items_;
+  static constexpr std::size_t kBits = 64;
+
+  const std::vector<OrderedItem> items_;
   const OrderRules& rules_;
+  std::vector<std::size_t> factors_;  ///< those with rules, if there are several
   std::vector<Group> kinds_;
   std::vector<std::size_t> kind_of_;
-  std::vector<Relation> relations_;  ///< of the kinds, and of each factor
+  std::vector<Relation> relations_;     ///< of the kinds, and of each of these factors
+  std::vector<std::size_t> repeat_at_;  ///< the repeat at each place of the list
+  double spent_ = 0;                    ///< operations so far
   std::size_t repeats_ = 1;
   std::vector<std::vector<int>> left_;  ///< by repeat and kind
   std::vector<std::size_t> chosen_;     ///< kinds
@@ -406,7 +483,14 @@ class Search {
 
 ListOrder searched(const std::vector<OrderedItem>& items, const OrderRules& rules, core::Draws& draws) {
   Search search(items, rules);
-  for (int i = 0; i < kMostSearches; ++i) {
+  if (!search.prepare())
+    return {
+        {},
+        phrase(
+            "the list is too long for rules of its order: %1 trials, of %2 kinds that the rules tell apart",
+            {plain(items.size()), plain(search.kinds())}),
+        phrase("fewer trials, or at most %1 such kinds in as many trials", {plain(search.most_kinds())})};
+  for (int i = 0; i < kMostSearches && search.may_try_again(); ++i) {
     const auto end = search.run(draws);
     if (end == Search::End::found) return {search.order(draws), {}, {}};
     if (end == Search::End::none) return {{}, phrase("there is no order that keeps its rules"), loosen()};

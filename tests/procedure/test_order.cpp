@@ -220,3 +220,42 @@ TEST_CASE("a list with rules keeps its order when trials are not answered", "[pr
         "each value comes 6 times in the list, and may follow 4 others");
   CHECK_THROWS_AS(make_procedure(spec, {}, {5, {}, 1, 0, 0}), NoOrder);
 }
+
+TEST_CASE("a list that was accepted has an order in every session, whatever its draws", "[procedure]") {
+  auto random = draws_of(7);
+  int accepted = 0;
+  for (int set = 0; set < 60; ++set) {
+    Spec spec;
+    spec.name = "levels", spec.level = "offset_mm", spec.shuffle = Shuffle::within_block;
+    for (int i = 0; i < 9; ++i) spec.values.push_back(i);
+    spec.repeats = 2 + set % 2, spec.balance = {"side", "mark"};
+    const Context context{{{"side", 2}, {"mark", 3}}};
+    for (std::size_t a = 0; a < 9; ++a)  // an order exists, if only few: each value after the one before it
+      for (std::size_t b = 0; b < 9; ++b)
+        if (b != (a + 1) % 9 && random.uniform() < 0.8) spec.rules.never.push_back({0, a, b});
+    if (order_problem(spec, context)) continue;
+    ++accepted;
+    for (std::uint64_t seed = 0; seed < 20; ++seed)
+      CHECK_NOTHROW(make_procedure(spec, context, {seed, {}, 1, 0, 0}));
+  }
+  CHECK(accepted > 50);
+}
+
+TEST_CASE("a long list is ordered in a bounded time, or refused as too long for its rules", "[procedure]") {
+  const OrderRules pair{{}, 1, {{0, 3, 5}}, {}};
+  auto items = list_of(1000, 3);
+  for (std::size_t i = 0; i < items.size(); ++i) items[i].values.push_back(i % 7);  // a factor without rules
+  auto draws = draws_of(1);
+  const auto order = in_order(items, pair, draws);
+  REQUIRE(order.problem.empty());
+  CHECK(all_kept(values_of(order, items), pair));
+  CHECK(in_order(list_of(4, 25'000), pair, draws).problem.empty());
+  // A run of one tells all values apart.
+  const OrderRules run{{}, 1, {{0, 3, 5}}, {{0, 1}}};
+  CHECK(in_order(list_of(100, 5), run, draws).problem.empty());
+  const auto refused = in_order(list_of(1000, 3), run, draws);
+  CHECK(turnpoint::core::say(refused.problem, "en") ==
+        "the list is too long for rules of its order: 3000 trials, of 1000 kinds that the rules tell apart");
+  CHECK(turnpoint::core::say(refused.allowed, "en") ==
+        "fewer trials, or at most 129 such kinds in as many trials");
+}
