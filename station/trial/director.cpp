@@ -112,7 +112,7 @@ int Director::State::trials_of(const Block& b) const {
     else if (procedure::follows_answers(spec))
       trials += spec.stop.trials.value_or(6 * spec.stop.reversals.value_or(8));
     else
-      trials += static_cast<double>(spec.values.size()) * spec.repeats;
+      trials += static_cast<double>(procedure::list_trials(spec));
   }
   return static_cast<int>(std::lround(trials * (1 + (b.catch_trials ? b.catch_trials->rate : 0))));
 }

@@ -342,3 +342,7 @@ TEST_CASE("the progress never reaches its end before the last trial, however man
   CHECK(number < 3000);
   CHECK(director.trials_done() == director.trials_expected());
 }
+
+TEST_CASE("the expected trials have those that a list with rules of its order begins with", "[session]") {
+  CHECK(Director(shipped("bisection"), 0, 7).trials_expected() == 99);  // 7 levels x 14 and one more
+}
