@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "station/core/number.hpp"
 #include "station/core/texts.hpp"
@@ -64,20 +65,36 @@ std::vector<std::string> interval_names(protocol::TaskKind kind) {
 /// Keeps the order of a number's parts in a text that is written from right to left.
 std::string isolated(const std::string& number) { return "\u2068" + number + "\u2069"; }
 
+/// A number with the decimal sign of the language, as on the page where numbers are typed.
+std::string written(std::string number, const std::string& language) {
+  static const std::set<std::string> comma{"az", "be", "bg", "bs", "ca", "cs", "da", "de", "el", "es", "et",
+                                           "eu", "fi", "fr", "gl", "hr", "hu", "hy", "id", "is", "it", "ka",
+                                           "kk", "lt", "lv", "mk", "mn", "nb", "nl", "nn", "no", "pl", "pt",
+                                           "ro", "ru", "sk", "sl", "sq", "sr", "sv", "tr", "uk", "uz", "vi"};
+  static const std::set<std::string> point{"de-CH", "de-LI", "es-MX", "es-US"};
+  const auto code = language.substr(0, language.find('-'));
+  const std::string sign = code == "ar" || code == "fa"                        ? "\u066B"
+                           : comma.contains(code) && !point.contains(language) ? ","
+                                                                               : ".";
+  if (const auto at = number.find('.'); at != std::string::npos) number.replace(at, 1, sign);
+  return number;
+}
+
 /// What points are worth, as pages write it.
-std::string amount(double points, const protocol::Payoff& payoff) {
+std::string amount(double points, const protocol::Payoff& payoff, const std::string& language) {
   const auto number = fmt::format("{:.{}f}", std::fabs(points * payoff.worth), payoff.decimals);
   const bool negative = points < 0 && number.find_first_not_of("0.") != std::string::npos;
-  return (negative ? "\u2212" : "") + number;
+  return (negative ? "\u2212" : "") + written(number, language);
 }
 
 std::string in_words(const protocol::Goal& goal, const std::string& language) {
   std::string words;
-  const auto add = [&](const char* key, const std::string& value) {
-    words += (words.empty() ? "" : "\n") + core::say(core::phrase(key, {core::plain(value)}), language);
+  const auto add = [&](const char* key, double value) {
+    words += (words.empty() ? "" : "\n") +
+             core::say(core::phrase(key, {core::plain(written(core::number(value, 4), language))}), language);
   };
-  if (goal.accuracy_above) add("goal_right", core::number(100 * *goal.accuracy_above, 4));
-  if (goal.median_time_below_s) add("goal_time", core::number(*goal.median_time_below_s, 4));
+  if (goal.accuracy_above) add("goal_right", 100 * *goal.accuracy_above);
+  if (goal.median_time_below_s) add("goal_time", *goal.median_time_below_s);
   return words;
 }
 
@@ -131,7 +148,7 @@ std::string Pages::question_in(const trial::TrialSpec* spec) const {
   if (const auto found = spec ? spec->factors.find(task.question_shows) : protocol::Factors::const_iterator();
       spec && found != spec->factors.end()) {
     const auto* number = std::get_if<double>(&found->second);
-    value = number ? core::number(*number) : std::get<std::string>(found->second);
+    value = number ? written(core::number(*number), setup_.language) : std::get<std::string>(found->second);
   }
   for (auto at = question.find("%1"); at != std::string::npos; at = question.find("%1", at + value.size()))
     question.replace(at, 2, value);
@@ -146,13 +163,14 @@ const protocol::Goal* Pages::goal_of(const protocol::Block& block) const {
 
 std::string Pages::score_in_words(double points) const {
   const auto& payoff = *setup_.protocol.payoff;
-  const auto worth = core::plain(amount(points, payoff));
+  const auto worth = core::plain(amount(points, payoff, setup_.language));
   if (payoff.text.empty()) return core::say(core::phrase("points", {worth}), setup_.language);
   return core::say(core::phrase(text(payoff.text), {worth}), setup_.language);
 }
 
 void Pages::add_points(Page& page, double points, std::optional<double> score) const {
-  page.text += "  " + isolated(std::string(points > 0 ? "+" : "") + amount(points, *setup_.protocol.payoff));
+  page.text += "  " + isolated(std::string(points > 0 ? "+" : "") +
+                               amount(points, *setup_.protocol.payoff, setup_.language));
   if (score) page.text += "\n" + score_in_words(*score);
 }
 
@@ -172,7 +190,7 @@ std::optional<Page> Pages::block_over(const protocol::Block& block, const BlockS
         (page.text.empty() ? "" : "\n") + core::say(core::phrase(key, std::move(values)), setup_.language);
   };
   line("block_right", {core::plain(core::number(std::round(100 * *accuracy)))});
-  if (time_s) line("block_time", {core::plain(fmt::format("{:.2f}", *time_s))});
+  if (time_s) line("block_time", {core::plain(written(fmt::format("{:.2f}", *time_s), setup_.language))});
   if (goal != nullptr) {
     const bool met = (!goal->accuracy_above || *accuracy > *goal->accuracy_above) &&
                      (!goal->median_time_below_s || (time_s && *time_s < *goal->median_time_below_s));
@@ -208,7 +226,8 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
   if (task.value && page.answers_open) add_value(page, *task.value);
   if (task.value && page.answers_open && task.modulus) {
     page.value.first = core::text("first_is", setup_.language);
-    page.value.first.replace(page.value.first.find("%1"), 2, turnpoint::core::number(*task.modulus));
+    page.value.first.replace(page.value.first.find("%1"), 2,
+                             written(core::number(*task.modulus), setup_.language));
   }
   if (phase == Phase::confidence) {
     page.text = text(task.confidence->question);

@@ -109,8 +109,11 @@ TEST_CASE("a protocol file with a slider gives rows with each setting and the mo
 
 TEST_CASE("a question shows the value that a factor has in its trial", "[session]") {
   const TemporaryFolder folder;
-  for (const auto* protocol : {"magnitude-production", "cross-modal-matching"}) {
-    const auto setup = setup_in(folder, "sim", protocol);
+  for (const auto& [protocol, language] : {std::pair{"magnitude-production", "en"},
+                                           {"magnitude-production", "de"},
+                                           {"cross-modal-matching", "en"}}) {
+    auto setup = setup_in(folder, "sim", protocol);
+    setup.language = language;
     const auto& shown = setup.protocol.task.question_shows;
     session::Inputs inputs;
     Pages pages;
@@ -119,8 +122,10 @@ TEST_CASE("a question shows the value that a factor has in its trial", "[session
     for (const auto& trial : trials_of(setup, summary.session_id)) {
       const auto& value = trial.factors.at(shown);
       const auto* number = std::get_if<double>(&value);
-      auto text = setup.protocol.task.question.at("en");
-      text.replace(text.find("%1"), 2, number ? core::number(*number) : std::get<std::string>(value));
+      auto text = setup.protocol.task.question.at(language);
+      auto written = number ? core::number(*number) : std::get<std::string>(value);
+      if (written == "2.5" && setup.language == "de") written = "2,5";
+      text.replace(text.find("%1"), 2, written);
       if (expected.empty() || expected.back() != text) expected.push_back(text);
     }
     for (const auto& page : pages.sliders)
