@@ -151,10 +151,10 @@ constexpr Recorded kSessions[] = {
     {"response-signal-flash", "ef371dbbfaebe6ce", "5d99f9739e94ada6"},
     {"friction-rating", "293a46da12ce06a1", "4932411790c12386"},
     {"two-spots-oddity", "d84ae5fc63983e76", "b2d2fee42b03d1aa"},
-    {"bisection", "ae550ca70047cc3d", "50fc20b5293afa01"},
-    {"matching", "956105f02a555da2", "ae638d3967bea142"},
-    {"cross-modal-matching", "1e46099c3fd86a6a", "5552cf2f25a46b34"},
-    {"magnitude-production", "b11aa8788bf7da84", "3765c78298ddceec"},
+    {"bisection", "ae550ca70047cc3d", "8bff4d2e1e217462"},
+    {"matching", "671daafb56301337", "6b2912f4e02cfe2d"},
+    {"cross-modal-matching", "0c39d187fabe8c6d", "58ae8ed91a523391"},
+    {"magnitude-production", "1d495d0acb183b2d", "91e68fcc91fcfc60"},
 };
 
 }  // namespace
