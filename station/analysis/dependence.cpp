@@ -142,24 +142,23 @@ Estimate scaled(Estimate estimate, double unit) {
   return estimate;
 }
 
-/// Linear regression with intervals by Student's t; empty if the predictors are linearly dependent.
-std::vector<Estimate> linear(const std::vector<std::vector<double>>& rows,
-                             const std::vector<double>& answers) {
+/// Linear regression with intervals by Student's t.
+Regression linear(const std::vector<std::vector<double>>& rows, const std::vector<double>& answers) {
   auto x = matrix_of(rows);
   const auto unit = scale(x);
-  if (!unit || x.rows() <= x.cols()) return {};
+  if (!unit || x.rows() <= x.cols()) return {{}, true};
   const Vector y = Eigen::Map<const Vector>(answers.data(), static_cast<Eigen::Index>(answers.size()));
   const Matrix inverse = (x.transpose() * x).inverse();
   const Vector value = inverse * (x.transpose() * y);
   const auto freedom = static_cast<double>(x.rows() - x.cols());
   const double variance = (y - x * value).squaredNorm() / freedom;
   const boost::math::students_t law(freedom);
-  std::vector<Estimate> result;
+  Regression result;
   for (Eigen::Index k = 0; k < value.size(); ++k) {
     const double sd = std::sqrt(variance * inverse(k, k)), half = boost::math::quantile(law, 0.975) * sd;
     Estimate estimate{value[k], {value[k] - half, value[k] + half, 0.95}};
     if (sd > 0) estimate.p = 2 * boost::math::cdf(law, -std::fabs(value[k]) / sd);
-    result.push_back(scaled(estimate, (*unit)[k]));
+    result.coefficients.push_back(scaled(estimate, (*unit)[k]));
   }
   return result;
 }
@@ -170,8 +169,9 @@ struct TrialSeen {
 };
 
 std::optional<TrialSeen> seen(const TrialRecord& trial, const DependenceOptions& options) {
-  if (!counted(trial) || !trial.level) return std::nullopt;
-  double level = options.decibel ? std::pow(10, *trial.level / 20) : *trial.level;
+  const bool noise = options.noise && trial.right_choice && *trial.right_choice != options.positive;
+  if (!counted(trial) || !(trial.level || noise)) return std::nullopt;
+  double level = noise ? 0 : options.decibel ? std::pow(10, *trial.level / 20) : *trial.level;
   switch (options.answers) {
     case Answers::sides:
       if (!trial.response) return std::nullopt;
@@ -181,7 +181,7 @@ std::optional<TrialSeen> seen(const TrialRecord& trial, const DependenceOptions&
                        *trial.response == options.positive ? 0.5 : -0.5};
     case Answers::choices:
       if (!trial.response) return std::nullopt;
-      return TrialSeen{level, *trial.response == options.positive ? 0.5 : -0.5};
+      return TrialSeen{level - options.cut, *trial.response == options.positive ? 0.5 : -0.5};
     case Answers::values:
     case Answers::settings:
       if (!trial.setting) return std::nullopt;
@@ -199,7 +199,8 @@ struct PairOfTrials {
   std::size_t mean = 0;  ///< number of the level or condition that has a mean of its own
 };
 
-/// The predictors of one answer: those of Dependence that vary, and the constant or a mean for each level.
+/// The predictors of one answer: those of Dependence that vary, then the others: the constant or a mean for
+/// each level and, beside after_error, the error itself.
 struct Design {
   std::vector<std::optional<Estimate> Dependence::*> what;
   std::vector<std::vector<double>> rows;
@@ -229,6 +230,7 @@ Design design_of(const std::vector<PairOfTrials>& pairs, const DependenceOptions
     if (before) row.push_back(pair.before.stimulus);
     if (answer) row.push_back(pair.before.answer);
     if (after) row.push_back(pair.error ? pair.now.stimulus : 0);
+    if (after) row.push_back(pair.error ? 1 : 0);  // a shift of the answers is no change of weight
     for (const auto number : mean_of) row.push_back(pair.mean == number ? 1 : 0);
   }
   return design;
@@ -236,7 +238,7 @@ Design design_of(const std::vector<PairOfTrials>& pairs, const DependenceOptions
 
 void estimate(const std::vector<PairOfTrials>& pairs, const DependenceOptions& options, Dependence& into) {
   const bool logistic = options.answers == Answers::sides || options.answers == Answers::choices;
-  const auto design = pairs.empty() ? Design{} : design_of(pairs, options);
+  auto design = pairs.empty() ? Design{} : design_of(pairs, options);
   const auto columns = design.rows.empty() ? 0 : design.rows.front().size();
   if (const auto fewest = logistic ? kFewestPairs : columns + kFewestSpare; pairs.size() < fewest) {
     into.statements.push_back({"few-pairs", core::phrase("statement.few_pairs", {core::plain(fewest)})});
@@ -245,22 +247,35 @@ void estimate(const std::vector<PairOfTrials>& pairs, const DependenceOptions& o
   std::vector<bool> choices;
   std::vector<double> values;
   for (const auto& pair : pairs) choices.push_back(pair.now.answer > 0), values.push_back(pair.now.answer);
-  const auto found = design.what.empty() ? std::vector<Estimate>{}
-                     : logistic          ? penalised_logistic(design.rows, choices)
-                                         : linear(design.rows, values);
-  for (std::size_t i = 0; i < design.what.size() && i < found.size(); ++i) into.*design.what[i] = found[i];
-  if (found.empty())
+  const auto regression = [&]() -> Regression {
+    if (design.what.empty()) return {{}, true};
+    return logistic ? penalised_logistic(design.rows, choices, design.what.size())
+                    : linear(design.rows, values);
+  };
+  auto found = regression();
+  if (found.dependent && options.after_error) {  // perhaps only the errors cannot be told apart
+    auto fewer = options;
+    fewer.after_error = false;
+    design = design_of(pairs, fewer);
+    found = regression();
+  }
+  const auto& effects = found.coefficients;
+  for (std::size_t i = 0; i < design.what.size() && i < effects.size(); ++i)
+    into.*design.what[i] = effects[i];
+  if (found.dependent)
     into.statements.push_back({"confounded-pairs", core::phrase("statement.confounded_pairs")});
+  else if (effects.empty())
+    into.statements.push_back({"search-failed", core::phrase("statement.search_failed")});
 }
 
 }  // namespace
 
-std::vector<Estimate> penalised_logistic(const std::vector<std::vector<double>>& rows,
-                                         const std::vector<bool>& answers) {
+Regression penalised_logistic(const std::vector<std::vector<double>>& rows, const std::vector<bool>& answers,
+                              std::size_t wanted) {
   if (rows.empty()) return {};
   auto x = matrix_of(rows);
   const auto unit = scale(x);
-  if (!unit) return {};
+  if (!unit) return {{}, true};
   Vector y(x.rows());
   for (Eigen::Index i = 0; i < y.size(); ++i) y[i] = answers[static_cast<std::size_t>(i)] ? 1 : 0;
   const Penalised model(x, y);
@@ -268,17 +283,18 @@ std::vector<Estimate> penalised_logistic(const std::vector<std::vector<double>>&
   const auto top = model.climb(best, std::nullopt);
   if (!top) return {};
   const Matrix covariance = top->information.inverse();
-  std::vector<Estimate> result;
-  for (Eigen::Index k = 0; k < x.cols(); ++k) {
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  Regression result;
+  for (Eigen::Index k = 0; k < std::min(x.cols(), static_cast<Eigen::Index>(wanted)); ++k) {
     const double sd = std::sqrt(covariance(k, k));
     const auto low = end_of(model, best, top->log_likelihood, k, sd, -1),
                high = end_of(model, best, top->log_likelihood, k, sd, 1);
     Vector without = best;
     without[k] = 0;
     const auto null = model.climb(without, k);
-    if (!low || !high || !null) return {};
-    const double ratio = std::max(0.0, 2 * (top->log_likelihood - null->log_likelihood));
-    result.push_back(scaled({best[k], {*low, *high, 0.95}, std::erfc(std::sqrt(ratio / 2))}, (*unit)[k]));
+    Estimate estimate{best[k], {low.value_or(-kUnknown), high.value_or(kUnknown), 0.95}};
+    if (null) estimate.p = std::erfc(std::sqrt(std::max(0.0, top->log_likelihood - null->log_likelihood)));
+    result.coefficients.push_back(scaled(estimate, (*unit)[k]));
   }
   return result;
 }
@@ -306,6 +322,7 @@ std::vector<Dependence> serial_dependence(const std::vector<TrialRecord>& trials
   std::vector<Dependence> all;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     auto& one = all.emplace_back();
+    one.how = options;
     if (!pooled) one.condition = conditions[i];
     one.pairs = static_cast<int>(pairs[i].size());
     estimate(pairs[i], options, one);

@@ -262,8 +262,30 @@ Json settings_json(const analysis::Settings& settings) {
           {"statements", value(settings.statements)}};
 }
 
+const char* model_name(analysis::Answers answers) {
+  switch (answers) {
+    case analysis::Answers::sides:
+      return "sides";
+    case analysis::Answers::choices:
+      return "choices";
+    case analysis::Answers::values:
+      return "ratings";
+    case analysis::Answers::settings:
+      return "settings";
+    case analysis::Answers::logarithms:
+      return "logarithms";
+  }
+  return "";
+}
+
 Json dependence_json(const analysis::Dependence& entry) {
-  Json json{{"condition", entry.condition}, {"pairs", entry.pairs}};
+  Json json{{"condition", entry.condition},
+            {"analysis", entry.analysis},
+            {"model", model_name(entry.how.answers)},
+            {"answer", entry.answer.empty() ? Json(nullptr) : Json(entry.answer)},
+            {"level_unit", entry.unit},
+            {"ratios", entry.how.decibel},
+            {"pairs", entry.pairs}};
   for (const auto& row : kBefore) {
     const auto& found = entry.*row.value;
     json[row.key] = value(found);

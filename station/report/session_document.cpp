@@ -610,13 +610,42 @@ void add_trade(const Summary& summary, Document& document) {
 
 // --- the trial before, the session and the finger
 
+/// What one regression of the trial before describes, and in which units.
+std::string before_in_words(const analysis::Dependence& one) {
+  using analysis::Answers;
+  const auto quoted = [](const std::string& words) { return "\u201c" + words + "\u201d"; };
+  const std::string per = one.unit.empty() ? "unit of the level" : one.unit;
+  std::string words = one.analysis.empty() ? "" : one.analysis + ": ";
+  switch (one.how.answers) {
+    case Answers::logarithms:
+      return words + "slopes of the logarithm of the number over those of stimulus and number in the trial " +
+             "before, with a mean of its own for each level" +
+             (one.how.decibel ? "; decibels count as ratios." : ".");
+    case Answers::values:
+      return words + "slopes of the rating over stimulus (per " + per +
+             ") and rating of the trial before, with a mean of its own for each level.";
+    case Answers::settings:
+      return words +
+             "slopes of the setting over the slider\u2019s start, and over start and setting of the " +
+             "trial before, with a mean of its own for each condition.";
+    case Answers::sides:
+    case Answers::choices:
+      break;
+  }
+  words += "logistic regression on the stimulus and on the trial before, in log odds of the answer " +
+           quoted(one.answer) + ". A stimulus counts " +
+           (one.how.decibel ? std::string("as a ratio (1 for 0 dB)") : "per " + per);
+  if (one.how.answers == Answers::sides)
+    words += ", positive if " + quoted(one.answer) + " is right";
+  else if (one.how.noise)
+    words += ", and is 0 unless " + quoted(one.answer) + " is right";
+  return words + ".";
+}
+
 /// The effects of the trial before; only for tasks whose answers can be described by them.
 void add_before(const Summary& summary, Document& document) {
   const auto& entries = summary.dependences;
   if (entries.empty()) return;
-  using analysis::Answers;
-  const auto options = dependence_options(part_of(summary.data, 0));
-  const bool choices = !judges(summary.data.design) && summary.data.design != Design::adjustment;
   document.heading(phrase("report.trial_before"));
   auto table = table_of(entries, &analysis::Dependence::condition);
   for (const auto& row : kBefore)
@@ -631,33 +660,28 @@ void add_before(const Summary& summary, Document& document) {
   for (const auto& entry : entries) pairs.push_back(count(entry.pairs));
   document.table(std::move(table));
   for (const auto& entry : entries) document.remark(entry.statements, entry.condition);
-  if (!choices) {
-    document.explain(summary.data.design == Design::numbers
-                         ? "Slopes of the logarithm of the number over those of stimulus and number in the "
-                           "trial before, with a "
-                           "mean of its own for each level. 95 % intervals: Student\u2019s t."
-                     : summary.data.design == Design::ratings
-                         ? "Slopes of the rating over stimulus and rating of the trial before, with a mean "
-                           "of its own for each "
-                           "level. 95 % intervals: Student\u2019s t."
-                         : "Slopes of the setting over the slider\u2019s start, and over start and setting "
-                           "of the trial before, with a "
-                           "mean of its own for each condition. 95 % intervals: Student\u2019s t.");
-    return;
+  std::vector<std::string> regressions;  // several conditions have the same
+  for (const auto& entry : entries) {
+    auto words = before_in_words(entry);
+    if (entry.analysis.empty()) words[0] = static_cast<char>(words[0] - 'a' + 'A');
+    if (std::ranges::find(regressions, words) == regressions.end()) regressions.push_back(std::move(words));
   }
-  const bool sides = options && options->answers == Answers::sides;
+  for (const auto& words : regressions) document.explain(words);
+  const bool logistic = std::ranges::any_of(entries, [](const auto& one) { return !one.answer.empty(); });
+  const bool after =
+      std::ranges::any_of(entries, [](const auto& one) { return one.after_error.has_value(); });
   document.explain(
-      Text("Logistic regression of the answer on the stimulus and on the trial before, in log odds. A "
-           "stimulus "
-           "counts in the unit of the level") +
-      (sides ? ", positive if \u201c" + summary.data.choices[1] + "\u201d is right" : std::string()) +
-      (options && options->decibel ? ", with decibels as ratios" : "") +
-      ". The answer before is above 0 for people who repeat themselves, and below 0 for those who alternate. "
-      "After "
-      "an error: what the stimulus weighs more than after a right answer, if levels were fixed before the "
-      "session. "
-      "Pairs are answered trials that follow each other in a block. Penalised likelihood (Firth 1993) with "
-      "95 % profile intervals.");
+      std::string(logistic ? "The answer before is above 0 for people who repeat themselves, and below 0 for "
+                             "those who alternate. "
+                           : "") +
+      (after
+           ? "After an error: what the stimulus weighs more than after a right answer, whatever the answers "
+             "shift then. "
+           : "") +
+      "Pairs are answered trials " + (summary.data.parts.empty() ? "" : "of the same analysis ") +
+      "that follow each other in a block. " +
+      (logistic ? "Penalised likelihood (Firth 1993) with 95 % profile intervals."
+                : "95 % intervals: Student\u2019s t."));
 }
 
 void add_course(const Summary& summary, Document& document) {

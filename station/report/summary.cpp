@@ -255,42 +255,6 @@ std::vector<analysis::Judgements> judgements_of(const SessionData& data) {
                                                              : Judged::magnitudes);
 }
 
-std::optional<analysis::DependenceOptions> dependence_options(const SessionData& data) {
-  using analysis::Answers;
-  analysis::DependenceOptions options;
-  options.positive = data.positive;
-  options.after_error = data.scored && !data.prior;
-  switch (data.design) {
-    case Design::ratings:
-      options.answers = Answers::values;
-      return options;
-    case Design::numbers:
-      options.answers = Answers::logarithms;
-      options.decibel = data.level_unit == "dB";
-      return options;
-    case Design::adjustment:
-      options.answers = Answers::settings;
-      return options;
-    case Design::categories:
-      return std::nullopt;
-    case Design::forced_choice:
-      options.answers = Answers::sides;
-      options.positive = 1;
-      options.decibel = data.level_unit == "dB";
-      break;
-    case Design::two_sided:
-      options.answers = data.scenes.empty() ? Answers::choices : Answers::sides;
-      if (!data.scenes.empty()) options.positive = 1;
-      options.cut = data.cut;
-      break;
-    case Design::yes_no:
-    case Design::same_different:
-      options.answers = Answers::choices;
-      break;
-  }
-  return data.choices.size() == 2 ? std::optional(options) : std::nullopt;
-}
-
 bool has_confusions(const SessionData& data) {
   return !judges(data.design) && (data.choices.size() > 2 || data.design == Design::categories);
 }
@@ -359,10 +323,62 @@ void append(std::vector<Entry> more, std::vector<Entry>& all) {
   all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
+/// How the regression of the effects of the trial before sees the answers; empty for three or more answers.
+std::optional<analysis::DependenceOptions> dependence_options(const SessionData& data) {
+  using analysis::Answers;
+  analysis::DependenceOptions options;
+  options.positive = data.positive;
+  options.after_error = data.scored && !data.prior;
+  switch (data.design) {
+    case Design::ratings:
+      options.answers = Answers::values;
+      return options;
+    case Design::numbers:
+      options.answers = Answers::logarithms;
+      options.decibel = data.level_unit == "dB";
+      return options;
+    case Design::adjustment:
+      options.answers = Answers::settings;
+      return options;
+    case Design::categories:
+      return std::nullopt;
+    case Design::forced_choice:
+      options.answers = Answers::sides;
+      options.positive = 1;
+      options.decibel = data.level_unit == "dB";
+      break;
+    case Design::two_sided:
+      options.answers = data.scenes.empty() ? Answers::choices : Answers::sides;
+      if (!data.scenes.empty()) options.positive = 1;
+      options.cut = data.cut;
+      break;
+    case Design::yes_no:
+    case Design::same_different:
+      options.answers = Answers::choices;
+      options.noise = true;
+      options.decibel = data.level_unit == "dB";
+      break;
+  }
+  return data.choices.size() == 2 ? std::optional(options) : std::nullopt;
+}
+
+/// The effects of the trial before in one analysis.
+std::vector<analysis::Dependence> dependences_of(const SessionData& data) {
+  using analysis::Answers;
+  const auto options = dependence_options(data);
+  if (!options) return {};
+  const bool logistic = options->answers == Answers::sides || options->answers == Answers::choices;
+  auto all = analysis::serial_dependence(data.trials, data.conditions, *options);
+  for (auto& one : all) {
+    one.analysis = data.name, one.unit = data.level_unit;
+    if (logistic) one.answer = data.choices.at(static_cast<std::size_t>(options->positive));
+  }
+  return all;
+}
+
 /// Adds what the answers at the levels of one analysis say, except for the psychometric functions.
 void add_levels(const SessionData& data, Summary& summary) {
-  if (const auto options = dependence_options(data))
-    append(analysis::serial_dependence(data.trials, data.conditions, *options), summary.dependences);
+  append(dependences_of(data), summary.dependences);
   if (data.design == Design::adjustment) {
     append(analysis::settings(data.trials, data.conditions), summary.settings);
     return;

@@ -68,9 +68,6 @@ bool has_confusions(const SessionData& data);
 /// Returns only the analysis of ratings or numbers; empty for other designs.
 std::vector<analysis::Judgements> judgements_of(const SessionData& data);
 
-/// How the regression of the effects of the trial before sees the answers; empty for three or more answers.
-std::optional<analysis::DependenceOptions> dependence_options(const SessionData& data);
-
 /// False if the data give only a limit for the slope. The slope then lies on a bound of the
 /// maximum-likelihood fit, or the posterior does not determine it.
 bool slope_estimated(const NamedFit& named);

@@ -9,6 +9,7 @@ import numpy as np
 from scipy import optimize, stats
 
 RANDOM = np.random.default_rng(20261129)
+STARTS = np.random.default_rng(7)
 CRITICAL = stats.chi2.ppf(0.95, 1)
 
 
@@ -19,21 +20,28 @@ def penalised(b, x, y):
     return -np.sum(y * z - np.logaddexp(0, z)) - log_det / 2 if sign > 0 else np.inf
 
 
+def climb(function, start):
+    start = optimize.minimize(function, start, method="Nelder-Mead",
+                              options={"xatol": 1e-10, "fatol": 1e-13, "maxiter": 20000, "maxfev": 20000}).x
+    return optimize.minimize(function, start, method="Powell", options={"xtol": 1e-10, "ftol": 1e-14}).x
+
+
 def least(function, start):
     if len(start) == 0:
         return start, function(start)
-    best = start
-    for _ in range(4):
-        best = optimize.minimize(function, best, method="Nelder-Mead",
-                                 options={"xatol": 1e-10, "fatol": 1e-13, "maxiter": 20000, "maxfev": 20000}).x
-        best = optimize.minimize(function, best, method="Powell", options={"xtol": 1e-10, "ftol": 1e-14}).x
+    # a profile may have several maxima, if few answers came after an error
+    starts = [start] + [start + s for s in STARTS.standard_normal((5, len(start))) * 3]
+    best = min((climb(function, s) for s in starts), key=function)
+    for _ in range(3):
+        best = climb(function, best)
     return best, function(best)
 
 
-def logistic(x, y):
+def logistic(x, y, wanted):
+    """The first `wanted` coefficients with the ends of their intervals."""
     best, lowest = least(lambda b: penalised(b, x, y), np.zeros(x.shape[1]))
     found = []
-    for k in range(x.shape[1] - 1):
+    for k in range(wanted):
         rest = np.delete(best, k)
 
         def fallen(value):
@@ -65,8 +73,10 @@ def choices(trials, slope, before, habit, error):
         answers.append(int(RANDOM.random() < 1 / (1 + np.exp(-z))))
     a = np.array(answers)
     wrong = (a == 1) != (x > 0)
-    predictors = np.column_stack([x[1:], x[:-1], a[:-1] - 0.5, wrong[:-1] * x[1:], np.ones(trials - 1)])
-    return x, a, logistic(predictors, a[1:])
+    # the error itself may shift the answer, whatever the stimulus
+    predictors = np.column_stack([x[1:], x[:-1], a[:-1] - 0.5, wrong[:-1] * x[1:], wrong[:-1] * 1.0,
+                                  np.ones(trials - 1)])
+    return x, a, logistic(predictors, a[1:], 4)
 
 
 def magnitudes(trials):

@@ -172,6 +172,24 @@ TEST_CASE("same-different counts pairs that are the same as false alarms", "[rep
   CHECK(report["fits"][0]["guess"].get<double>() == Approx(0.25).margin(0.12));
 }
 
+TEST_CASE("The trial before of same-different has stimulus 0 where nothing differed, and names its answer",
+          "[report]") {
+  auto data = data_of(shipped("friction-same-different"), "sim:threshold=-14,lapse=0");
+  const auto before = report_of(data)["trial_before"][0];
+  CHECK(before["answer"] == "different");
+  CHECK(before["model"] == "choices");
+  CHECK(before["level_unit"] == "dB");
+  CHECK(before["ratios"] == true);
+  REQUIRE_FALSE(before["stimulus"].is_null());
+  CHECK(before["stimulus"]["interval"]["low"] > 0);
+  const auto page = report::to_html(report::summarise(data));
+  CHECK(page.find("log odds of the answer \u201cdifferent\u201d. A stimulus counts as a ratio (1 for 0 dB), "
+                  "and is 0") != std::string::npos);
+  for (auto& trial : data.trials)
+    if (trial.right_choice == 1 - data.positive) trial.level = 12;
+  CHECK(report_of(data)["trial_before"][0] == before);
+}
+
 TEST_CASE("each value of the key show adds a part to the report", "[report]") {
   const auto source = [](const std::string& show) {
     return replaced(shipped("speed-accuracy"),
