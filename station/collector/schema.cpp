@@ -447,9 +447,9 @@ CREATE OR REPLACE FUNCTION turnpoint.longest_hold() RETURNS interval LANGUAGE sq
 
 -- Notes that the caller's transaction is about to store what others may wait for: a new protocol, rig or calibration,
 -- or a place. The note is a lock that nobody waits for, because others see the locks of a transaction at once; its
--- number is the time, in seconds since the server started.
+-- number is the time, in whole seconds since the server started, never a time to come.
 CREATE OR REPLACE FUNCTION turnpoint.note_hold() RETURNS void LANGUAGE sql AS $$ SELECT
-  pg_advisory_xact_lock_shared(1, extract(epoch FROM clock_timestamp() - pg_postmaster_start_time())::int) $$;
+  pg_advisory_xact_lock_shared(1, floor(extract(epoch FROM clock_timestamp() - pg_postmaster_start_time()))::int) $$;
 
 -- Ends the transactions of stations that last too long: each may hold rows for which other stations wait. If one has
 -- held them too long, all connections of its role end, because another of them may be the next in line.
