@@ -9,6 +9,8 @@
 #include <map>
 #include <set>
 
+#include "station/core/least_squares.hpp"
+
 namespace turnpoint::analysis {
 
 namespace {
@@ -133,7 +135,7 @@ std::optional<Vector> scale(Matrix& x) {
   if (!(unit.minCoeff() > 0) || !unit.allFinite()) return std::nullopt;
   x = x * unit.cwiseInverse().asDiagonal();
   Eigen::ColPivHouseholderQR<Matrix> solver(x);
-  solver.setThreshold(1e-7);
+  solver.setThreshold(3e-7);  // as core::least_squares
   return solver.rank() == x.cols() ? std::optional(unit) : std::nullopt;
 }
 
@@ -145,20 +147,15 @@ Estimate scaled(Estimate estimate, double unit) {
 /// Linear regression with intervals by Student's t.
 Regression linear(const std::vector<std::vector<double>>& rows, const std::vector<double>& answers) {
   auto x = matrix_of(rows);
-  const auto unit = scale(x);
-  if (!unit || x.rows() <= x.cols()) return {{}, true};
-  const Vector y = Eigen::Map<const Vector>(answers.data(), static_cast<Eigen::Index>(answers.size()));
-  const Matrix inverse = (x.transpose() * x).inverse();
-  const Vector value = inverse * (x.transpose() * y);
-  const auto freedom = static_cast<double>(x.rows() - x.cols());
-  const double variance = (y - x * value).squaredNorm() / freedom;
-  const boost::math::students_t law(freedom);
+  if (!scale(x) || x.rows() <= x.cols()) return {{}, true};
+  const auto fit = core::least_squares(rows, answers, std::vector<double>(rows.size(), 1));
+  const boost::math::students_t law(static_cast<double>(x.rows() - x.cols()));
   Regression result;
-  for (Eigen::Index k = 0; k < value.size(); ++k) {
-    const double sd = std::sqrt(variance * inverse(k, k)), half = boost::math::quantile(law, 0.975) * sd;
-    Estimate estimate{value[k], {value[k] - half, value[k] + half, 0.95}};
-    if (sd > 0) estimate.p = 2 * boost::math::cdf(law, -std::fabs(value[k]) / sd);
-    result.coefficients.push_back(scaled(estimate, (*unit)[k]));
+  for (std::size_t k = 0; k < fit.value.size(); ++k) {
+    const double half = boost::math::quantile(law, 0.975) * fit.sd[k];
+    auto& estimate = result.coefficients.emplace_back(
+        Estimate{fit.value[k], {fit.value[k] - half, fit.value[k] + half, 0.95}});
+    if (fit.sd[k] > 0) estimate.p = 2 * boost::math::cdf(law, -std::fabs(fit.value[k]) / fit.sd[k]);
   }
   return result;
 }

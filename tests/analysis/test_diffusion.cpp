@@ -18,6 +18,7 @@
 #include "station/analysis/trade.hpp"
 #include "tests/analysis/first_passage_table.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/number_from.hpp"
 #include "tests/support/diffusion.hpp"
 
 using namespace turnpoint::analysis;
@@ -126,11 +127,6 @@ Coverage coverage(std::size_t index, int sets, int first) {
     result.widths_ter.push_back(of_ter.high - of_ter.low);
   }
   return result;
-}
-
-int number_from(const char* variable, int otherwise) {
-  const char* text = std::getenv(variable);
-  return text == nullptr ? otherwise : std::atoi(text);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "station/scene/planner.hpp"
 #include "station/session/prepare.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/number_from.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
@@ -161,12 +162,8 @@ std::string refusal(const std::function<void()>& work) {
 // TURNPOINT_TABLES: number of sets of tables, 60 by default. TURNPOINT_SEED: another seed than 1.
 TEST_CASE("whatever was measured, calibrate refuses it or writes what plan, check and run can use",
           "[maintenance][calibration]") {
-  const auto number = [](const char* name, int usual) {
-    const char* wanted = std::getenv(name);
-    return wanted != nullptr ? std::atoi(wanted) : usual;
-  };
-  const int sets = number("TURNPOINT_TABLES", 60);
-  Tables tables(static_cast<std::uint64_t>(number("TURNPOINT_SEED", 1)));
+  const int sets = number_from("TURNPOINT_TABLES", 60);
+  Tables tables(static_cast<std::uint64_t>(number_from("TURNPOINT_SEED", 1)));
   const TemporaryFolder folder;
   const std::string rig_path = TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated.toml";
   const auto rig = rig::load(rig_path);

@@ -14,6 +14,7 @@
 #include "station/rehearsal/rehearsal.hpp"
 #include "station/rehearsal/reward.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/number_from.hpp"
 #include "tests/support/replaced.hpp"
 
 using namespace turnpoint;
@@ -99,8 +100,7 @@ TEST_CASE("the true values are the observer's own parameters, never estimates", 
 TEST_CASE("the diffusion's parameters in each condition are recovered, as the report prints them",
           "[power]") {
   // TURNPOINT_POWER_SESSIONS=200 for more
-  const char* given = std::getenv("TURNPOINT_POWER_SESSIONS");
-  const int sessions = given == nullptr ? 12 : std::atoi(given);
+  const int sessions = number_from("TURNPOINT_POWER_SESSIONS", 12);
   const auto power =
       rehearsal::power(shipped("speed-accuracy"), options("sim:threshold=0.15,lapse=0", sessions, sessions));
   const double hurried = 0.2 * std::sqrt(0.35 * 0.3);

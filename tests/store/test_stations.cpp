@@ -25,6 +25,7 @@
 #include "station/store/withdraw.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/number_from.hpp"
 
 using namespace turnpoint::store;
 
@@ -908,8 +909,7 @@ struct Room {
 }  // namespace
 
 TEST_CASE("in whatever order things happen, withdrawn is withdrawn, and nothing else is", "[store]") {
-  const auto* wanted = std::getenv("TURNPOINT_INTERLEAVINGS");
-  const int runs = wanted != nullptr ? std::atoi(wanted) : 20;
+  const int runs = number_from("TURNPOINT_INTERLEAVINGS", 20);
   std::mt19937 random(20261128);
   int withdrawals = 0;
   for (int run = 0; run < runs; ++run) {
