@@ -22,7 +22,9 @@ using Vector = Eigen::VectorXd;
 constexpr std::size_t kFewestPairs = 50, kFewestSpare = 10;
 /// errors before a counted trial without which `after_error` is left out
 constexpr int kFewestErrors = 5;
-constexpr double kChiSquare95 = kZ95 * kZ95;
+/// gains in log-likelihood: of a search that has come to rest, and below which only rounding errors could
+/// tell
+constexpr double kRest = 1e-13, kSmall = 1e-8;
 
 /// The penalised likelihood at one place: its logarithm, its gradient and the expected information.
 struct Local {
@@ -39,7 +41,7 @@ class Penalised {
   /// come to rest.
   std::optional<Local> climb(Vector& at, std::optional<Eigen::Index> held) const {
     auto here = local(at);
-    for (int round = 0;; ++round) {
+    for (int round = 0; round < 500; ++round) {
       Vector gradient = here.gradient;
       Matrix information = here.information;
       if (held) {
@@ -50,17 +52,17 @@ class Penalised {
       Vector step = information.llt().solve(gradient);
       const double gain = gradient.dot(step) / 2;  // what a whole step would add
       if (!std::isfinite(gain)) return std::nullopt;
-      if (gain < 1e-13 || (round == 500 && gain < 1e-8)) return here;
-      if (round == 500) return std::nullopt;
+      if (gain < kRest) return here;
       auto there = local(at + step);
-      for (int halved = 0; halved < 40 && !(there.log_likelihood >= here.log_likelihood); ++halved) {
+      // a likelihood has rounding errors, so below kSmall it no longer tells whether a step is one up
+      while (gain > kSmall && !(there.log_likelihood >= here.log_likelihood)) {
+        if (step.norm() < 1e-12) return std::nullopt;
         step /= 2;
         there = local(at + step);
       }
-      if (!(there.log_likelihood >= here.log_likelihood))  // only rounding errors are left
-        return gain < 1e-8 ? std::optional(here) : std::nullopt;
       at += step, here = std::move(there);
     }
+    return std::nullopt;
   }
 
  private:
@@ -88,36 +90,27 @@ class Penalised {
 };
 
 /// Returns where the profile of the coefficient `k` has fallen by what a 95 % interval allows; `direction` is
-/// -1 or 1.
+/// -1 or 1. Searched by Newton's rule on the root of twice the fall, which is nearly linear; its slope is
+/// that of the penalised likelihood (envelope theorem).
 std::optional<double> end_of(const Penalised& model, const Vector& best, double most, Eigen::Index k,
                              double sd, double direction) {
-  const auto fallen = [&](double value, Vector& at) -> std::optional<double> {
-    at[k] = value;
+  double inside = 0, outside = std::numeric_limits<double>::infinity();  // distances from the best value
+  double distance = kZ95 * sd;
+  Vector at = best;
+  for (int i = 0; i < 60; ++i) {
+    at[k] = best[k] + direction * distance;
     const auto there = model.climb(at, k);
-    return there ? std::optional(2 * (most - there->log_likelihood)) : std::nullopt;
-  };
-  double inside = best[k], step = kZ95 * sd;
-  Vector at = best, near = best;
-  double outside = inside + direction * step;
-  for (int i = 0;; ++i) {
-    at = near;
-    const auto drop = fallen(outside, at);
-    if (!drop || i == 60) return std::nullopt;
-    if (*drop > kChiSquare95) break;
-    inside = outside, near = at;
-    outside += direction * (step *= 1.5);
+    if (!there) return std::nullopt;
+    const double root = std::sqrt(std::max(0.0, 2 * (most - there->log_likelihood)));
+    const double slope = -direction * there->gradient[k] / root;
+    (root > kZ95 ? outside : inside) = distance;
+    double next = distance + (kZ95 - root) / slope;
+    if (std::fabs(next - distance) <= 1e-9 * (sd + std::fabs(best[k]))) return best[k] + direction * next;
+    if (!(next > inside && next < std::min(outside, 3 * distance)))
+      next = std::isfinite(outside) ? (inside + outside) / 2 : 2 * distance;
+    distance = next;
   }
-  for (int i = 0; i < 60 && std::fabs(outside - inside) > 1e-9 * (sd + std::fabs(inside)); ++i) {
-    const double middle = (inside + outside) / 2;
-    at = near;
-    const auto drop = fallen(middle, at);
-    if (!drop) return std::nullopt;
-    if (*drop > kChiSquare95)
-      outside = middle;
-    else
-      inside = middle, near = at;
-  }
-  return (inside + outside) / 2;
+  return std::nullopt;
 }
 
 Matrix matrix_of(const std::vector<std::vector<double>>& rows) {
