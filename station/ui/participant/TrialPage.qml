@@ -142,8 +142,8 @@ Item {
     Pacer {
         id: pacer
         objectName: "pacer"
-        // On a small panel the question, the answers and the dots of the intervals come first.
-        readonly property bool fits: root.height - answers.height - bars.height - implicitHeight >= (root.counted ? 19.6 : 6.6) * root.theme.unit
+        // On a small panel the question, the answers, the surface and the dots of the intervals come first.
+        readonly property bool fits: root.height - answers.height - bars.height - implicitHeight >= Math.max((root.counted ? 19.6 : 6.6) * root.theme.unit, surface.least + asked.height + 3 * root.theme.unit)
         visible: bars.visible && root.page.paceMmPerS > 0 && fits
         anchors { left: parent.left; right: parent.right; bottom: answers.top; bottomMargin: visible ? root.theme.unit : 0 }
         height: visible ? implicitHeight : 0
@@ -210,7 +210,7 @@ Item {
         anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
         height: Math.max(leastHeight, Math.min(Math.round(0.36 * parent.height), most))
         // the question and, if it speaks of the mark, the surface keep their place
-        most: Math.floor(parent.height - asked.height - surface.below - surface.least)
+        most: Math.floor(parent.height - asked.height - bars.height - ((bars.visible ? 1 : 0) + 1) * root.theme.unit - surface.least)
         theme: root.theme
         answers: root.page.answers
         captions: root.page.captions
