@@ -41,7 +41,7 @@ class Penalised {
   /// come to rest.
   std::optional<Local> climb(Vector& at, std::optional<Eigen::Index> held) const {
     auto here = local(at);
-    for (int round = 0; round < 500; ++round) {
+    for (int round = 0;; ++round) {
       Vector gradient = here.gradient;
       Matrix information = here.information;
       if (held) {
@@ -52,7 +52,8 @@ class Penalised {
       Vector step = information.llt().solve(gradient);
       const double gain = gradient.dot(step) / 2;  // what a whole step would add
       if (!std::isfinite(gain)) return std::nullopt;
-      if (gain < kRest) return here;
+      if (gain < kRest || (round == 500 && gain < kSmall)) return here;
+      if (round == 500) return std::nullopt;
       auto there = local(at + step);
       // a likelihood has rounding errors, so below kSmall it no longer tells whether a step is one up
       while (gain > kSmall && !(there.log_likelihood >= here.log_likelihood)) {
@@ -62,7 +63,6 @@ class Penalised {
       }
       at += step, here = std::move(there);
     }
-    return std::nullopt;
   }
 
  private:
@@ -90,25 +90,38 @@ class Penalised {
 };
 
 /// Returns where the profile of the coefficient `k` has fallen by what a 95 % interval allows; `direction` is
-/// -1 or 1. Searched by Newton's rule on the root of twice the fall, which is nearly linear; its slope is
-/// that of the penalised likelihood (envelope theorem).
+/// -1 or 1. After few errors the likelihood can have several maxima for a fixed coefficient, so the search
+/// goes out from the best place until the profile is low enough, and then each place between is climbed to
+/// from both sides. Those are chosen by Newton's rule on the root of twice the fall, which is nearly linear;
+/// its slope is that of the penalised likelihood (envelope theorem).
 std::optional<double> end_of(const Penalised& model, const Vector& best, double most, Eigen::Index k,
                              double sd, double direction) {
   double inside = 0, outside = std::numeric_limits<double>::infinity();  // distances from the best value
-  double distance = kZ95 * sd;
-  Vector at = best;
+  Vector near = best, far;                                               // the maxima there
+  double distance = kZ95 * sd, step = distance;
   for (int i = 0; i < 60; ++i) {
+    Vector at = near;
     at[k] = best[k] + direction * distance;
-    const auto there = model.climb(at, k);
+    auto there = model.climb(at, k);
+    if (std::isfinite(outside)) {
+      far[k] = at[k];
+      const auto other = model.climb(far, k);
+      if (other && (!there || other->log_likelihood > there->log_likelihood)) there = other, at = far;
+    }
     if (!there) return std::nullopt;
     const double root = std::sqrt(std::max(0.0, 2 * (most - there->log_likelihood)));
-    const double slope = -direction * there->gradient[k] / root;
-    (root > kZ95 ? outside : inside) = distance;
-    double next = distance + (kZ95 - root) / slope;
-    if (std::fabs(next - distance) <= 1e-9 * (sd + std::fabs(best[k]))) return best[k] + direction * next;
-    if (!(next > inside && next < std::min(outside, 3 * distance)))
-      next = std::isfinite(outside) ? (inside + outside) / 2 : 2 * distance;
-    distance = next;
+    const double next = distance - (kZ95 - root) * root / (direction * there->gradient[k]);
+    if (root > kZ95)
+      outside = distance, far = at;
+    else
+      inside = distance, near = at;
+    if (std::isinf(outside)) {
+      distance += step *= 1.5;
+      continue;
+    }
+    if (std::min(outside - inside, std::fabs(next - distance)) <= 1e-9 * (sd + std::fabs(best[k])))
+      return best[k] + direction * next;
+    distance = next > inside && next < outside ? next : (inside + outside) / 2;
   }
   return std::nullopt;
 }
