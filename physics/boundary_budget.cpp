@@ -1,10 +1,15 @@
 #include "physics/boundary_budget.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <numeric>
 #include <stdexcept>
 
+#include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/gate.hpp"
 #include "physics/taper.hpp"
@@ -28,7 +33,8 @@ constexpr std::array entries{
     Entry{Parameter::slope, "slope", &ParameterSd::slope, {"", 1}},
     Entry{Parameter::decay_length, "decay length", &ParameterSd::decay_length_m, {"mm", 1e-3}},
     Entry{Parameter::clamp_line, "clamp line", &ParameterSd::clamp_line_m, {"mm", 1e-3}},
-    Entry{Parameter::temperature, "temperature", &ParameterSd::temperature_K, {"K", 1}}};
+    Entry{Parameter::temperature, "temperature", &ParameterSd::temperature_K, {"K", 1}},
+    Entry{Parameter::quality_factor, "quality factor", &ParameterSd::quality_factor, {"", 1}}};
 
 const Entry& entry(Parameter parameter) {
   return *std::find_if(entries.begin(), entries.end(),
@@ -50,12 +56,14 @@ bool has(const Surface& s, Parameter parameter) {
       return !std::holds_alternative<ExponentialTaper>(s.taper);
     case Parameter::temperature:
       return s.expansion_per_K != 0 || s.modulus_per_K != 0;
+    case Parameter::quality_factor:
+      return std::isfinite(s.quality_factor);
     default:
       return true;
   }
 }
 
-// Returns the value of one of the four parameters on which the cut-off depends.
+// Returns the value of one of the parameters that multiply others and cannot be negative.
 double value(const Surface& s, Parameter parameter) {
   switch (parameter) {
     case Parameter::density:
@@ -64,6 +72,8 @@ double value(const Surface& s, Parameter parameter) {
       return s.tension_Pa;
     case Parameter::thickness:
       return s.thickness_m;
+    case Parameter::quality_factor:
+      return s.quality_factor;
     default:
       return s.modulus_Pa.value();
   }
@@ -83,7 +93,9 @@ void widen(TaperForm& form, double by) {
   if (auto* linear = std::get_if<LinearTaper>(&form)) linear->half_width_m += by;
   if (auto* exponential = std::get_if<ExponentialTaper>(&form)) exponential->half_width_m += by;
   if (auto* table = std::get_if<TabulatedTaper>(&form)) {
-    for (TaperPoint& point : table->points) point.half_width_m += by;
+    // where the strip would close, it stays a hundredth as wide
+    for (TaperPoint& point : table->points)
+      point.half_width_m = std::max(point.half_width_m + by, 0.01 * point.half_width_m);
   }
 }
 
@@ -159,6 +171,9 @@ Surface changed(Surface s, Parameter parameter, double by) {
     case Parameter::temperature:
       warm(s, by);
       break;
+    case Parameter::quality_factor:
+      s.quality_factor += by;
+      break;
     case Parameter::half_width:
     case Parameter::clamp_line:
       widen(s.taper, by);
@@ -178,6 +193,7 @@ double boundary_derivative(const Surface& s, Parameter parameter, double f, doub
   validate(s, f);
   require_on_surface(s, "boundary_m", x);
   require_fall(s);
+  if (parameter == Parameter::quality_factor) return 0;
   const Taper taper(s);
   const double w = taper.half_width_m(x), slope = taper.slope(x), cut_off_m = cut_off_half_width_m(s, f);
   const double ratio = w / cut_off_m, by_ln_slope = 2.0 / 3 * (ratio - 1) * cut_off_m;
@@ -244,6 +260,168 @@ BoundaryBudget boundary_budget(const Surface& surface, double f, double x) {
   budget.total_m = std::sqrt(std::max(0.0, variance));
   std::stable_sort(parts.begin(), parts.end(),
                    [](const Contribution& a, const Contribution& b) { return a.left_m < b.left_m; });
+  return budget;
+}
+
+namespace {
+
+constexpr int kDraws = 64;
+
+// Returns the surface with one parameter away from its value by this many standard deviations. What cannot be
+// negative is distributed log-normally.
+Surface away(const Surface& surface, Parameter parameter, double deviations) {
+  const double by = deviations * standard_deviation(surface, parameter);
+  switch (parameter) {
+    case Parameter::density:
+    case Parameter::tension:
+    case Parameter::thickness:
+    case Parameter::modulus:
+    case Parameter::quality_factor:
+      return changed(surface, parameter,
+                     value(surface, parameter) * std::expm1(by / value(surface, parameter)));
+    default:
+      return changed(surface, parameter, by);
+  }
+}
+
+// The level at a position of a surface, in decibels relative to the drive edge.
+double level_dB(const Surface& surface, double f, double at_m) {
+  const auto line = make_centre_line(surface, f, Model::mode);
+  const double ln =
+      line->value(std::min(at_m, surface.length_m)).ln_magnitude() - line->value(0).ln_magnitude();
+  return 20 / std::numbers::ln10 * std::clamp(ln, -700.0, 700.0);
+}
+
+// The middles of kDraws equally probable strata of a normal deviate, by Newton's method.
+std::vector<double> strata() {
+  std::vector<double> z(kDraws);
+  for (int i = 0; i < kDraws; ++i) {
+    const double wanted = (i + 0.5) / kDraws;
+    double& at = z[static_cast<std::size_t>(i)];
+    for (int step = 0; step < 50; ++step)
+      at += (wanted - 0.5 * std::erfc(-at / std::numbers::sqrt2)) * std::sqrt(2 * std::numbers::pi) *
+            std::exp(std::min(4.0, 0.5 * at * at));
+  }
+  return z;
+}
+
+// Phase of the wave between the drive edge and its turning point (WKB); without a turning point, to the end.
+double phase_rad(const Surface& surface, double f) {
+  const MarchEquation equation = march_equation(surface, f, Losses::left_out);
+  const Taper taper(surface);
+  const double end_m = turning_point_m(surface, f).value_or(surface.length_m);
+  constexpr int steps = 64;
+  double sum = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double u = (i + 0.5) / steps, w = taper.half_width_m(end_m * (1 - u * u));
+    sum += u * std::sqrt(std::max(0.0, equation.a.real() - equation.b / (w * w)));
+  }
+  return 2 * end_m * sum / steps;
+}
+
+// Shuffles by the generator of Steele, Lea and Flood (2014), so that all computers draw the same surfaces.
+void shuffle(std::vector<double>& values, std::uint64_t& state) {
+  for (std::size_t i = values.size(); i > 1; --i) {
+    std::uint64_t z = state += 0x9E3779B97F4A7C15u;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+    std::swap(values[i - 1], values[(z ^ (z >> 31)) % i]);
+  }
+}
+
+// The lower triangle L of the correlations of some parameters, R = L L'.
+Eigen::MatrixXd triangle(const Surface& surface, const std::vector<Parameter>& of) {
+  const auto n = static_cast<Eigen::Index>(of.size());
+  Eigen::MatrixXd l = Eigen::MatrixXd::Identity(n, n);
+  const auto at = [&of](Parameter p) { return std::find(of.begin(), of.end(), p) - of.begin(); };
+  for (const Correlation& c : surface.correlations)
+    if (at(c.first) < n && at(c.second) < n)
+      l(at(c.first), at(c.second)) = l(at(c.second), at(c.first)) = c.coefficient;
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      const double left = l(i, j) - l.row(i).head(j).dot(l.row(j).head(j));
+      l(i, j) = i == j ? std::sqrt(std::max(0.0, left)) : l(j, j) > 0 ? left / l(j, j) : 0;
+    }
+  return l.triangularView<Eigen::Lower>();
+}
+
+// Deviations of the parameters for kDraws surfaces, a column for each. The phase moves with the first of the
+// independent deviates alone, because the reflection of Householder (1958) turns its axis to the gradient.
+Eigen::MatrixXd draws(const Surface& surface, double f, const std::vector<Parameter>& of) {
+  const auto n = static_cast<Eigen::Index>(of.size());
+  Eigen::MatrixXd deviates(n, kDraws);
+  std::uint64_t state = 1;
+  Eigen::VectorXd gradient(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Parameter p = of[static_cast<std::size_t>(i)];
+    gradient(i) = phase_rad(away(surface, p, 0.5), f) - phase_rad(away(surface, p, -0.5), f);
+    std::vector<double> values = strata();
+    if (i > 0) shuffle(values, state);
+    deviates.row(i) = Eigen::Map<Eigen::RowVectorXd>(values.data(), kDraws);
+  }
+  const Eigen::MatrixXd l = triangle(surface, of);
+  Eigen::VectorXd mirror = (l.transpose() * gradient).normalized();
+  mirror(0) -= 1;
+  if (const double square = mirror.squaredNorm(); square > 0)
+    deviates -= mirror * (2 / square * (mirror.transpose() * deviates));
+  return l * deviates;
+}
+
+// The value below which this share of sorted values lies.
+double quantile(const std::vector<double>& sorted, double share) {
+  const double at = share * static_cast<double>(sorted.size()) - 0.5;
+  const auto below = static_cast<std::size_t>(at);
+  return std::lerp(sorted[below], sorted[below + 1], at - static_cast<double>(below));
+}
+
+}  // namespace
+
+LevelBudget level_uncertainty(const Surface& surface, double f, double at_m) {
+  validate(surface, f);
+  require_on_surface(surface, "at_m", at_m);
+  LevelBudget budget;
+  std::vector<Parameter> uncertain;
+  for (const Parameter parameter : parameters(surface))
+    if (standard_deviation(surface, parameter) > 0) uncertain.push_back(parameter);
+  if (uncertain.empty()) return budget;
+  std::vector<double> levels;
+  const Eigen::MatrixXd deviations = draws(surface, f, uncertain);
+  for (Eigen::Index draw = 0; draw < kDraws; ++draw) {
+    Surface drawn = surface;
+    for (std::size_t i = 0; i < uncertain.size(); ++i)
+      drawn = away(drawn, uncertain[i], deviations(static_cast<Eigen::Index>(i), draw));
+    levels.push_back(level_dB(drawn, f, at_m));
+  }
+  const double here_dB = level_dB(surface, f, at_m);
+  std::sort(levels.begin(), levels.end());
+  budget.low_dB = quantile(levels, 0.025) - here_dB;
+  budget.high_dB = quantile(levels, 0.975) - here_dB;
+  const double mean = std::accumulate(levels.begin(), levels.end(), 0.0) / kDraws;
+  double square = 0;
+  for (const double level : levels) square += std::pow(level - mean, 2);
+  budget.total_dB = std::sqrt(square / kDraws);
+  return budget;
+}
+
+LevelBudget level_budget(const Surface& surface, double f, double at_m) {
+  LevelBudget budget = level_uncertainty(surface, f, at_m);
+  const double here_dB = level_dB(surface, f, at_m);
+  for (const Parameter parameter : parameters(surface)) {
+    const double sd = standard_deviation(surface, parameter);
+    if (!(sd > 0)) continue;
+    // Gauss and Hermite's five points of a normal deviate.
+    constexpr std::array points{1.355626179974266, 2.856970013872806},
+        weights{0.222075922005613, 0.011257411327721};
+    double mean = 0, square = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      for (const double side : {-1.0, 1.0}) {
+        const double moved = level_dB(away(surface, parameter, side * points[i]), f, at_m) - here_dB;
+        mean += weights[i] * moved, square += weights[i] * moved * moved;
+      }
+    budget.parts.push_back({parameter, sd, std::sqrt(std::max(0.0, square - mean * mean))});
+  }
+  std::stable_sort(budget.parts.begin(), budget.parts.end(),
+                   [](const auto& a, const auto& b) { return a.level_dB > b.level_dB; });
   return budget;
 }
 

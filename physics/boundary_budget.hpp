@@ -1,6 +1,6 @@
 #pragma once
-// Computes how uncertain the position of a boundary is, and how much each uncertain parameter of the surface
-// contributes.
+// Computes how uncertain the position of a boundary and the level of a vibration are, and how much each
+// uncertain parameter of the surface contributes.
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -36,8 +36,8 @@ Surface changed(Surface surface, Parameter parameter, double by);
 
 // The derivative of a boundary's position with respect to a parameter (m per SI unit) at constant frequency.
 // `boundary_m` is the boundary's position at that frequency. For every definition of the boundary, taper and
-// plate theory, the result agrees with solving again on changed surfaces to 1 % of the largest derivative.
-// Takes microseconds (plate theory elastic: 0.1 s).
+// plate theory, the result agrees with solving again on changed surfaces to 1 % of the largest derivative. It
+// is 0 for the quality factor. Takes microseconds (plate theory elastic: 0.1 s).
 double boundary_derivative(const Surface& surface, Parameter parameter, double frequency_Hz,
                            double boundary_m);
 
@@ -59,5 +59,30 @@ struct BoundaryBudget {
 // parameters are correlated, as after a fit of measured boundaries, the total may be less than the root of
 // the summed squares.
 BoundaryBudget boundary_budget(const Surface& surface, double frequency_Hz, double boundary_m);
+
+struct LevelBudget {
+  struct Part {
+    Parameter parameter;
+    double sd = 0;        // standard deviation of the parameter, SI units
+    double level_dB = 0;  // standard deviation of the level if only this parameter is uncertain
+  };
+  std::vector<Part> parts;  // the parameter with the largest effect comes first
+  double total_dB = 0;      // standard deviation of the level
+  // 95 % interval of the level, relative to the level that is computed for the surface as it is given
+  double low_dB = 0, high_dB = 0;
+};
+
+// What the uncertain parameters do to the level at a position, such as that of a finger: the displacement
+// there, divided by that of the drive edge. They shift the standing wave against the drive edge, through many
+// decibels between a resonance and the next minimum, so that a derivative says nothing. The model `mode` is
+// solved on 64 surfaces whose parameters are drawn together, with their correlations, by Latin hypercube
+// sampling (McKay, Beckman, Conover 1979) with a fixed seed, and five times for each parameter alone.
+// Densities, moduli, thicknesses, tensions and
+// quality factors are log-normal. Throws std::invalid_argument if a standard deviation is so large that a
+// drawn surface cannot exist.
+LevelBudget level_budget(const Surface& surface, double frequency_Hz, double at_m);
+
+// The same without the parts.
+LevelBudget level_uncertainty(const Surface& surface, double frequency_Hz, double at_m);
 
 }  // namespace turnpoint::physics

@@ -175,7 +175,7 @@ BoundaryFit fit_boundaries(const Surface& surface, const MapOptions& options,
   validate(surface);
   Problem problem{surface, options, measured};
   for (const Parameter p : parameters(surface))
-    if (standard_deviation(surface, p) > 0) problem.unknown.push_back(p);
+    if (standard_deviation(surface, p) > 0 && p != Parameter::quality_factor) problem.unknown.push_back(p);
   validate(options.edge);
   check(options, measured, problem);
   for (const MeasuredBoundary& m : measured) validate(surface, m.frequency_Hz);

@@ -236,6 +236,7 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning, std:
   const double edge = std::max(x0, edge_m.value_or(x0));
   const Steepness taper_is = steepness(taper, cut, x0, last_peak_m.value_or(x0), edge);
   const double steepest = taper_is.at_turning, bend = taper_is.bend;
+  bound.steepest = taper_is.steepest;
   const bool membrane = !dispersion.clamped_bending();
   // The outermost maximum is about one Airy length before the turning point. If the turning point is close to
   // the drive edge, the maximum is shallow, and even weak higher modes move it far.

@@ -37,6 +37,7 @@ struct ModeBound {
   double position_m() const { return equation_m + drive_m; }
   // factor by which resonance makes the higher modes on the surface larger than the drive edge alone would
   double resonance = 1;
+  double steepest = 0;  // largest |W'| between the drive edge and the turning point
 };
 
 // Computes the bounds. `conditioning` is CentreLine::drive_conditioning of the first mode. `last_peak_m` is

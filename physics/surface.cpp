@@ -141,7 +141,7 @@ void validate(const Surface& s) {
   require(std::abs(s.modulus_per_K) <= 1, "modulus_per_K", s.modulus_per_K, "-1 to 1");
   const ParameterSd& sd = s.sd;
   for (const double one : {sd.density_kg_m3, sd.tension_Pa, sd.thickness_m, sd.modulus_Pa, sd.half_width_m,
-                           sd.slope, sd.decay_length_m, sd.clamp_line_m, sd.temperature_K})
+                           sd.slope, sd.decay_length_m, sd.clamp_line_m, sd.temperature_K, sd.quality_factor})
     require_size_or_0("standard deviation of a parameter", one);
   for (const Correlation& c : s.correlations)
     require(std::abs(c.coefficient) <= 1, "correlation", c.coefficient, "-1 to 1");

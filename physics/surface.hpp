@@ -77,11 +77,12 @@ enum class Parameter {
   slope,
   decay_length,
   clamp_line,
-  temperature
+  temperature,
+  quality_factor
 };
 
 // Standard deviations of the surface's parameters; zero means that a parameter is known exactly. They give
-// the uncertainty of a boundary, which is reported separately from the error of a model.
+// the uncertainty of a boundary and of a level, which are reported separately from the error of a model.
 struct ParameterSd {
   double density_kg_m3 = 0;
   double tension_Pa = 0;
@@ -93,6 +94,7 @@ struct ParameterSd {
   double clamp_line_m = 0;
   // how far the temperature may deviate from the one at which the other values hold
   double temperature_K = 0;
+  double quality_factor = 0;  // changes levels; no boundary moves noticeably with it
 };
 
 // The correlation between the errors of two parameters that were determined by the same fit.

@@ -38,13 +38,14 @@ class ParameterSd:
     density_kg_m3: float
     half_width_m: float
     modulus_Pa: float
+    quality_factor: float
     slope: float
     temperature_K: float
     tension_Pa: float
     thickness_m: float
     def __init__(self, *, clamp_line_m: float = ..., decay_length_m: float = ..., density_kg_m3: float = ...,
-        half_width_m: float = ..., modulus_Pa: float = ..., slope: float = ..., temperature_K: float = ..., tension_Pa:
-        float = ..., thickness_m: float = ...) -> None: ...
+        half_width_m: float = ..., modulus_Pa: float = ..., quality_factor: float = ..., slope: float = ..., temperature_K:
+        float = ..., tension_Pa: float = ..., thickness_m: float = ...) -> None: ...
 
 class Surface:
     """The tapered surface: material, taper, tension, loss and supports. SI units."""

@@ -43,7 +43,8 @@ void add_standard_deviations(py::module_& module) {
       .def_readwrite("slope", &ParameterSd::slope)
       .def_readwrite("decay_length_m", &ParameterSd::decay_length_m)
       .def_readwrite("clamp_line_m", &ParameterSd::clamp_line_m)
-      .def_readwrite("temperature_K", &ParameterSd::temperature_K);
+      .def_readwrite("temperature_K", &ParameterSd::temperature_K)
+      .def_readwrite("quality_factor", &ParameterSd::quality_factor);
 }
 
 py::array_t<double> half_widths(const Surface& surface, const Numbers& x_m) {

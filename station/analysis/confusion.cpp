@@ -15,9 +15,7 @@ Confusion confusion_of(const std::vector<TrialRecord>& trials, const std::string
   std::map<std::pair<std::optional<int>, std::optional<double>>, ConfusionRow> rows;
   int right = 0, scored = 0;
   for (const auto& trial : trials) {
-    if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered || !trial.response ||
-        trial.instruction != condition)
-      continue;
+    if (!counted(trial) || !trial.response || trial.instruction != condition) continue;
     const auto level = trial.right_choice ? std::nullopt : trial.level;
     auto& row = rows[{trial.right_choice, level}];
     row.stimulus = trial.right_choice, row.level = level;

@@ -30,7 +30,7 @@ std::optional<Bias> choice_bias(const std::vector<TrialRecord>& trials) {
   YesNoCounts counts;
   int known = 0, second_right = 0;
   for (const auto& trial : trials) {
-    if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered) continue;
+    if (!counted(trial)) continue;
     if (!trial.response || *trial.response < 0 || *trial.response > 1) continue;
     const bool second = *trial.response == 1;
     ++bias.answered;
@@ -120,7 +120,7 @@ std::optional<Trend> within_groups(const std::vector<Sample>& samples) {
 Fatigue fatigue(const std::vector<TrialRecord>& trials) {
   std::vector<Sample> times, scores;
   for (const auto& trial : trials) {
-    if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered) continue;
+    if (!counted(trial)) continue;
     const std::pair group{trial.level.value_or(0), trial.instruction};
     const double index = trial.trial_index;
     if (trial.response_time_s) times.push_back({group, index, *trial.response_time_s});
@@ -137,12 +137,13 @@ Fatigue fatigue(const std::vector<TrialRecord>& trials) {
 std::optional<Estimate> post_error_slowing(const std::vector<TrialRecord>& trials,
                                            const std::string& condition) {
   const auto is = [&](const TrialRecord& trial, bool right) {
-    return trial.type == TrialType::experimental && trial.outcome == Outcome::answered &&
-           trial.instruction == condition && trial.correct == right && trial.response_time_s;
+    return counted(trial) && trial.instruction == condition && trial.correct == right &&
+           trial.response_time_s;
   };
   std::vector<double> gaps_s;
   for (std::size_t i = 2; i + 1 < trials.size(); ++i) {
-    if (trials[i - 2].block_index != trials[i + 1].block_index) continue;
+    const auto follow = [&](std::size_t at) { return follows(trials[at - 1], trials[at]); };
+    if (!follow(i - 1) || !follow(i) || !follow(i + 1)) continue;
     if (is(trials[i - 2], true) && is(trials[i - 1], true) && is(trials[i], false) && is(trials[i + 1], true))
       gaps_s.push_back(*trials[i + 1].response_time_s - *trials[i - 1].response_time_s);
   }
@@ -151,13 +152,12 @@ std::optional<Estimate> post_error_slowing(const std::vector<TrialRecord>& trial
 
 std::optional<Estimate> repetition(const std::vector<TrialRecord>& trials, const std::string& condition) {
   const auto counts = [&](const TrialRecord& trial) {
-    return trial.type == TrialType::experimental && trial.outcome == Outcome::answered &&
-           trial.instruction == condition && trial.response && trial.right_choice;
+    return counted(trial) && trial.instruction == condition && trial.response && trial.right_choice;
   };
   std::vector<double> gaps;
   for (std::size_t i = 1; i < trials.size(); ++i) {
     const auto &before = trials[i - 1], &now = trials[i];
-    if (before.block_index != now.block_index || !counts(before) || !counts(now)) continue;
+    if (!follows(before, now) || !counts(before) || !counts(now)) continue;
     gaps.push_back((*now.response == *before.response) - (*now.right_choice == *before.response));
   }
   constexpr std::size_t kFewestPairs = 20;
@@ -173,6 +173,7 @@ OutcomeCounts count_outcomes(const std::vector<TrialRecord>& trials) {
     switch (trial.outcome) {
       case Outcome::answered:
         ++counts.answered;
+        counts.unsure += trial.unsure ? 1 : 0;
         break;
       case Outcome::timeout:
         ++counts.timeouts;

@@ -84,6 +84,7 @@ std::optional<Estimate> repetition(const std::vector<TrialRecord>& trials, const
 
 struct OutcomeCounts {
   int presented = 0, answered = 0, timeouts = 0, anticipations = 0, aborted = 0, faults = 0;
+  int unsure = 0;  ///< answered trials in which the participant did not want to guess
 };
 /// Counts trials by outcome. Practice is left out.
 OutcomeCounts count_outcomes(const std::vector<TrialRecord>& trials);

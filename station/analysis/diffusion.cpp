@@ -24,9 +24,11 @@ using Matrix = Eigen::MatrixXd;
 constexpr double kNearChance = 1e-3;
 constexpr double kDriftPriorSd = 10;      // per s, with s = 1
 constexpr double kContaminantPrior = 19;  // Beta(1, 19)
-constexpr int kPosteriorDraws = 1000, kAdaptations = 4;
-constexpr double kEnoughDraws = 400;  // effective draws that end the adaptation
-constexpr int kFewestAnswers = 10;    // answers
+constexpr int kPosteriorDraws = 1000, kMostRounds = 16;
+// no more draws are added with this many effective ones, and with every end of an interval certain to this
+// share of its width
+constexpr double kEnoughDraws = 400, kEnoughOfWidth = 0.05;
+constexpr int kFewestAnswers = 10;  // answers
 
 double log_add(double a, double b) {
   if (a < b) std::swap(a, b);
@@ -129,8 +131,7 @@ class Posterior {
     if (contaminants_ && !(at.contaminants > 1e-12 && at.contaminants < 1)) return kImpossible;
     if (options_.method == DiffusionOptions::Method::likelihood) return 0;
     double sum = theta[kNondecision];
-    if (contaminants_)
-      sum += std::log(at.contaminants) + kContaminantPrior * std::log1p(-at.contaminants);
+    if (contaminants_) sum += std::log(at.contaminants) + kContaminantPrior * std::log1p(-at.contaminants);
     if (start_) sum += 2 * std::log(at.start * (1 - at.start));
     if (drift_sd_) sum += theta[drift_sd_] - 0.5 * std::pow(at.drift_sd / kDriftSdPrior, 2);
     if (range_) sum += theta[range_] - 0.5 * std::pow(at.range_s / kRangePrior_s, 2);
@@ -177,8 +178,7 @@ class Posterior {
           log_rest + log_density(answer),
           log_share + answer.log_contaminant + std::log(contaminant_share(answer.correct ? p : 1 - p)));
     for (const auto& trial : censored_[difficulty])
-      sum += trial.count *
-             log_add(log_rest + undecided(d, trial, at), log_share + trial.log_contaminant);
+      sum += trial.count * log_add(log_rest + undecided(d, trial, at), log_share + trial.log_contaminant);
     return sum;
   }
   static double undecided(const Diffusion& d, const Censored& trial, const Shared& at) {
@@ -188,7 +188,7 @@ class Posterior {
 
   DiffusionOptions options_;
   Eigen::Index contaminants_ = 0, start_ = 0, drift_sd_ = 0, range_ = 0, first_drift_ = 0;  // 0: not fitted
-  std::vector<std::vector<Answer>> answers_;  // by difficulty
+  std::vector<std::vector<Answer>> answers_;                                                // by difficulty
   std::vector<std::vector<Censored>> censored_;
 };
 
@@ -223,28 +223,31 @@ void over_parts(const Posterior& f, std::size_t difficulties, const Visit& visit
 
 Vector gradient(const Posterior& f, const Vector& at) {
   Vector result = Vector::Zero(at.size());
-  over_parts(f, static_cast<std::size_t>(at.size() - f.first_drift()), [&](const auto& part, const auto& entries) {
-    const Vector some = gradient_over(part, at, entries);
-    for (std::size_t i = 0; i < entries.size(); ++i) result[entries[i]] += some[static_cast<Eigen::Index>(i)];
-  });
+  over_parts(f, static_cast<std::size_t>(at.size() - f.first_drift()),
+             [&](const auto& part, const auto& entries) {
+               const Vector some = gradient_over(part, at, entries);
+               for (std::size_t i = 0; i < entries.size(); ++i)
+                 result[entries[i]] += some[static_cast<Eigen::Index>(i)];
+             });
   return result;
 }
 
 Matrix hessian(const Posterior& f, const Vector& at) {
   constexpr double step = 1e-3;
   Matrix result = Matrix::Zero(at.size(), at.size());
-  over_parts(f, static_cast<std::size_t>(at.size() - f.first_drift()), [&](const auto& part, const auto& entries) {
-    Vector x = at;
-    for (const auto k : entries) {
-      x[k] = at[k] + step;
-      const Vector up = gradient_over(part, x, entries);
-      x[k] = at[k] - step;
-      const Vector change = (up - gradient_over(part, x, entries)) / (2 * step);
-      for (std::size_t i = 0; i < entries.size(); ++i)
-        result(entries[i], k) += change[static_cast<Eigen::Index>(i)];
-      x[k] = at[k];
-    }
-  });
+  over_parts(f, static_cast<std::size_t>(at.size() - f.first_drift()),
+             [&](const auto& part, const auto& entries) {
+               Vector x = at;
+               for (const auto k : entries) {
+                 x[k] = at[k] + step;
+                 const Vector up = gradient_over(part, x, entries);
+                 x[k] = at[k] - step;
+                 const Vector change = (up - gradient_over(part, x, entries)) / (2 * step);
+                 for (std::size_t i = 0; i < entries.size(); ++i)
+                   result(entries[i], k) += change[static_cast<Eigen::Index>(i)];
+                 x[k] = at[k];
+               }
+             });
   return (result + result.transpose()) / 2;
 }
 
@@ -285,9 +288,10 @@ Vector mode_from(const Posterior& f, Vector x) {
   return x;
 }
 
-/// A place from which the search can begin, with s = 1.
+/// A place from which the search can begin, with s = 1. If all answers are decisions, it is one at which the
+/// fastest of them is possible.
 std::pair<Shared, std::vector<double>> start_of(const std::vector<DiffusionTrial>& trials,
-                                                std::size_t difficulties) {
+                                                std::size_t difficulties, bool contaminants) {
   std::vector<double> right, all;
   std::vector<int> answered(difficulties), correct(difficulties);
   for (const auto& trial : trials) {
@@ -298,6 +302,7 @@ std::pair<Shared, std::vector<double>> start_of(const std::vector<DiffusionTrial
     right.push_back(trial.time_s);
     ++correct[trial.difficulty];
   }
+  const double fastest = contaminants ? quantile(all, 0.05) : *std::min_element(all.begin(), all.end());
   const double early = quantile(all, 0.05), spread = quantile(all, 0.75) - quantile(all, 0.25);
   DiffusionParameters start{0.1, kDiffusionScale * std::clamp(2 * std::sqrt(spread + 0.05), 0.5, 4.0),
                             0.8 * early};
@@ -308,7 +313,7 @@ std::pair<Shared, std::vector<double>> start_of(const std::vector<DiffusionTrial
       start = *ez;
   Shared at;
   at.boundary = start.boundary / kDiffusionScale;
-  at.nondecision_s = std::max(std::min(start.nondecision_s, 0.9 * early), 1e-3);
+  at.nondecision_s = std::max(std::min(start.nondecision_s, 0.9 * fastest), 1e-3);
   at.contaminants = 0.02, at.drift_sd = 0.5, at.range_s = 0.2 * at.nondecision_s;
   std::vector<double> drift;
   for (std::size_t i = 0; i < difficulties; ++i) {
@@ -322,46 +327,108 @@ std::pair<Shared, std::vector<double>> start_of(const std::vector<DiffusionTrial
 struct WeightedDraws {
   std::vector<Vector> at;
   std::vector<double> weight;  // their sum is 1
-  double effective = 0;
+  double effective = 0;        // number of independent draws that they are worth
+  double error_of_width = 0;   // largest standard error of an interval's end, over the interval's width
 };
 
-/// Draws from a t distribution with 6 degrees of freedom, and weights the draws by the posterior density.
-WeightedDraws draw(const Posterior& f, const Vector& centre, const Matrix& covariance, core::Draws& draws) {
-  constexpr int freedom = 6;
-  const auto n = centre.size();
-  const Matrix root = covariance.llt().matrixL();
-  WeightedDraws sample;
-  std::vector<double> log_weight;
-  for (int i = 0; i < kPosteriorDraws; ++i) {
-    Vector z(n);
-    for (Eigen::Index k = 0; k < n; ++k) z[k] = draws.normal();
-    double chi2 = 0;
-    for (int k = 0; k < freedom; ++k) {
-      const double g = draws.normal();
-      chi2 += g * g;
-    }
-    const double stretch = freedom / chi2;
-    sample.at.push_back(centre + std::sqrt(stretch) * (root * z));
-    const double log_proposal =
-        -0.5 * static_cast<double>(freedom + n) * std::log1p(z.squaredNorm() * stretch / freedom);
-    const double value = f(sample.at.back());
-    log_weight.push_back(value < Posterior::kImpossible ? -value - log_proposal
-                                                        : -std::numeric_limits<double>::infinity());
-  }
-  const double highest = *std::max_element(log_weight.begin(), log_weight.end());
-  double sum = 0, squares = 0;
-  for (const double w : log_weight) {
-    sample.weight.push_back(std::exp(w - highest));
-    sum += sample.weight.back();
-  }
-  for (auto& w : sample.weight) w /= sum, squares += w * w;
-  sample.effective = 1 / squares;
-  return sample;
-}
+/// Draws from the posterior by way of proposals: t distributions with 6 degrees of freedom. Each round adds
+/// one proposal and its draws. The draws of all rounds count, with the posterior density over that of the
+/// mixture of all proposals as their weights (Owen & Zhou 2000), so that a proposal that is too narrow, or
+/// does not reach all modes, makes no draw outweigh the others once another one has been there.
+class Sampler {
+ public:
+  explicit Sampler(const Posterior& f) : f_(f) {}
 
-/// Returns draws of equal weight (systematic resampling), in the order of the sample.
-std::vector<Vector> equally_weighted(const WeightedDraws& sample, double offset) {
+  void add(const Vector& centre, const Matrix& covariance, core::Draws& draws) {
+    const auto n = centre.size();
+    const Matrix root = covariance.llt().matrixL();
+    proposals_.push_back({centre, root, -root.diagonal().array().log().sum()});
+    for (std::size_t i = 0; i < at_.size(); ++i)
+      mixture_[i] = log_add(mixture_[i], density(proposals_.back(), at_[i]));
+    for (int i = 0; i < kPosteriorDraws; ++i) {
+      Vector z(n);
+      for (Eigen::Index k = 0; k < n; ++k) z[k] = draws.normal();
+      double chi2 = 0;
+      for (int k = 0; k < kFreedom; ++k) {
+        const double g = draws.normal();
+        chi2 += g * g;
+      }
+      at_.push_back(centre + std::sqrt(kFreedom / chi2) * (root * z));
+      height_.push_back(-f_(at_.back()));
+      double mixture = density(proposals_[0], at_.back());
+      for (std::size_t k = 1; k < proposals_.size(); ++k)
+        mixture = log_add(mixture, density(proposals_[k], at_.back()));
+      mixture_.push_back(mixture);
+    }
+  }
+
+  /// The draws so far. They are worth as many independent ones as the least certain of the quantiles that are
+  /// reported tells, and at most as many as are drawn again with equal weights.
+  WeightedDraws weighted(double confidence) const {
+    WeightedDraws sample;
+    sample.at = at_;
+    double highest = -std::numeric_limits<double>::infinity(), sum = 0;
+    for (std::size_t i = 0; i < at_.size(); ++i)
+      if (height_[i] > -Posterior::kImpossible) highest = std::max(highest, height_[i] - mixture_[i]);
+    for (std::size_t i = 0; i < at_.size(); ++i) {
+      sample.weight.push_back(
+          height_[i] > -Posterior::kImpossible ? std::exp(height_[i] - mixture_[i] - highest) : 0);
+      sum += sample.weight.back();
+    }
+    if (!(sum > 0)) return sample;
+    for (auto& w : sample.weight) w /= sum;
+    sample.effective = kPosteriorDraws;
+    const double tail = (1 - confidence) / 2;
+    std::vector<std::size_t> order(at_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    for (Eigen::Index k = 0; k < at_[0].size(); ++k) {
+      std::sort(order.begin(), order.end(),
+                [&](std::size_t a, std::size_t b) { return at_[a][k] < at_[b][k]; });
+      std::vector<double> below;  // weight up to each draw
+      for (const auto i : order) below.push_back((below.empty() ? 0 : below.back()) + sample.weight[i]);
+      const auto quantile_at = [&](double p) {
+        const auto found = std::lower_bound(below.begin(), below.end(), p) - below.begin();
+        return at_[order[std::min(static_cast<std::size_t>(found), order.size() - 1)]][k];
+      };
+      const double width = quantile_at(1 - tail) - quantile_at(tail);
+      for (const double p : {tail, 0.5, 1 - tail}) {
+        // the variance of the weight below the quantile, and what it means for the quantile
+        double variance = 0;
+        for (std::size_t i = 0; i < order.size(); ++i)
+          variance += std::pow(sample.weight[order[i]] * ((below[i] <= p ? 1 : 0) - p), 2);
+        sample.effective = std::min(sample.effective, p * (1 - p) / variance);
+        const double error = std::sqrt(variance);
+        sample.error_of_width =
+            std::max(sample.error_of_width, (quantile_at(p + error) - quantile_at(p - error)) / 2 / width);
+      }
+    }
+    return sample;
+  }
+
+ private:
+  static constexpr int kFreedom = 6;
+  struct Proposal {
+    Vector centre;
+    Matrix root;
+    double log_scale;
+  };
+  static double density(const Proposal& of, const Vector& at) {
+    const Vector z = of.root.triangularView<Eigen::Lower>().solve(at - of.centre);
+    return of.log_scale -
+           0.5 * static_cast<double>(kFreedom + at.size()) * std::log1p(z.squaredNorm() / kFreedom);
+  }
+
+  const Posterior& f_;
+  std::vector<Proposal> proposals_;
+  std::vector<Vector> at_;
+  std::vector<double> height_, mixture_;  // logarithms of the densities of posterior and proposals
+};
+
+/// Returns draws of equal weight (systematic resampling), in random order: the reports of differences pair
+/// those of two conditions.
+std::vector<Vector> equally_weighted(const WeightedDraws& sample, core::Draws& draws) {
   std::vector<Vector> result;
+  const double offset = draws.uniform();
   double reached = 0;
   std::size_t i = 0;
   for (int k = 0; k < kPosteriorDraws; ++k) {
@@ -369,6 +436,7 @@ std::vector<Vector> equally_weighted(const WeightedDraws& sample, double offset)
     while (i + 1 < sample.weight.size() && reached + sample.weight[i] < wanted) reached += sample.weight[i++];
     result.push_back(sample.at[i]);
   }
+  draws.shuffle(result);
   return result;
 }
 
@@ -480,7 +548,8 @@ WeightedDraws normal_draws(const Mode& mode, core::Draws& draws) {
   return sample;
 }
 
-WeightedDraws posterior_draws(const Posterior& posterior, const Vector& centre, core::Draws& draws) {
+WeightedDraws posterior_draws(const Posterior& posterior, const Vector& centre, double confidence,
+                              core::Draws& draws) {
   bool curved = true;
   Matrix covariance = covariance_at(posterior, centre, curved);
   // a nearly flat direction must not send most of the draws to where nothing is possible
@@ -489,15 +558,19 @@ WeightedDraws posterior_draws(const Posterior& posterior, const Vector& centre, 
       covariance.row(i) *= 2 / sd;
       covariance.col(i) *= 2 / sd;
     }
-  WeightedDraws sample = draw(posterior, centre, 1.2 * covariance, draws);
-  for (int round = 1; round < kAdaptations && sample.effective < kEnoughDraws; ++round) {
+  Sampler sampler(posterior);
+  sampler.add(centre, 1.2 * covariance, draws);
+  WeightedDraws sample = sampler.weighted(confidence);
+  for (int round = 1;
+       round < kMostRounds && (sample.effective < kEnoughDraws || !(sample.error_of_width < kEnoughOfWidth));
+       ++round) {
     Vector mean = Vector::Zero(centre.size());
     for (std::size_t i = 0; i < sample.at.size(); ++i) mean += sample.weight[i] * sample.at[i];
     Matrix spread = 0.02 * covariance;
     for (std::size_t i = 0; i < sample.at.size(); ++i)
       spread += sample.weight[i] * (sample.at[i] - mean) * (sample.at[i] - mean).transpose();
-    auto again = draw(posterior, mean, 1.2 * spread, draws);
-    if (again.effective > sample.effective) sample = std::move(again);
+    sampler.add(mean, 1.2 * spread, draws);
+    sample = sampler.weighted(confidence);
     covariance = spread;
   }
   return sample;
@@ -518,7 +591,7 @@ DiffusionFit fit_diffusion(const std::vector<DiffusionTrial>& trials, std::size_
   }
   const bool likelihood = options.method == DiffusionOptions::Method::likelihood;
   const Posterior posterior(trials, difficulties, options);
-  const auto [start, drifts] = start_of(trials, difficulties);
+  const auto [start, drifts] = start_of(trials, difficulties, options.contaminants);
   Mode mode;
   if (likelihood)
     mode = maximum(posterior, start, drifts);
@@ -526,7 +599,7 @@ DiffusionFit fit_diffusion(const std::vector<DiffusionTrial>& trials, std::size_
     mode.at = mode_from(posterior, posterior.unbounded(start, drifts));
   core::Draws draws({seed, core::Stream::bootstrap, 2000, stream, 0});
   const WeightedDraws sample =
-      likelihood ? normal_draws(mode, draws) : posterior_draws(posterior, mode.at, draws);
+      likelihood ? normal_draws(mode, draws) : posterior_draws(posterior, mode.at, options.confidence, draws);
   const auto log_boundary =
       estimate(sample, options.confidence, [](const Vector& x) { return x[Posterior::kBoundary]; });
   if (!mode.curved || sample.effective < 30 ||
@@ -560,10 +633,15 @@ DiffusionFit fit_diffusion(const std::vector<DiffusionTrial>& trials, std::size_
   const auto first = posterior.first_drift();
   for (Eigen::Index k = first; k < posterior.size(); ++k)
     found.drift.push_back(add([k](const Vector& x) { return kDiffusionScale * x[k]; }));
-  for (const auto& x : equally_weighted(sample, draws.uniform())) {
+  for (const auto& x : equally_weighted(sample, draws)) {
     const auto at = posterior.shared(x);
-    DiffusionDraw one{kDiffusionScale * at.boundary, at.nondecision_s, at.contaminants, at.start,
-                      kDiffusionScale * at.drift_sd, at.range_s, {}};
+    DiffusionDraw one{kDiffusionScale * at.boundary,
+                      at.nondecision_s,
+                      at.contaminants,
+                      at.start,
+                      kDiffusionScale * at.drift_sd,
+                      at.range_s,
+                      {}};
     for (Eigen::Index k = first; k < posterior.size(); ++k) one.drift.push_back(kDiffusionScale * x[k]);
     found.draws.push_back(std::move(one));
   }
@@ -770,8 +848,13 @@ PredictedAnswers predicted(const DiffusionDraw& at, const Stratum& stratum, bool
 
 DiffusionCheck check_diffusion(const std::vector<DiffusionTrial>& trials, const DiffusionEstimates& fitted,
                                std::uint64_t seed, int stream) {
-  DiffusionDraw at{fitted.boundary.value, fitted.nondecision_s.value, fitted.contaminants.value, fitted.start.value,
-                   fitted.drift_sd.value, fitted.nondecision_range_s.value, {}};
+  DiffusionDraw at{fitted.boundary.value,
+                   fitted.nondecision_s.value,
+                   fitted.contaminants.value,
+                   fitted.start.value,
+                   fitted.drift_sd.value,
+                   fitted.nondecision_range_s.value,
+                   {}};
   for (const auto& drift : fitted.drift) at.drift.push_back(drift.value);
   const auto strata = strata_of(trials);
   std::vector<std::vector<Bin>> bins;

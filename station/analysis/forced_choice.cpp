@@ -101,9 +101,7 @@ std::vector<Discrimination> discriminate(const std::vector<TrialRecord>& trials,
     std::map<double, std::pair<int, int>> levels;  // for each level: right answers, all trials
     std::pair<int, int> all;
     for (const auto& trial : trials) {
-      if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered || !trial.correct ||
-          trial.instruction != condition)
-        continue;
+      if (!counted(trial) || !trial.correct || trial.instruction != condition) continue;
       for (auto* counts : {&levels[trial.level.value_or(0)], &all})
         counts->first += *trial.correct, ++counts->second;
     }

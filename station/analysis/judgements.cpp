@@ -51,9 +51,7 @@ std::vector<Judgements> judgements(const std::vector<TrialRecord>& trials,
     std::map<double, JudgedLevel> levels;
     int zeros = 0;
     for (const auto& trial : trials) {
-      if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered || !trial.setting ||
-          trial.instruction != condition)
-        continue;
+      if (!counted(trial) || !trial.setting || trial.instruction != condition) continue;
       if (judged != Judged::ratings && *trial.setting <= 0)
         ++zeros;
       else

@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <limits>
 
 namespace turnpoint::analysis {
 
@@ -134,8 +136,9 @@ Likelihood::Maximum Likelihood::climb(Theta start) const {
 Likelihood::Maximum Likelihood::steepest(const Maximum& found) const {
   // If the answers jump between two levels, all steeper functions fit equally well, and the climb ends at an
   // arbitrary slope. Return the upper bound of the slope in that case: callers take it as the sign of a step.
+  // A threshold that is held stays where it is.
   std::vector<double> thresholds{found.theta[0]};
-  for (std::size_t i = 1; i < counts_.u.size(); ++i)
+  for (std::size_t i = 1; i < counts_.u.size() && bounds_.low[0] < bounds_.high[0]; ++i)
     if (counts_.u[i - 1] != kNoise && counts_.u[i - 1] <= found.theta[0] && found.theta[0] <= counts_.u[i])
       thresholds.push_back((counts_.u[i - 1] + counts_.u[i]) / 2);
   for (const double threshold : thresholds) {
@@ -149,20 +152,42 @@ Likelihood::Maximum Likelihood::steepest(const Maximum& found) const {
 }
 
 Likelihood::Maximum Likelihood::search() const {
+  const auto values = [this](int parameter, std::initializer_list<double> shares) {
+    const double low = bounds_.low[parameter], high = bounds_.high[parameter];
+    std::vector<double> result;
+    for (const double share : shares)
+      if (result.empty() || low < high) result.push_back(low + share * (high - low));
+    return result;
+  };
+  // A steep function has a maximum between each pair of levels, and a shallow one another.
+  auto thresholds = values(0, {0.3, 0.42, 0.5, 0.58, 0.7});
+  const bool held = thresholds.size() == 1;
+  constexpr std::size_t most = 12;
+  for (std::size_t i = 1; i < counts_.u.size() && counts_.u.size() <= most && !held; ++i)
+    if (counts_.u[i - 1] != kNoise) thresholds.push_back((counts_.u[i - 1] + counts_.u[i]) / 2);
+  const auto rates = values(1, {0.2, 0.35, 0.5, 0.65, 0.8, 0.95}), lapses = values(2, {0.1, 0.9});
+  const auto guesses =
+      guess_ == Guess::tied_to_lapse ? std::vector<double>{0} : values(3, {0.05, 0.2, 0.4, 0.6, 0.8});
+  // the best start with each threshold; if it is held, with each rate
   std::vector<Maximum> starts;
-  for (const double t : {0.3, 0.42, 0.5, 0.58, 0.7})
-    for (const double b : {0.35, 0.5, 0.65, 0.8})
-      for (const double side : {0.1, 0.9}) {
-        Theta theta;
-        const Theta share{t, b, side, side};
-        for (int i = 0; i < 4; ++i) theta[i] = bounds_.low[i] + share[i] * (bounds_.high[i] - bounds_.low[i]);
-        theta = project(theta);
-        starts.push_back({theta, negative_log(theta)});
-      }
+  for (const double threshold : thresholds)
+    for (const double rate : rates) {
+      Maximum best{{}, std::numeric_limits<double>::infinity()};
+      for (const double lapse : lapses)
+        for (const double guess : guesses) {
+          const Theta theta = project({threshold, rate, lapse, guess});
+          if (const double cost = negative_log(theta); cost < best.negative_log) best = {theta, cost};
+        }
+      if (held || starts.empty() || starts.back().theta[0] != best.theta[0])
+        starts.push_back(best);
+      else if (best.negative_log < starts.back().negative_log)
+        starts.back() = best;
+    }
   std::stable_sort(starts.begin(), starts.end(),
                    [](const Maximum& a, const Maximum& b) { return a.negative_log < b.negative_log; });
+  constexpr std::size_t climbs = 6;
   Maximum best = climb(starts[0].theta);
-  for (int i = 1; i < 4; ++i) {
+  for (std::size_t i = 1; i < std::min(climbs, starts.size()); ++i) {
     const Maximum other = climb(starts[i].theta);
     if (other.negative_log < best.negative_log) best = other;
   }

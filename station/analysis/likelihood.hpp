@@ -44,7 +44,8 @@ class Likelihood {
   /// Climbs from one start by Fisher scoring with Levenberg damping. A parameter that reaches a bound stays
   /// there as long as the gradient points outside.
   Maximum climb(Theta start) const;
-  /// Searches from a grid of starting points and climbs from the four best.
+  /// Searches a grid of starting points and climbs from the best of them, each with another threshold (if the
+  /// threshold is held, with another rate).
   Maximum search() const;
 
  private:

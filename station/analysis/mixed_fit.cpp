@@ -42,7 +42,8 @@ Scaled scaled(const std::vector<PersonCounts>& data, const MixedOptions& options
     for (const auto& point : person.counts) {
       if (point.level == kNoise || point.trials == 0) continue;
       axis.x.push_back(axis_position(options.function, options.scale, point.level));
-      axis.trials.push_back(point.trials), axis.positive.push_back(point.positive);
+      axis.trials.push_back(person.weight * point.trials);
+      axis.positive.push_back(person.weight * point.sum());
       trials += point.trials;
       n += point.trials, sum += point.trials * axis.x.back();
       squares += point.trials * axis.x.back() * axis.x.back();

@@ -8,11 +8,12 @@
 
 namespace turnpoint::analysis {
 
-/// The answers of one participant. `guess` is the lower asymptote, which the fit takes as known.
+/// The answers of one participant. `guess` is the lower asymptote, which the fit takes as known; each answer
+/// counts `weight` times (PsychometricFit::weight).
 struct PersonCounts {
   std::string person;
   std::vector<LevelCount> counts;
-  double guess = 0;
+  double guess = 0, weight = 1;
 };
 
 struct MixedOptions {

@@ -12,9 +12,9 @@ namespace turnpoint::analysis {
 
 namespace {
 
-void check(int successes, int trials, double confidence) {
+void check(double successes, int trials, double confidence) {
   if (trials < 1 || successes < 0 || successes > trials)
-    throw std::invalid_argument("proportion " + std::to_string(successes) + " of " + std::to_string(trials) +
+    throw std::invalid_argument("proportion " + core::number(successes) + " of " + std::to_string(trials) +
                                 ": there must be at least one trial, and no more successes than trials");
   if (!(confidence > 0 && confidence < 1))
     throw std::invalid_argument("confidence " + core::number(confidence) +
@@ -35,7 +35,7 @@ double normal_quantile(double p) {
   return -std::numbers::sqrt2 * boost::math::erfc_inv(2 * p);
 }
 
-Interval wilson(int successes, int trials, double confidence) {
+Interval wilson(double successes, int trials, double confidence) {
   check(successes, trials, confidence);
   const double n = trials, p = successes / n;
   const double z = normal_quantile(0.5 + confidence / 2), z2 = z * z;
@@ -45,7 +45,7 @@ Interval wilson(int successes, int trials, double confidence) {
   return {successes == 0 ? 0 : centre - half, successes == trials ? 1 : centre + half, confidence};
 }
 
-Interval clopper_pearson(int successes, int trials, double confidence) {
+Interval clopper_pearson(double successes, int trials, double confidence) {
   check(successes, trials, confidence);
   const double tail = (1 - confidence) / 2, k = successes, n = trials;
   return {successes == 0 ? 0 : boost::math::ibeta_inv(k, n - k + 1, tail),

@@ -11,10 +11,10 @@ double normal_quantile(double p);
 
 /// Score interval of a binomial proportion (Wilson 1927). Requires 0 <= successes <= trials, trials > 0, and
 /// a confidence in (0, 1); otherwise throws std::invalid_argument.
-Interval wilson(int successes, int trials, double confidence = 0.95);
+Interval wilson(double successes, int trials, double confidence = 0.95);
 
 /// The interval of Clopper & Pearson (1934). Its coverage is never below `confidence`. Arguments as for
 /// wilson().
-Interval clopper_pearson(int successes, int trials, double confidence = 0.95);
+Interval clopper_pearson(double successes, int trials, double confidence = 0.95);
 
 }  // namespace turnpoint::analysis

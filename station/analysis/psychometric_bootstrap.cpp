@@ -38,6 +38,7 @@ struct Replicator {
     AxisCounts drawn = counts;
     for (std::size_t i = 0; i < drawn.u.size(); ++i) {
       drawn.positive[i] = 0;
+      drawn.trials[i] = std::max(1.0, std::round(counts.trials[i]));  // whole, unless answers are weighted
       for (int n = 0; n < static_cast<int>(drawn.trials[i]); ++n)
         drawn.positive[i] += draws.uniform() < model[i] ? 1 : 0;
     }
@@ -58,10 +59,24 @@ struct Replicator {
 
   /// Returns the maximum of the likelihood with `quantity` fixed at a value. The climb begins at `start`.
   Likelihood::Maximum held(const AxisCounts& of, const Quantity& quantity, double value, Theta start) const {
-    ThetaBounds narrowed = bounds;
-    narrowed.low[quantity.parameter] = narrowed.high[quantity.parameter] = value;
+    const ThetaBounds narrowed = with(quantity, value);
     start[quantity.parameter] = value;
     return likelihood(of, narrowed, quantity.anchor).climb(start);
+  }
+
+  /// The same for the counts of the session, searched for from other starts as well: with the threshold held,
+  /// a steep and a shallow function can each be a maximum.
+  Likelihood::Maximum highest(const Quantity& quantity, double value, const Theta& start) const {
+    const ThetaBounds narrowed = with(quantity, value);
+    const auto near = held(counts, quantity, value, start);
+    const auto other = likelihood(counts, narrowed, quantity.anchor).search();
+    return other.negative_log < near.negative_log ? other : near;
+  }
+
+  ThetaBounds with(const Quantity& quantity, double value) const {
+    ThetaBounds narrowed = bounds;
+    narrowed.low[quantity.parameter] = narrowed.high[quantity.parameter] = value;
+    return narrowed;
   }
 };
 
@@ -78,7 +93,7 @@ double saturated(const AxisCounts& counts) {
 Replicator replicator(const PsychometricFit& fit) {
   Replicator result;
   result.options = fit.options;
-  result.counts = axis_counts(fit.data, fit.options.function, fit.options.scale);
+  result.counts = axis_counts(fit.data, fit.options.function, fit.options.scale, fit.weight);
   result.bounds = theta_bounds(result.counts, fit.options);
   const auto& p = *fit.parameters;
   result.best = {axis_position(fit.options.function, fit.options.scale, p.threshold),
@@ -91,24 +106,28 @@ Replicator replicator(const PsychometricFit& fit) {
 }
 
 /// Finds one end of a profile-likelihood interval: the value of the quantity, between the estimate and
-/// `bound`, at which the likelihood ratio reaches `critical`. Returns `bound` if the ratio stays below
-/// `critical`.
+/// `bound`, beyond which the likelihood ratio stays above `critical`. The ratio may rise and fall on the way:
+/// of 16 values between estimate and bound, none that the data allow lies outside. Returns `bound` if the ratio there is at most `critical`.
 double profile_end(const Replicator& base, const Quantity& quantity, Theta start, double bound,
                    double best_cost, double critical) {
-  double inside = start[quantity.parameter], outside = bound;
-  auto at_bound = base.held(base.counts, quantity, bound, start);
-  if (2 * (at_bound.negative_log - best_cost) <= critical) return bound;
+  const double estimate = start[quantity.parameter];
+  const auto allowed = [&](double value) {
+    const auto found = base.highest(quantity, value, start);
+    const bool inside = 2 * (found.negative_log - best_cost) <= critical;
+    if (inside) start = found.theta;
+    return inside;
+  };
+  if (allowed(bound)) return bound;
+  constexpr int cells = 16;
+  double inside = estimate, outside = bound;
+  for (int i = 1; i < cells && inside == estimate; ++i)
+    if (const double value = bound + i * (estimate - bound) / cells; allowed(value))
+      inside = value;
+    else
+      outside = value;
   for (int i = 0; i < 40 && std::abs(outside - inside) > 1e-5 * (1 + std::abs(inside)); ++i) {
-    // The end of the interval is usually near the estimate and the bound far away. Therefore each of the
-    // first three steps cuts off three quarters of the distance.
-    const double middle = i < 3 ? inside + (outside - inside) / 4 : (inside + outside) / 2;
-    const auto found = base.held(base.counts, quantity, middle, start);
-    if (2 * (found.negative_log - best_cost) <= critical) {
-      inside = middle;
-      start = found.theta;
-    } else {
-      outside = middle;
-    }
+    const double middle = (inside + outside) / 2;
+    (allowed(middle) ? inside : outside) = middle;
   }
   // At the bound itself the search may find a lower maximum than close to it.
   return outside == bound ? bound : (inside + outside) / 2;

@@ -17,9 +17,9 @@ namespace {
 void check(const std::vector<LevelCount>& data, const FitOptions& options) {
   for (const auto& point : data)
     if (!(std::isfinite(point.level) || point.level == kNoise) || point.trials < 0 || point.positive < 0 ||
-        point.positive > point.trials)
+        point.admitted < 0 || point.sum() > point.trials)
       throw std::invalid_argument(
-          "level " + core::number(point.level) + ": " + std::to_string(point.positive) + " of " +
+          "level " + core::number(point.level) + ": " + core::number(point.sum()) + " of " +
           std::to_string(point.trials) +
           " trials; the level must be finite, and there cannot be more positive answers than trials");
   const auto inside = [](double low, double high, double most) {
@@ -31,6 +31,9 @@ void check(const std::vector<LevelCount>& data, const FitOptions& options) {
     throw std::invalid_argument(
         "bounds of lapse and guess: they must meet 0 <= low <= high, with a lapse of at most 0.5, a guess of "
         "at most 0.9, and a sum below 1");
+  if (options.guess != Guess::fixed &&
+      std::any_of(data.begin(), data.end(), [](const auto& point) { return point.admitted > 0; }))
+    throw std::invalid_argument("unsure answers need a lower asymptote that is known");
   if (options.guess == Guess::fixed && !(options.guess_value >= 0 && options.guess_value < 1))
     throw std::invalid_argument("guess " + core::number(options.guess_value) +
                                 ": it must be at least 0 and below 1");
@@ -45,6 +48,7 @@ std::vector<LevelCount> merged(const std::vector<LevelCount>& data) {
     entry.level = point.level;
     entry.trials += point.trials;
     entry.positive += point.positive;
+    entry.admitted += point.admitted;
   }
   std::vector<LevelCount> result;
   for (const auto& [level, point] : by_level) result.push_back(point);
@@ -75,10 +79,11 @@ double trend(AxisCounts counts) {
 
 /// Returns the reason why the likelihood has no maximum within the bounds; empty if it has one.
 std::optional<Statement> refusal(const std::vector<LevelCount>& data, const FitOptions& options) {
-  int trials = 0, positive = 0;
+  int trials = 0;
+  double positive = 0;
   for (const auto& point : data) {
     trials += point.trials;
-    positive += point.positive;
+    positive += point.sum();
   }
   const auto levels = static_cast<int>(data.size());
   if (levels > 0 && levels < options.minimum_levels)
@@ -93,15 +98,13 @@ std::optional<Statement> refusal(const std::vector<LevelCount>& data, const FitO
   return std::nullopt;
 }
 
-double deviance(const PsychometricFit& fit, const Likelihood& likelihood, const Theta& theta,
-                const AxisCounts& counts) {
+double deviance(const Likelihood& likelihood, const Theta& theta, const AxisCounts& counts) {
   double saturated = 0;
-  for (const auto& point : fit.data) {
-    const double k = point.positive, n = point.trials;
+  for (std::size_t i = 0; i < counts.u.size(); ++i) {
+    const double k = counts.positive[i], n = counts.trials[i];
     if (k > 0) saturated -= k * std::log(k / n);
     if (k < n) saturated -= (n - k) * std::log((n - k) / n);
   }
-  static_cast<void>(counts);
   return std::max(0.0, 2 * (likelihood.negative_log(theta) - saturated));
 }
 
@@ -158,12 +161,29 @@ void say_what_touches(PsychometricIntervals& intervals) {
   say(intervals.interval_75, "interval-75 % point", "statement.point_of_three_quarters");
 }
 
-AxisCounts axis_counts(const std::vector<LevelCount>& data, Function function, Scale scale) {
+double weight_of(const std::vector<LevelCount>& data, const FitOptions& options, const Psychometric& fitted) {
+  // The rest is smallest for people who admit every guess at levels at which they only guess. An answer that
+  // counts more than this often would claim to know the function from a few of them.
+  constexpr double least_rest = 0.05;
+  double admitted = 0, binomial = 0;
+  for (const auto& point : data) {
+    const double p = point.level == kNoise
+                         ? fitted.guess
+                         : probability(options.function, options.scale, fitted, point.level);
+    admitted += point.admitted;
+    binomial += point.trials * p * (1 - p);
+  }
+  // The square of 1, 0 or the guess rate has the mean p - P(unsure) guess (1 - guess).
+  const double spared = admitted * (1 - options.guess_value);
+  return spared > 0 ? 1 / std::max(1 - spared / binomial, least_rest) : 1;
+}
+
+AxisCounts axis_counts(const std::vector<LevelCount>& data, Function function, Scale scale, double weight) {
   AxisCounts counts;
   for (const auto& point : data) {
     counts.u.push_back(point.level == kNoise ? kNoise : axis_position(function, scale, point.level));
-    counts.trials.push_back(point.trials);
-    counts.positive.push_back(point.positive);
+    counts.trials.push_back(weight * point.trials);
+    counts.positive.push_back(weight * point.sum());
   }
   return counts;
 }
@@ -205,8 +225,9 @@ PsychometricFit fit_psychometric(const std::vector<LevelCount>& data, const FitO
     return fit;
   }
   fit.parameters = from_theta(best.theta, options);
-  fit.negative_log_likelihood = best.negative_log;
-  fit.deviance = deviance(fit, likelihood, best.theta, counts);
+  fit.weight = weight_of(fit.data, options, *fit.parameters);
+  fit.negative_log_likelihood = fit.weight * best.negative_log;
+  fit.deviance = fit.weight * deviance(likelihood, best.theta, counts);
   for (int i = 0; i < 4; ++i)
     if (bounds.low[i] < bounds.high[i] && !(i == 3 && options.guess == Guess::tied_to_lapse))
       ++fit.free_parameters;
@@ -218,25 +239,31 @@ PsychometricFit fit_psychometric(const std::vector<LevelCount>& data, const FitO
 
 namespace {
 
+/// `positive` says whether an answer was positive; empty if it does not count. Unsure answers count as
+/// `admitted`.
 template <class Positive>
-std::vector<LevelCount> count(const std::vector<TrialRecord>& trials, Positive positive) {
+std::vector<LevelCount> count(const std::vector<TrialRecord>& trials, double admitted, Positive positive) {
   std::vector<LevelCount> result;
   for (const auto& trial : trials) {
-    if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered || !trial.level) continue;
+    if (!counted(trial) || !trial.level) continue;
     const std::optional<bool> value = positive(trial);
-    if (value) result.push_back({*trial.level, 1, *value ? 1 : 0});
+    if (value)
+      result.push_back({*trial.level, 1, *value ? 1 : 0});
+    else if (trial.unsure && admitted > 0)
+      result.push_back({*trial.level, 1, 0, admitted});
   }
   return merged(result);
 }
 
 }  // namespace
 
-std::vector<LevelCount> count_correct(const std::vector<TrialRecord>& trials) {
-  return count(trials, [](const TrialRecord& trial) { return trial.correct; });
+std::vector<LevelCount> count_correct(const std::vector<TrialRecord>& trials, int alternatives) {
+  return count(trials, 1.0 / std::max(alternatives, 2),
+               [](const TrialRecord& trial) { return trial.correct; });
 }
 
 std::vector<LevelCount> count_choice(const std::vector<TrialRecord>& trials, int positive_choice) {
-  return count(trials, [positive_choice](const TrialRecord& trial) -> std::optional<bool> {
+  return count(trials, 0, [positive_choice](const TrialRecord& trial) -> std::optional<bool> {
     if (!trial.response) return std::nullopt;
     return *trial.response == positive_choice;
   });
@@ -244,11 +271,10 @@ std::vector<LevelCount> count_choice(const std::vector<TrialRecord>& trials, int
 
 bool falls(const std::vector<LevelCount>& counts) {
   double n = 0, k = 0, level = 0;
-  for (const auto& point : counts)
-    n += point.trials, k += point.positive, level += point.trials * point.level;
+  for (const auto& point : counts) n += point.trials, k += point.sum(), level += point.trials * point.level;
   double covariance = 0;
   for (const auto& point : counts)
-    if (n > 0) covariance += (point.positive - point.trials * k / n) * (point.level - level / n);
+    if (n > 0) covariance += (point.sum() - point.trials * k / n) * (point.level - level / n);
   return covariance < 0;
 }
 

@@ -18,6 +18,10 @@ struct LevelCount {
   double level = 0;  ///< kNoise for trials without a signal; their probability is the lower asymptote
   int trials = 0;
   int positive = 0;
+  /// what guesses that were not made would have added to `positive` on average (count_correct()); only with
+  /// Guess::fixed, whose value is then the share of such guesses that would have been right
+  double admitted = 0;
+  double sum() const { return positive + admitted; }
 };
 
 /// How the lower asymptote is determined: fixed (1 / alternatives), fitted within bounds, or tied to the
@@ -46,6 +50,10 @@ struct PsychometricFit {
   std::vector<LevelCount> data;  ///< one entry per level, ascending, without levels that have no trials
   std::optional<Psychometric> parameters;
   AtBound at_bound;
+  /// How many forced answers an answer counts as: above 1 if the participant admitted guesses, because a mean
+  /// scatters less than a guess. It is the binomial variance of the answers, divided by what is left of it;
+  /// all log-likelihoods are multiplied by it (quasi-likelihood: Wedderburn 1974).
+  double weight = 1;
   double negative_log_likelihood = 0;  ///< for the individual answers, in nats; without binomial coefficients
   /// deviance from the saturated model, which has one proportion per level
   double deviance = 0;
@@ -108,7 +116,8 @@ struct BootstrapOptions {
 
 /// Computes intervals by a parametric bootstrap of a fit (Wichmann & Hill 2001b).
 ///
-/// Threshold, slope and 75 % point get profile-likelihood intervals. Their critical value comes from the
+/// Threshold, slope and 75 % point get profile-likelihood intervals. If values apart from each other are
+/// likely enough, the interval reaches from the lowest to the highest. The critical value comes from the
 /// likelihood ratios of the replicates instead of chi-square. Percentile intervals of the slope would be
 /// worse: with ten trials per level they would miss the true value in 1 case of 7 instead of 1 of 20, because
 /// the estimate is biased. BCa intervals of a Weibull's threshold are no better. Lapse and guess get
@@ -125,9 +134,10 @@ PsychometricIntervals bootstrap(const PsychometricFit& fit, const BootstrapOptio
 bool falls(const std::vector<LevelCount>& counts);
 
 /// Counts answers by level. count_correct() uses the answered trials that have a level and a score
-/// (`correct`). count_choice() uses those that have a level and a response, and counts `positive_choice`.
-/// Both leave out practice, catch and warm-up trials.
-std::vector<LevelCount> count_correct(const std::vector<TrialRecord>& trials);
+/// (`correct`), and those in which the participant was unsure, as 1 / alternatives of a right answer: the
+/// mean of the guess that was not made (Kaernbach 2001). count_choice() uses those that have a level and a
+/// response, and counts `positive_choice`. Both leave out practice, catch and warm-up trials.
+std::vector<LevelCount> count_correct(const std::vector<TrialRecord>& trials, int alternatives = 2);
 std::vector<LevelCount> count_choice(const std::vector<TrialRecord>& trials, int positive_choice);
 
 }  // namespace turnpoint::analysis

@@ -55,17 +55,22 @@ class Reading {
       : result_(into),
         options_(into.fit.options),
         prior_(prior),
-        counts_(axis_counts(into.fit.data, options_.function, options_.scale)),
+        counts_(axis_counts(into.fit.data, options_.function, options_.scale, into.fit.weight)),
         box_(box_of(options_, prior)),
         grid_(options_.function, options_.guess, counts_, box_, prior.falling_share) {
     for (const auto& point : into.fit.data) trials_ += point.trials;
   }
 
-  void read_parameters() {
+  Psychometric medians() const {
     const auto median = [&](Parameter parameter) { return grid_.marginal(parameter).quantile(0.5); };
     Psychometric parameters{to_level(median(at_threshold)), to_slope(median(at_rate)), median(at_guess),
                             median(at_lapse)};
     if (options_.guess == Guess::tied_to_lapse) parameters.guess = parameters.lapse;
+    return parameters;
+  }
+
+  void read_parameters() {
+    const auto parameters = medians();
     if (grid_.undetermined(at_threshold)) {
       say_undetermined("threshold", "report.threshold", prior_.threshold_low, prior_.threshold_high);
       return;
@@ -204,6 +209,9 @@ PosteriorFit fit_posterior(const std::vector<LevelCount>& data, const FitOptions
     result.fit.statements.push_back(*reason);
     return result;
   }
+  if (std::any_of(result.fit.data.begin(), result.fit.data.end(),
+                  [](const auto& point) { return point.admitted > 0; }))
+    result.fit.weight = weight_of(result.fit.data, options, Reading(result, prior).medians());
   Reading reading(result, prior);
   result.intervals.method = IntervalMethod::posterior;
   result.intervals.prior = prior;

@@ -218,8 +218,7 @@ std::vector<SpeedAccuracyCurve> response_signal(const std::vector<TrialRecord>& 
                                                 int positive) {
   std::map<std::string, std::map<double, std::vector<TrialRecord>>> conditions;
   for (const auto& trial : trials)
-    if (trial.type == TrialType::experimental && trial.outcome == Outcome::answered && trial.signal_s &&
-        trial.right_choice && trial.response && trial.response_time_s)
+    if (counted(trial) && trial.signal_s && trial.right_choice && trial.response && trial.response_time_s)
       conditions[trial.instruction][*trial.signal_s].push_back(trial);
   std::vector<SpeedAccuracyCurve> curves;
   for (const auto& condition : conditions_of(trials, order))

@@ -76,8 +76,7 @@ std::vector<Settings> settings(const std::vector<TrialRecord>& trials,
   std::map<std::pair<std::string, std::string>, Sides> sides;
   std::vector<Settings> all;
   for (const auto& trial : trials) {
-    if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered || !trial.setting)
-      continue;
+    if (!counted(trial) || !trial.setting) continue;
     auto found = std::find_if(all.begin(), all.end(), [&](const Settings& s) {
       return s.procedure == trial.procedure && s.condition == trial.instruction;
     });

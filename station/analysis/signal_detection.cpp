@@ -13,21 +13,6 @@
 
 namespace turnpoint::analysis {
 
-namespace {
-
-std::optional<double> scaled_z(double p, double factor) {
-  if (!(p >= 0 && p <= 1))
-    throw std::invalid_argument("proportion correct " + std::to_string(p) + ": from 0 to 1");
-  if (p == 0 || p == 1) return std::nullopt;
-  return factor * normal_quantile(p);
-}
-
-}  // namespace
-
-std::optional<double> d_prime_forced_choice(double proportion_correct) {
-  return scaled_z(proportion_correct, std::numbers::sqrt2);
-}
-
 std::optional<double> log_linear_proportion(int successes, int trials) {
   if (successes < 0 || successes > trials)
     throw std::invalid_argument(std::to_string(successes) + " of " + std::to_string(trials) +
@@ -92,8 +77,7 @@ std::vector<Detection> detect(const std::vector<TrialRecord>& trials, const std:
                               Detecting detecting, int positive, std::size_t most_levels) {
   std::map<std::string, Collected> conditions;
   for (const auto& trial : trials)
-    if (trial.type == TrialType::experimental && trial.outcome == Outcome::answered && trial.response &&
-        trial.right_choice)
+    if (counted(trial) && trial.response && trial.right_choice)
       collect(trial, detecting, positive, conditions[trial.instruction]);
   const double scale = detecting == Detecting::forced_choice ? 1 / std::numbers::sqrt2 : 1;
   std::vector<Detection> result;
@@ -180,9 +164,7 @@ std::vector<RatedDetection> curves_of(const std::vector<TrialRecord>& trials,
     RatedDetection all{condition, std::nullopt, none, none, {}, {}, {}};
     std::map<double, std::vector<int>> levels;
     for (const auto& trial : trials) {
-      if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered || !trial.response ||
-          trial.instruction != condition)
-        continue;
+      if (!counted(trial) || !trial.response || trial.instruction != condition) continue;
       const std::optional<Rated> found = rated(trial);
       if (!found) continue;
       const auto at = static_cast<std::size_t>(found->rating);
@@ -203,8 +185,7 @@ std::vector<RatedDetection> rocs(const std::vector<TrialRecord>& trials,
                                  std::size_t most_levels) {
   int degrees = 0;
   for (const auto& trial : trials)
-    if (trial.type == TrialType::experimental && trial.outcome == Outcome::answered && trial.right_choice)
-      degrees = std::max(degrees, trial.confidence.value_or(0));
+    if (counted(trial) && trial.right_choice) degrees = std::max(degrees, trial.confidence.value_or(0));
   return curves_of(trials, order, 2 * degrees, most_levels, [&](const TrialRecord& trial) {
     if (!trial.right_choice || !trial.confidence) return std::optional<Rated>();
     const int rating =

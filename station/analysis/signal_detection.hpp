@@ -9,11 +9,6 @@
 
 namespace turnpoint::analysis {
 
-/// Sensitivity in two-alternative forced choice between intervals or places: sqrt(2) z(Pc) (Green & Swets
-/// 1966). Empty for a proportion of 0 or 1, where the sensitivity would be infinite; correct the proportion
-/// with log_linear_proportion() first.
-std::optional<double> d_prime_forced_choice(double proportion_correct);
-
 /// Counts the answers of a yes/no task, or of a two-answer task in which one answer counts as "yes".
 struct YesNoCounts {
   int hits = 0, misses = 0, false_alarms = 0, correct_rejections = 0;

@@ -58,4 +58,12 @@ std::optional<Estimate> student_slope(const std::vector<double>& x, const std::v
   return student(slope, std::sqrt(std::max(yy - slope * xy, 0.0) / (n - 2) / xx), n - 2);
 }
 
+std::optional<Estimate> student_ratio(const std::vector<double>& y, const std::vector<double>& x) {
+  if (x.size() < 3 || average(x) <= 0) return std::nullopt;
+  const double n = static_cast<double>(x.size()), ratio = average(y) / average(x);
+  double squares = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) squares += (y[i] - ratio * x[i]) * (y[i] - ratio * x[i]);
+  return student(ratio, std::sqrt(squares / (n - 1) / n) / average(x), n - 1);
+}
+
 }  // namespace turnpoint::analysis

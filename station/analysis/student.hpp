@@ -14,4 +14,8 @@ std::optional<Estimate> student_difference(const std::vector<double>& a, const s
 /// The least-squares slope of y over x. Empty if all x are equal.
 std::optional<Estimate> student_slope(const std::vector<double>& x, const std::vector<double>& y);
 
+/// The ratio of the sums of y and x, such as points in a time, from pairs of them (linearised, with n - 1
+/// degrees of freedom). Empty with fewer than 3 pairs, or if the x do not add up to more than 0.
+std::optional<Estimate> student_ratio(const std::vector<double>& y, const std::vector<double>& x);
+
 }  // namespace turnpoint::analysis

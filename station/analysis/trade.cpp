@@ -5,11 +5,13 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <tuple>
 
 #include "station/analysis/course.hpp"
 #include "station/analysis/diffusion.hpp"
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/quantile.hpp"
+#include "station/analysis/student.hpp"
 #include "station/core/draws.hpp"
 #include "station/core/number.hpp"
 
@@ -223,6 +225,19 @@ Group collect(const std::vector<TrialRecord>& trials, const TradeOptions& option
   return group;
 }
 
+/// Computes what the trials of a condition were worth to the participant.
+void add_points(const std::vector<TrialRecord>& trials, InstructionResult& result) {
+  std::vector<double> points, minutes;
+  for (const auto& trial : trials) {
+    if (trial.type != TrialType::experimental || trial.instruction != result.instruction || !trial.points)
+      continue;
+    points.push_back(*trial.points);
+    minutes.push_back(trial.duration_s / 60);
+  }
+  result.points = student_mean(points);
+  result.points_per_minute = student_ratio(points, minutes);
+}
+
 /// The boundary in the second half of the blocks minus that in the first half.
 std::optional<Estimate> late_boundary(const Group& group, int stream, const TradeOptions& options) {
   std::vector<DiffusionTrial> halves[2];
@@ -254,6 +269,7 @@ void fill_cells(Group& group, InstructionResult& result, int stream, const Trade
     result.boundary = group.diffusion->boundary;
     result.nondecision_s = group.diffusion->nondecision_s;
     result.contaminants = group.diffusion->contaminants;
+    result.effective_draws = group.diffusion->effective_draws;
     std::vector<double> drifts;
     for (const auto& draw : group.diffusion->draws) drifts.push_back(mean(draw.drift));
     const double middle = quantile(drifts, 0.5);
@@ -299,10 +315,8 @@ void set_estimates(InstructionResult& result, const Measures& values,
 struct MeasureName {
   const char *name, *unit;
 };
-constexpr MeasureName kNames[measures] = {{"proportion correct", "proportion"},
-                                          {"median response time", "s"},
-                                          {"LISAS", "s"},
-                                          {"inverse efficiency", "s"}};
+constexpr MeasureName kNames[measures] = {
+    {kCorrect, "proportion"}, {kMedianTime, "s"}, {kLisas, "s"}, {kInverseEfficiency, "s"}};
 
 /// The difference of one parameter of two diffusion fits, second minus first: the median and a central
 /// interval of the differences between their draws.
@@ -325,17 +339,16 @@ void add_diffusion_differences(const Group& first, const Group& second, const Tr
     differences.push_back({a.instruction, b.instruction, measure, unit,
                            diffusion_difference(first, second, options.confidence, of)});
   };
-  add("boundary", "s = 0.1", [](const Group&, const DiffusionDraw& draw) { return draw.boundary; });
-  add("time outside the decision", "s",
-      [](const Group&, const DiffusionDraw& draw) { return draw.nondecision_s; });
+  add(kBoundary, "s = 0.1", [](const Group&, const DiffusionDraw& draw) { return draw.boundary; });
+  add(kNondecision, "s", [](const Group&, const DiffusionDraw& draw) { return draw.nondecision_s; });
   std::vector<double> shared;
   std::set_intersection(first.difficulty.begin(), first.difficulty.end(), second.difficulty.begin(),
                         second.difficulty.end(), std::back_inserter(shared));
   if (shared.empty()) {
-    differences.push_back({a.instruction, b.instruction, "drift", "s = 0.1", std::nullopt});
+    differences.push_back({a.instruction, b.instruction, kDrift, "s = 0.1", std::nullopt});
     return;
   }
-  add("drift", "s = 0.1", [&shared](const Group& group, const DiffusionDraw& draw) {
+  add(kDrift, "s = 0.1", [&shared](const Group& group, const DiffusionDraw& draw) {
     double sum = 0;
     for (std::size_t i = 0; i < group.difficulty.size(); ++i)
       if (std::binary_search(shared.begin(), shared.end(), group.difficulty[i])) sum += draw.drift[i];
@@ -394,6 +407,12 @@ void add_differences(const Sessions& sessions, const std::vector<Group>& groups,
              proportion_difference(proportion(first.caf[i].correct, first.caf[i].trials),
                                    proportion(second.caf[i].correct, second.caf[i].trials),
                                    options.confidence)});
+      for (const auto& [measure, unit, value] :
+           {std::tuple{kPoints, "points", &InstructionResult::points},
+            {kPointsPerMinute, "points/min", &InstructionResult::points_per_minute}})
+        if (first.*value && second.*value)
+          trade.differences.push_back({first.instruction, second.instruction, measure, unit,
+                                       difference_of(*(first.*value), *(second.*value))});
     }
 }
 
@@ -408,6 +427,7 @@ Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options)
     groups.push_back(collect(trials, options, entry));
     entry.post_error_s = post_error_slowing(trials, name);
     entry.repetition = repetition(trials, name);
+    add_points(trials, entry);
     fill_cells(groups.back(), entry, static_cast<int>(groups.size()), options);
   }
   std::vector<const DiffusionCheck*> checks;

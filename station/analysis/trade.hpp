@@ -38,6 +38,9 @@ struct InstructionResult {
   /// of the diffusion model (fit_diffusion()), from all answers and those that came too late; no time is
   /// excluded
   std::optional<Estimate> boundary, nondecision_s, contaminants;
+  /// points a trial, and points a minute of trials with their pauses, from all trials that are not void
+  std::optional<Estimate> points, points_per_minute;
+  std::optional<double> effective_draws;  ///< how many independent draws the numbers of the model rest on
   std::optional<Estimate> drift;         ///< mean of the drifts over the condition's difficulties
   std::optional<DiffusionCheck> check;   ///< what the fit predicts, for each of `difficulties`
   std::vector<double> difficulties;      ///< ascending
@@ -49,10 +52,19 @@ struct InstructionResult {
   std::vector<Statement> statements;
 };
 
+/// The names of measures, of which differences and studies are made. That of the conditional accuracy is
+/// followed by the bin of time ("1 of 5").
+inline constexpr const char *kCorrect = "proportion correct", *kMedianTime = "median response time",
+                            *kSensitivity = "d'", *kBoundary = "boundary",
+                            *kNondecision = "time outside the decision", *kDrift = "drift", *kLisas = "LISAS",
+                            *kInverseEfficiency = "inverse efficiency", *kPoints = "points a trial",
+                            *kPointsPerMinute = "points a minute",
+                            *kBinMeasure = "proportion correct in time bin ";
+
 /// The difference between two conditions, second minus first.
 struct Difference {
   std::string first, second;
-  std::string measure;  ///< "proportion correct", "median response time", ...
+  std::string measure;  ///< kCorrect, kMedianTime, ...
   /// the unit of the measure: "s", "proportion", or "s = 0.1" for the diffusion's boundary and drift (its
   /// scaling parameter)
   std::string unit;
@@ -61,9 +73,6 @@ struct Difference {
   std::optional<Estimate> estimate;
   std::optional<double> corrected_p = {};  ///< after Holm's correction (holm()); empty if it was not asked for
 };
-
-/// The names of differences of the conditional accuracy in a bin of time begin with this.
-inline constexpr const char* kBinMeasure = "proportion correct in time bin ";
 
 struct Trade {
   /// one for each condition, in the order of TradeOptions::order

@@ -29,6 +29,7 @@ struct TrialRecord {
   std::optional<int> right_choice;  ///< index of the correct choice; empty if there is none
   std::optional<int> response;      ///< index of the chosen answer
   std::optional<bool> correct;
+  bool unsure = false;  ///< the participant did not want to guess; then there is no response
   /// whether there was a signal, in a task in which people rate how sure they are of one; otherwise empty
   std::optional<bool> present;
   /// final position of a slider in the unit of the level; `level` is its starting position
@@ -36,6 +37,8 @@ struct TrialRecord {
   std::optional<int> confidence;  ///< from 1 for the least sure; empty if the task does not ask
   Outcome outcome = Outcome::answered;
   std::optional<double> response_time_s;
+  double duration_s = 0;         ///< length of the whole trial, with the pause after it
+  std::optional<double> points;  ///< what the result was worth; empty if the protocol gives no points
   std::optional<double>
       deadline_s;             ///< longest response time that the trial accepted; empty if it had no limit
   double anticipation_s = 0;  ///< an answer before this time is an anticipation
@@ -50,8 +53,21 @@ struct TrialRecord {
   /// For two intervals of which the level decides which one is right: the number of the chosen and of the
   /// right scene; empty if no interval was right, or without an answer.
   std::optional<int> chosen_scene, right_scene;
-  std::size_t part = 0;  ///< number of the analysis to which the trial belongs; 0 if there is only one
+  std::size_t part = 0;   ///< number of the analysis to which the trial belongs; 0 if there is only one
+  int segment_index = 1;  ///< number of the program run, from 1; a session that was resumed has several
 };
+
+/// Whether `now` was presented just after `before`, in the same block and without an interruption of the
+/// session.
+inline bool follows(const TrialRecord& before, const TrialRecord& now) {
+  return now.block_index == before.block_index && now.segment_index == before.segment_index &&
+         now.trial_index == before.trial_index + 1;
+}
+
+/// Whether an analysis of answers counts the trial: it is no practice and no catch trial, and was answered.
+inline bool counted(const TrialRecord& trial) {
+  return trial.type == TrialType::experimental && trial.outcome == Outcome::answered;
+}
 
 /// Returns the conditions of the experimental trials: first those in `order`, then the others in the order in
 /// which they first occur.

@@ -350,6 +350,11 @@ std::optional<std::map<std::string, std::string>> mixer_levels(const std::string
     auto name = std::string(snd_ctl_elem_info_get_name(info.get()));
     if (const auto index = snd_ctl_elem_info_get_index(info.get()); index > 0)
       name += "," + std::to_string(index);
+    // Controls of several devices of a card may have one name and index.
+    if (const auto device = snd_ctl_elem_info_get_device(info.get()); device > 0)
+      name += ",device " + std::to_string(device);
+    if (const auto subdevice = snd_ctl_elem_info_get_subdevice(info.get()); subdevice > 0)
+      name += ",subdevice " + std::to_string(subdevice);
     if (const auto text = values_of(card.get(), info.get(), value.get()); !text.empty()) levels[name] = text;
   }
   return levels;

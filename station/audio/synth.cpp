@@ -205,8 +205,6 @@ void Synth::clear_events() noexcept { state_->event_count = 0; }
 
 system::MemoryRange Synth::memory() const noexcept { return system::range_of(*state_); }
 
-bool Synth::active() const noexcept { return state_->active(); }
-
 std::uint64_t Synth::saturated() const noexcept { return state_->saturated; }
 
 }  // namespace turnpoint::audio

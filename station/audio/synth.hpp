@@ -72,7 +72,6 @@ class Synth {
   /// All memory that render() uses in addition to this object, so that it can be locked.
   system::MemoryRange memory() const noexcept;
 
-  bool active() const noexcept;  ///< true while any burst waits or sounds
   /// number of samples that exceeded the range and were clipped
   std::uint64_t saturated() const noexcept;
 

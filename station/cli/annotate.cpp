@@ -22,8 +22,7 @@ void annotate(const Options& options, Context& context) {
   const auto id = options.session.empty() ? view::session_to_report(options.database, {}) : options.session;
   store::annotate(options.database, id, options.text);
   if (context.json)
-    context.out << Json{{"session_id", id}, {"text", options.text}}.dump(2, ' ', false, kInvalidBytes)
-                << "\n";
+    print_json(context.out, Json{{"session_id", id}, {"text", options.text}});
   else
     fmt::print(context.out, "the note was added to session {}\n", id);
 }

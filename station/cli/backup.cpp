@@ -26,12 +26,14 @@ void back_up(const Options& options, Context& context) {
   how.destination = options.to == "disk" ? store::Destination::disk : store::Destination::folder;
   const auto report = store::backup(options.database, how);
   if (context.json) {
-    context.out << Json{{"path", report.path},         {"number", report.number},
-                        {"sha256", report.sha256},     {"bytes", report.bytes},
-                        {"sessions", report.sessions}, {"trials", report.trials},
-                        {"removed", report.removed},   {"unrecorded", report.unrecorded}}
-                       .dump(2, ' ', false, kInvalidBytes)
-                << "\n";
+    print_json(context.out, Json{{"path", report.path},
+                                 {"number", report.number},
+                                 {"sha256", report.sha256},
+                                 {"bytes", report.bytes},
+                                 {"sessions", report.sessions},
+                                 {"trials", report.trials},
+                                 {"removed", report.removed},
+                                 {"unrecorded", report.unrecorded}});
     return;
   }
   fmt::print(context.out, "{}: {} sessions, {} trials, {} bytes; the backup was read back and checked\n",
@@ -46,22 +48,19 @@ void drill(const Options& options, Context& context) {
   const auto drill = store::drill_restore(options.database, options.backup.directory);
   if (!drill.problems.empty()) context.exit_code = 1;
   if (context.json) {
-    context.out << Json{{"from", drill.from},
-                        {"number", drill.number},
-                        {"age_s", drill.age_s},
-                        {"sessions", drill.sessions},
-                        {"trials", drill.trials},
-                        {"live_sessions", drill.live_sessions},
-                        {"live_trials", drill.live_trials},
-                        {"problems", drill.problems}}
-                       .dump(2, ' ', false, kInvalidBytes)
-                << "\n";
+    print_json(context.out, Json{{"from", drill.from},
+                                 {"number", drill.number},
+                                 {"age_s", drill.age_s},
+                                 {"sessions", drill.sessions},
+                                 {"trials", drill.trials},
+                                 {"live_sessions", drill.live_sessions},
+                                 {"live_trials", drill.live_trials},
+                                 {"problems", drill.problems}});
     return;
   }
-  fmt::print(
-      context.out,
-      "the backup {} ({}) was restored into a temporary file, which was checked and removed again\n",
-      drill.from, view::age_in_words(drill.age_s));
+  fmt::print(context.out,
+             "the backup {} ({}) was restored into a temporary file, which was checked and removed again\n",
+             drill.from, view::age_in_words(drill.age_s));
   fmt::print(
       context.out,
       "the backup contains {} sessions and {} trials; the database contains {} sessions and {} trials\n",
@@ -76,16 +75,14 @@ void restore(const Options& options, Context& context) {
                                                options.moved ? store::Whose::moved : store::Whose::found});
   if (!restored.changed.empty() || !restored.problems.empty()) context.exit_code = 1;
   if (context.json) {
-    context.out << Json{{"from", restored.from},
-                        {"database_id", restored.database_id},
-                        {"quarantined", restored.quarantined},
-                        {"sessions", restored.sessions},
-                        {"trials", restored.trials},
-                        {"rejected", restored.rejected},
-                        {"changed", restored.changed},
-                        {"problems", restored.problems}}
-                       .dump(2, ' ', false, kInvalidBytes)
-                << "\n";
+    print_json(context.out, Json{{"from", restored.from},
+                                 {"database_id", restored.database_id},
+                                 {"quarantined", restored.quarantined},
+                                 {"sessions", restored.sessions},
+                                 {"trials", restored.trials},
+                                 {"rejected", restored.rejected},
+                                 {"changed", restored.changed},
+                                 {"problems", restored.problems}});
     return;
   }
   for (const auto& path : restored.rejected)

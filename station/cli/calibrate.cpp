@@ -137,7 +137,7 @@ void calibrate_pick_ups(const SensorOptions& options, const rig::Rig& rig, Conte
   if (context.json) {
     Json json{{"file", out}, {"pick_ups", Json::array()}};
     for (const auto& pick_up : made.pick_ups) json["pick_ups"].push_back(to_json(pick_up));
-    context.out << json.dump(2, ' ', false, kInvalidBytes) << "\n";
+    print_json(context.out, json);
     return;
   }
   for (const auto& pick_up : made.pick_ups) print(context.out, pick_up);
@@ -241,7 +241,7 @@ void calibrate_forces(const SensorOptions& options, const rig::Rig& rig, Context
       [&](const auto& why) { return again(std::cin, context.err, core::say(why, "en")); });
   const auto out = maintenance::write_forces(rig, result.cells, options.out);
   if (context.json) {
-    context.out << to_json(result, out).dump(2, ' ', false, kInvalidBytes) << "\n";
+    print_json(context.out, to_json(result, out));
     return;
   }
   print(context.out, result);
@@ -390,7 +390,7 @@ void calibrate_panel(const Options& options, const rig::Rig& rig, Context& conte
                     {"quality", measured->quality},
                     {"response_offset", delay_json(made.panel->touch)},
                     {"flash", delay_json(made.panel->flash)}};
-    context.out << json.dump(2, ' ', false, kInvalidBytes) << "\n";
+    print_json(context.out, json);
     return;
   }
   const auto say = [&](const char* what, const std::optional<rig::Delay>& delay) {
@@ -429,7 +429,7 @@ void calibrate(const Options& options, Context& context) {
   system::write_file(plots, report::render(maintenance::calibration_figure(made, measurements)));
   maintenance::write_calibration(made, rig, out);
   if (context.json) {
-    context.out << to_json(made, out, plots).dump(2, ' ', false, kInvalidBytes) << "\n";
+    print_json(context.out, to_json(made, out, plots));
     return;
   }
   print(context.out, made);

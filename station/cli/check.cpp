@@ -145,6 +145,7 @@ Json to_json(const rehearsal::Check& check, const std::string& signal) {
       {"share_under_finger", check.finger
                                  ? Json{json_number(check.finger->least), json_number(check.finger->most)}
                                  : Json(nullptr)},
+      {"level_uncertainty_dB", json_number(check.finger ? check.finger->level_sd_dB : std::nullopt)},
       {"sound", json_sound(check.sound)},
       {"models", check.survey.models},
       {"combinations", check.survey.combinations},
@@ -202,10 +203,13 @@ void print_cues(std::ostream& out, const rehearsal::CueGuard& cues) {
 }
 
 /// The parts of a session without trials, in the order in which they come.
-void print(std::ostream& out, const std::vector<rehearsal::CheckedInterlude>& parts, const std::string& visit) {
+void print(std::ostream& out, const std::vector<rehearsal::CheckedInterlude>& parts,
+           const std::string& visit) {
   for (const auto& part : parts) {
     using Kind = protocol::InterludeKind;
-    const auto count = [&](const char* one) { return fmt::format(": {} {}{}", part.pages, one, part.pages == 1 ? "" : "s"); };
+    const auto count = [&](const char* one) {
+      return fmt::format(": {} {}{}", part.pages, one, part.pages == 1 ? "" : "s");
+    };
     fmt::print(out, "  {}{} {}{}\n", visit, protocol::name(part.kind), part.name,
                part.kind == Kind::questionnaire ? count("question")
                : part.kind == Kind::explanation ? count("page")
@@ -220,8 +224,9 @@ void print(std::ostream& out, const rehearsal::Check& check, const std::string& 
   for (const auto& block : check.blocks) {
     const auto visit = block.visit.empty() ? "" : block.visit + ": ";
     print(out, block.before, visit);
-    fmt::print(out, "  {}{}{}{}: {} trials\n", visit, block.practice ? "practice block " : "block ", block.name,
-               block.instruction.empty() ? "" : " (" + block.instruction + ")", range(block.trials, 1));
+    fmt::print(out, "  {}{}{}{}: {} trials\n", visit, block.practice ? "practice block " : "block ",
+               block.name, block.instruction.empty() ? "" : " (" + block.instruction + ")",
+               range(block.trials, 1));
     print(out, block.after, visit);
   }
   if (check.simulated_sessions > 0)
@@ -254,10 +259,14 @@ void print(std::ostream& out, const rehearsal::Check& check, const std::string& 
       number(1e-3 * extremes.lowest_Hz, 4), number(1e-3 * extremes.highest_Hz, 4),
       number(extremes.displacement_um, 3), models, check.survey.sights.size(), check.survey.combinations);
   if (check.finger)
-    fmt::print(
-        out,
-        "Finger: it leaves {} % of the displacement at the last maxima of the lowest and the highest tone\n",
-        between(check.finger->least, check.finger->most));
+    fmt::print(out,
+               "Finger: it leaves {} % of the displacement at the last maxima of the lowest and the highest "
+               "tone; {}\n",
+               between(check.finger->least, check.finger->most),
+               check.finger->level_sd_dB
+                   ? fmt::format("the level there is uncertain by {} dB (one standard deviation)",
+                                 number(*check.finger->level_sd_dB, 2))
+                   : std::string("how uncertain the level there is, the rig file does not say"));
   fmt::print(out, "Boundaries: model error at most {} mm, {}\n", number(extremes.error_bound_mm, 2),
              uncertainty_in_words(1e-3 * extremes.uncertainty_mm));
   fmt::print(out, "Sound: {}\n",
@@ -306,7 +315,7 @@ void check(const Options& options, Context& context) {
   for (const auto& warning : result.warnings) fmt::print(context.err, "warning: {}\n", format(warning));
   for (const auto& note : result.notes) fmt::print(context.err, "note: {}\n", format(note));
   if (context.json)
-    context.out << to_json(result, signal).dump(2, ' ', false, kInvalidBytes) << "\n";
+    print_json(context.out, to_json(result, signal));
   else if (result.problems.empty())
     print(context.out, result, options.protocol);
   if (!signal.empty())

@@ -73,9 +73,7 @@ void doctor(const DoctorOptions& options, Context& context) {
     if (!mend.empty()) fmt::print(context.out, "{:<29} -> {}\n", "", mend);
   }
   const bool fit = maintenance::fit_for_use(checks);
-  if (context.json)
-    context.out << Json{{"rig", rig.name}, {"fit", fit}, {"checks", list}}.dump(2, ' ', false, kInvalidBytes)
-                << "\n";
+  if (context.json) print_json(context.out, Json{{"rig", rig.name}, {"fit", fit}, {"checks", list}});
   context.exit_code = fit ? 0 : 1;
 }
 

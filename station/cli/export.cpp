@@ -59,8 +59,7 @@ void export_data(Options options, Context& context) {
   if (context.json) {
     Json list = Json::array();
     for (const auto& file : files) list.push_back({{"path", file.path}, {"rows", file.rows}});
-    context.out << Json{{"files", list}, {"rows", trial_rows(files)}}.dump(2, ' ', false, kInvalidBytes)
-                << "\n";
+    print_json(context.out, Json{{"files", list}, {"rows", trial_rows(files)}});
     return;
   }
   for (const auto& file : files)

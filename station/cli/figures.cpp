@@ -61,7 +61,7 @@ void figures(const Options& options, Context& context) {
       fmt::print(context.out, "{}: {}\n  {}\n  wrote {}.svg and .csv\n", figure.id, figure.title, figure.note,
                  path);
   }
-  if (context.json) context.out << list.dump(2, ' ', false, kInvalidBytes) << "\n";
+  if (context.json) print_json(context.out, list);
 }
 
 }  // namespace figures_command

@@ -21,8 +21,7 @@ void join(const Options& options, Context& context) {
   const auto relation = options.undo ? store::Relation::two_people : store::Relation::same_person;
   const auto label = store::join(options.database, options.first, options.second, relation);
   if (context.json)
-    context.out << Json{{"participant", label}, {"joined", !options.undo}}.dump(2, ' ', false, kInvalidBytes)
-                << "\n";
+    print_json(context.out, Json{{"participant", label}, {"joined", !options.undo}});
   else if (options.undo)
     fmt::print(context.out, "{} and {} are recorded as two people again\n", options.first, options.second);
   else

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <ostream>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,11 @@ using Json = nlohmann::ordered_json;
 /// How dump() writes bytes that are not UTF-8, as a path may have: as U+FFFD. A document with them would be
 /// refused otherwise, after the work has been done.
 inline constexpr auto kInvalidBytes = Json::error_handler_t::replace;
+
+/// Writes the result of a command as one document.
+inline void print_json(std::ostream& out, const Json& json) {
+  out << json.dump(2, ' ', false, kInvalidBytes) << "\n";
+}
 
 /// JSON has no NaN and no infinity; they become null.
 inline Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }

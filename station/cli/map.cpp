@@ -233,7 +233,7 @@ void map(const Options& options, Context& context) {
     list.back()["budget"] = to_json(budget_of(answer));
     list.back()["finger"] = to_json(scene::finger_shift(rig, *answer.frequency_Hz, wanted.edge));
   }
-  context.out << list.dump(2, ' ', false, kInvalidBytes) << "\n";
+  print_json(context.out, list);
 }
 
 }  // namespace map_command

@@ -52,7 +52,7 @@ void merge(const Options& options, Context& context) {
     else
       print(context.out, source, report);
   }
-  if (context.json) context.out << all.dump(2, ' ', false, kInvalidBytes) << "\n";
+  if (context.json) print_json(context.out, all);
 }
 
 }  // namespace merge_command

@@ -10,23 +10,26 @@
 #include <utility>
 
 #include "station/cli/run.hpp"
+#include "station/session/programs.hpp"
 #include "station/system/clocks.hpp"
 #include "station/system/stop_signals.hpp"
+#include "station/trial/question.hpp"
 
 namespace turnpoint::cli {
 namespace {
 
-using session::InputKind;
 using session::PageKind;
+namespace input = session::input;
 
-std::optional<InputKind> command_of(const std::string& word) {
-  if (word == "arm") return InputKind::arm;
-  if (word == "disarm") return InputKind::disarm;
-  if (word == "next") return InputKind::next;
-  if (word == "pause") return InputKind::pause;
-  if (word == "repeat") return InputKind::repeat;
-  if (word == "stop") return InputKind::stop;
-  if (word == "note") return InputKind::note;
+/// What the operator has typed: a word and, after a space, the rest of the line.
+std::optional<input::Any> command_of(const std::string& word, const std::string& rest) {
+  if (word == "arm") return input::Arm{};
+  if (word == "disarm") return input::Disarm{};
+  if (word == "next") return input::Next{};
+  if (word == "pause") return input::Pause{};
+  if (word == "repeat") return input::Repeat{};
+  if (word == "stop") return input::Stop{};
+  if (word == "note") return input::Note{rest};
   return std::nullopt;
 }
 
@@ -72,8 +75,9 @@ const char* name(PageKind kind) {
 
 /// What the operator can type on the page of a fault.
 std::string what_continues(const session::Page& page) {
-  if (page.fault == session::FaultKind::self_test) return "; note REASON continues, stop ends the session";
-  if (page.fault == session::FaultKind::limits) return "; next ends the session";
+  if (page.fault.kind == session::FaultKind::self_test)
+    return "; note REASON continues, stop ends the session";
+  if (page.fault.kind == session::FaultKind::limits) return "; next ends the session";
   return page.amplifier.empty() ? "; next continues" : "; amplifier " + page.amplifier + ": arm or stop";
 }
 
@@ -91,7 +95,7 @@ OperatorConsole::OperatorConsole(const rig::Rig& rig, session::Inputs& inputs, s
 void OperatorConsole::show(const session::Page& page) {
   std::string text = name(page.kind);
   if (page.kind == PageKind::fault) {
-    text += ": " + page.text + (page.detail.empty() ? "" : " (" + page.detail + ")");
+    text += ": " + page.text + (page.fault.detail.empty() ? "" : " (" + page.fault.detail + ")");
     text += what_continues(page);
   }
   if (page.kind == PageKind::feedback && page.correct) text += *page.correct ? ": right" : ": wrong";
@@ -119,51 +123,43 @@ void OperatorConsole::run(const std::stop_token& stop) {
   }
 }
 
-bool OperatorConsole::simulate(const std::string& line, session::Input& input) const {
+std::optional<input::Any> OperatorConsole::simulated(const std::string& line) const {
   const char* const buttons[] = {"left", "right", "third"};
   for (int k = 0; k < 3 && buttons_simulated_; ++k)
-    if (line == buttons[k]) return input.kind = InputKind::button, input.value = k, true;
-  if (!contact_simulated_ || (line != "finger on" && line != "finger off")) return false;
-  input.kind = InputKind::contact;
-  input.value = line == "finger on" ? 1 : 0;
-  input.number = -1;
-  return true;
+    if (line == buttons[k]) return input::Button{k};
+  if (contact_simulated_ && line == "finger on") return input::Contact{true, {}};
+  if (contact_simulated_ && line == "finger off") return input::Contact{false, {}};
+  return std::nullopt;
 }
 
 void OperatorConsole::take(const std::string& line) {
   if (line.empty()) return;
-  session::Input input;
-  input.time_ns = system::monotonic_ns();
+  const auto now_ns = system::monotonic_ns();
   const auto space = line.find(' ');
-  const auto command = command_of(line.substr(0, space));
-  if (command) {
-    input.kind = *command;
-    if (*command == InputKind::note && space != std::string::npos) input.text = line.substr(space + 1);
-  } else if (!simulate(line, input)) {
+  auto typed =
+      command_of(line.substr(0, space), space == std::string::npos ? std::string() : line.substr(space + 1));
+  if (!typed) typed = simulated(line);
+  if (!typed)
     return say("\"" + line + "\" is not a command; type arm, disarm, next, pause, repeat, stop or note TEXT");
-  }
-  inputs_.push(std::move(input));
+  inputs_.push({now_ns, std::move(*typed)});
 }
-
-namespace {
-
-void stop(session::Inputs& inputs, const std::string& signal) {
-  session::Input input;
-  input.time_ns = system::monotonic_ns();
-  input.kind = session::InputKind::stop;
-  input.text = "the program was stopped by a signal (" + signal + ")";
-  inputs.push(std::move(input));
-}
-
-}  // namespace
 
 void run_without_screen(Context& context, const session::Setup& setup) {
   // Ctrl-C also ends the program that reads our messages through a pipe. If SIGPIPE were not ignored, our
   // next message would then end the session.
   ::signal(SIGPIPE, SIG_IGN);
   session::Inputs inputs;
-  const system::OnStopSignal on_signal([&inputs](const std::string& signal) { stop(inputs, signal); });
-  if (!setup.observer.empty()) return show_summary(context, session::run(setup, nullptr, inputs));
+  const system::OnStopSignal on_signal([&inputs](const std::string& signal) {
+    inputs.push(
+        {system::monotonic_ns(), input::Stop{"the program was stopped by a signal (" + signal + ")"}});
+  });
+  if (!setup.observer.empty()) {
+    if (!session::is_program(setup.observer))
+      for (const auto& note :
+           trial::observer_notes(setup.protocol, simulation::Observer{simulation::parse(setup.observer)}))
+        fmt::print(context.err, "note: {}\n", core::format(note));
+    return show_summary(context, session::run(setup, nullptr, inputs));
+  }
   OperatorConsole console(setup.rig, inputs, context.err);
   show_summary(context, session::run(setup, &console, inputs), " --headless");
 }

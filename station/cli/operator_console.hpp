@@ -1,6 +1,7 @@
 #pragma once
 #include <iosfwd>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -25,7 +26,7 @@ class OperatorConsole : public session::Display {
  private:
   void run(const std::stop_token& stop);
   void take(const std::string& line);
-  bool simulate(const std::string& line, session::Input& input) const;
+  std::optional<session::input::Any> simulated(const std::string& line) const;
   void say(const std::string& text);
 
   bool buttons_simulated_, contact_simulated_;

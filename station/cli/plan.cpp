@@ -70,9 +70,21 @@ Touched touched(scene::Planner& planner, const scene::DrivePlan& plan,
   return all;
 }
 
+Json level_json(const scene::UnderFinger& under) {
+  if (!under.level) return nullptr;
+  Json parts = Json::object();
+  for (const auto& part : under.level->parts)
+    parts[std::string(physics::name(part.parameter))] = json_number(part.level_dB);
+  return {{"sd_dB", json_number(under.level->total_dB)},
+          {"interval_dB", {json_number(under.level->low_dB), json_number(under.level->high_dB)}},
+          {"friction_interval", {json_number(under.friction_low), json_number(under.friction_high)}},
+          {"parts_dB", parts}};
+}
+
 Json touched_json(const Touched& touched) {
   const auto& under = touched.under;
-  return {{"finger_mm", json_number(under.finger_m * 1e3)},
+  return {{"level_uncertainty", level_json(under)},
+          {"finger_mm", json_number(under.finger_m * 1e3)},
           {"free_um", json_number(under.free_m * 1e6)},
           {"displacement_um", json_number(under.displacement_m * 1e6)},
           {"displacement_range_um", {json_number(under.least_m * 1e6), json_number(under.most_m * 1e6)}},
@@ -137,6 +149,18 @@ void print(std::ostream& out, const Touched& touched) {
              number(under.least_m * 1e6, 3), number(under.most_m * 1e6, 3), number(under.free_m * 1e6, 3));
   fmt::print(out, "  friction under a finger there {}, without it {}; lowest anywhere under a finger {}\n",
              number(under.friction, 3), number(under.free_friction, 3), number(under.lowest_friction, 3));
+  if (under.level) {
+    fmt::print(
+        out,
+        "  uncertain parameters of the rig: level there {} dB (one standard deviation), 95 % between {} and "
+        "{} dB, friction between {} and {}; most from ",
+        number(under.level->total_dB, 2), number(under.level->low_dB, 2), number(under.level->high_dB, 2),
+        number(under.friction_low, 3), number(under.friction_high, 3));
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, under.level->parts.size()); ++i)
+      fmt::print(out, "{}{} {} dB", i == 0 ? "" : ", ", physics::name(under.level->parts[i].parameter),
+                 number(under.level->parts[i].level_dB, 2));
+    fmt::print(out, "\n");
+  }
   if (under.zone_friction)
     fmt::print(out, "  zone under a finger: mean friction {}, rms {} about it\n",
                number(*under.zone_friction, 3), number(under.residual.value_or(0), 3));
@@ -212,8 +236,7 @@ void plan(const Options& options, Context& context) {
     base = planner.plan(protocol::resolve(protocol, from.base, factors, 0));
   const auto finger = touched(planner, result, base);
   if (context.json)
-    context.out << to_json(planner, result, factors, sound, finger).dump(2, ' ', false, kInvalidBytes)
-                << "\n";
+    print_json(context.out, to_json(planner, result, factors, sound, finger));
   else
     print(context.out, result, sound, finger);
 }

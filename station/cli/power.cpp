@@ -24,10 +24,13 @@
 #include "station/rehearsal/power.hpp"
 #include "station/rehearsal/power_figure.hpp"
 #include "station/rehearsal/power_session.hpp"
+#include "station/rehearsal/reward.hpp"
+#include "station/report/words.hpp"
 #include "station/session/places.hpp"
 #include "station/session/prepare.hpp"
 #include "station/session/programs.hpp"
 #include "station/system/write_file.hpp"
+#include "station/trial/question.hpp"
 
 namespace turnpoint::cli {
 
@@ -41,6 +44,8 @@ struct PowerPart {
   std::vector<rehearsal::SessionOutcome> sessions;
   /// for each unwanted cue, what an observer could achieve with it alone; set in the first part only
   std::vector<rehearsal::CueReport> cues;
+  bool reward = false;  ///< the observer has the boundaries that earn the most
+  std::vector<rehearsal::BestReward> rewards;  ///< the same in all parts
   bool whole = true;  ///< false if a signal stopped the work
 };
 
@@ -77,6 +82,7 @@ Json study_of(const PowerPart& part) {
           {"protocol", part.protocol},
           {"observer", part.observer},
           {"observers", part.options.observers},
+          {"reward", part.reward},
           {"intervals", part.options.interval_sessions},
           {"replicates", part.options.replicates},
           {"people", part.options.people},
@@ -119,7 +125,8 @@ Json to_json(const SessionOutcome& session) {
   }
   for (const auto& [name, sum] : session.generating.sums())
     conditions[name] = {{"deadline_s", exact(sum.deadline_s)},
-                        {"one_deadline", sum.one_deadline},
+                        {"caution", sum.caution ? exact(*sum.caution) : Json(nullptr)},
+                        {"one_bound", sum.one_bound},
                         {"trials", sum.trials},
                         {"correct", exact(sum.correct)},
                         {"drifts", drifts_json(sum.drifts)},
@@ -161,7 +168,8 @@ SessionOutcome session_of(const Json& json) {
   for (const auto& [name, sum] : json.at("conditions").items())
   {
     auto& read = sums[name];
-    read.deadline_s = number(sum.at("deadline_s")), read.one_deadline = sum.at("one_deadline");
+    read.deadline_s = number(sum.at("deadline_s")), read.one_bound = sum.at("one_bound");
+    if (const auto& caution = sum.at("caution"); !caution.is_null()) read.caution = number(caution);
     read.trials = sum.at("trials"), read.correct = number(sum.at("correct"));
     for (const auto& one : sum.at("drifts")) read.drifts[number(one.at(0))] = number(one.at(1));
     for (const auto& one : sum.at("lags"))
@@ -187,10 +195,40 @@ Json cue_json(const rehearsal::CueReport& cue) {
           {"error", exact(cue.error)}};
 }
 
+Json trade_json(const rehearsal::Trade& trade) {
+  return {{"points_per_minute", exact(trade.points_per_minute)},
+          {"right", exact(trade.right)},
+          {"response_time_s", exact(trade.response_time_s)}};
+}
+
+Json rewards_json(const std::vector<rehearsal::BestReward>& rewards) {
+  Json list = Json::array();
+  for (const auto& reward : rewards)
+    list.push_back({{"block", reward.block},
+                    {"caution", exact(reward.caution)},
+                    {"at_end", reward.at_end},
+                    {"best", trade_json(reward.best)},
+                    {"own", trade_json(reward.own)}});
+  return list;
+}
+
+rehearsal::Trade trade_of(const Json& json) {
+  return {number(json.at("points_per_minute")), number(json.at("right")), number(json.at("response_time_s"))};
+}
+
+std::vector<rehearsal::BestReward> rewards_of(const Json& json) {
+  std::vector<rehearsal::BestReward> rewards;
+  for (const auto& one : json)
+    rewards.push_back({one.at("block"), number(one.at("caution")), one.at("at_end"), trade_of(one.at("best")),
+                       trade_of(one.at("own"))});
+  return rewards;
+}
+
 PowerPart part_of(const Json& json) {
   PowerPart part;
   const auto& study = json.at("study");
-  part.path = json.at("path"), part.whole = json.at("whole");
+  part.path = json.at("path"), part.whole = json.at("whole"), part.reward = study.at("reward");
+  part.rewards = rewards_of(json.at("rewards"));
   part.protocol = study.at("protocol"), part.observer = study.at("observer");
   part.options.observers = study.at("observers"), part.options.interval_sessions = study.at("intervals");
   part.options.replicates = study.at("replicates"), part.options.seed = study.at("seed");
@@ -254,6 +292,7 @@ Json to_json(const PowerPart& part) {
           {"path", part.path},
           {"whole", part.whole},
           {"cues", cues},
+          {"rewards", rewards_json(part.rewards)},
           {"sessions", sessions}};
 }
 
@@ -297,6 +336,7 @@ struct Options {
   std::vector<std::string> join;
   int observers = 1000, intervals = 200, people = 0;
   std::string between;
+  bool reward = false;
   std::uint64_t seed = 1;
   bool progress = false;
 };
@@ -346,6 +386,7 @@ Json to_json(const std::vector<rehearsal::CueReport>& cues) {
 struct Found {
   rehearsal::Power power;
   std::vector<rehearsal::CueReport> cues;
+  std::vector<rehearsal::BestReward> rewards;  ///< empty without --reward
   std::string id, title;  ///< id and title of the protocol
   std::string signal;     ///< the signal that stopped the work; usually ""
 };
@@ -365,6 +406,7 @@ Json to_json(const Found& found, const std::vector<std::string>& files) {
           {"misfits", share_json(power.misfits, "of")},
           {"people", power.people},
           {"recoveries", recoveries},
+          {"rewards", rewards_json(found.rewards)},
           {"cues", to_json(found.cues)},
           {"files", files}};
 }
@@ -373,7 +415,9 @@ void print(std::ostream& out, const rehearsal::Power& power) {
   fmt::print(out, "{}{} simulated sessions, on average {} trials and {} minutes each{}\n", power.observers,
              power.observers < power.asked ? fmt::format(" of {}", power.asked) : "", number(power.trials, 4),
              number(power.minutes, 3),
-             power.accuracy ? fmt::format(", {} % right", number(100 * *power.accuracy, 3)) : "");
+             power.accuracy
+                 ? fmt::format(", {} % of the scored answers right", number(100 * *power.accuracy, 3))
+                 : "");
   if (power.people > 0)
     fmt::print(out, "{} studies of {} people each, analysed as turnpoint report --study does\n",
                power.observers / power.people, power.people);
@@ -381,7 +425,7 @@ void print(std::ostream& out, const rehearsal::Power& power) {
     fmt::print(out, "The check of the diffusion model finds a misfit in {} % of {} sessions\n",
                number(100 * power.misfits->value, 3), power.misfits->trials);
   const auto named = [](const rehearsal::Recovery& r) {
-    return fmt::format("{} ({})", r.parameter, r.unit.empty() ? "no unit" : r.unit);
+    return core::say(report::in_unit(core::plain(r.parameter), core::plain(r.unit)), "en");
   };
   std::size_t widest = 34;
   for (const auto& r : power.recoveries) widest = std::max(widest, named(r).size());
@@ -425,6 +469,22 @@ void print(std::ostream& out, const std::vector<rehearsal::CueReport>& cues) {
                number(100 * cue.chance, 3), cue.above_chance() ? ", above chance" : "");
 }
 
+void print(std::ostream& out, const std::vector<rehearsal::BestReward>& rewards) {
+  if (rewards.empty()) return;
+  fmt::print(out, "The observer above has in each block the decision boundaries that earn the most points per minute:\n");
+  for (const auto& reward : rewards) {
+    fmt::print(out, "  {}: {} times --observer's bound: {} points a minute, {} % right, {} s; with its own bound {}, {} %, {} s\n",
+               reward.block, number(reward.caution, 2), number(reward.best.points_per_minute, 3),
+               number(100 * reward.best.right, 3), number(reward.best.response_time_s, 3),
+               number(reward.own.points_per_minute, 3), number(100 * reward.own.right, 3),
+               number(reward.own.response_time_s, 3));
+    if (reward.at_end)
+      fmt::print(out, "    {}\n", reward.caution < 1
+                                      ? "this is the lowest that is tried: it pays to guess at once"
+                                      : "this is the highest that is tried: waiting costs nothing");
+  }
+}
+
 rehearsal::Part part_of(const std::string& text, int observers) {
   rehearsal::Part part;
   const auto* end = text.data() + text.size();
@@ -446,26 +506,32 @@ void show(const Found& found, const Options& options, Context& context) {
   std::vector<std::string> files;
   if (!options.out.empty()) {
     system::make_folder(options.out);
-    files.push_back((std::filesystem::path(options.out) / (found.id + "-power.svg")).string());
-    system::write_file(files.back(), report::render(rehearsal::figure_of(found.power, found.title)));
+    const auto figure = rehearsal::figure_of(found.power, found.title);
+    if (!figure.charts.empty()) {
+      files.push_back((std::filesystem::path(options.out) / (found.id + "-power.svg")).string());
+      system::write_file(files.back(), report::render(figure));
+    }
     const auto path = (std::filesystem::path(options.out) / (found.id + "-power.json")).string();
     system::write_file(path, to_json(found, files).dump(2, ' ', false, kInvalidBytes) + "\n");
     files.push_back(path);
   }
   if (context.json)
-    context.out << to_json(found, files).dump(2, ' ', false, kInvalidBytes) << "\n";
+    print_json(context.out, to_json(found, files));
   else
-    print(context.out, found.power), print(context.out, found.cues);
+    print(context.out, found.power), print(context.out, found.rewards), print(context.out, found.cues);
   for (const auto& file : files)
     if (!context.json) fmt::print(context.out, "wrote {}\n", file);
 }
 
 void join(const Options& options, Context& context) {
+  if (options.reward) throw UsageError("--reward cannot be used with --join: the parts say which observer they have");
   auto all = join_parts(options.join);
   const auto protocol = protocol::parse(all.protocol, all.path);
   all.options.observer = simulation::parse(all.observer);
+  all.options.cautions = rehearsal::cautions_of(all.rewards);
   rehearsal::complete(protocol, all.options, all.sessions);
-  show({rehearsal::power_of(protocol, all.options, all.sessions), all.cues, protocol.id, protocol.title, ""},
+  show({rehearsal::power_of(protocol, all.options, all.sessions), all.cues, all.rewards, protocol.id,
+        protocol.title, ""},
        options, context);
 }
 
@@ -506,14 +572,23 @@ void power(const Options& options, Context& context) {
   part.protocol = protocol.source, part.path = protocol.path;
   const auto rig = session::calibrated_rig(session::rig_or_default(options.rig, context.err),
                                            options.calibration, context.err);
+  for (const auto& note : trial::observer_notes(protocol, simulation::Observer{wanted.observer}))
+    fmt::print(context.err, "note: {}\n", core::format(note));
   LongWork work(options.progress);
   rehearsal::Steps steps;
   steps.finish = wanted.stop = work.stop();
   steps.progress = [&work](const char* what, int done, int of) { work.show(what, done, of); };
   wanted.progress = steps.counted("simulated sessions");
+  part.reward = options.reward;
   try {
     const auto survey = protocol::survey(protocol, rig, steps.finish, steps.counted("scenes planned"));
     if (!survey.problems.empty()) throw core::BadInput(survey.problems);
+    if (options.reward) {
+      auto tried = wanted;
+      tried.progress = steps.counted("simulated sessions with other boundaries");
+      part.rewards = rehearsal::best_rewards(protocol, tried);
+    }
+    wanted.cautions = rehearsal::cautions_of(part.rewards);
     part.sessions = rehearsal::simulate_sessions(protocol, wanted);
     if (wanted.part.number == 1) part.cues = rehearsal::cue_guard(protocol, rig, survey, {}, steps).reports;
   } catch (const protocol::Abandoned&) {  // stopped before the first session
@@ -526,8 +601,8 @@ void power(const Options& options, Context& context) {
   if (!options.part.empty())
     context.out << to_json(part).dump(-1, ' ', false, kInvalidBytes) << "\n";
   else if (!part.sessions.empty())
-    show({rehearsal::power_of(protocol, wanted, part.sessions), part.cues, protocol.id, protocol.title,
-          signal},
+    show({rehearsal::power_of(protocol, wanted, part.sessions), part.cues, part.rewards, protocol.id,
+          protocol.title, signal},
          options, context);
 }
 
@@ -559,6 +634,9 @@ void add_power(CommandLine& app, Context& context) {
                                    "such as bound=0.15,residual=0.1 (of the logarithm; of threshold, bias and "
                                    "criterion in their own unit)")
                       ->value("KEY=SD,...");
+  command->add_flag(
+      "--reward", options->reward,
+      "The observer has the decision boundaries that earn the most points per minute; print what they earn");
   auto* observer =
       command
           ->add_option(

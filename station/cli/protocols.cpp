@@ -44,7 +44,7 @@ void protocols(const std::string& folder, Context& context) {
       context.exit_code = 2;
     }
   }
-  if (context.json) context.out << list.dump(2, ' ', false, kInvalidBytes) << "\n";
+  if (context.json) print_json(context.out, list);
 }
 
 }  // namespace protocols_command

@@ -94,7 +94,7 @@ void push(Options given, Context& context) {
     throw UsageError("--return-places cannot be combined with --places or --received");
   const auto report = collector::push(options);
   if (context.json)
-    context.out << to_json(report).dump(2, ' ', false, kInvalidBytes) << "\n";
+    print_json(context.out, to_json(report));
   else
     print(context.out, report);
   if (!report.complete() || !report.withdrawn.remaining_copies.empty()) context.exit_code = 1;

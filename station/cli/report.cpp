@@ -15,8 +15,8 @@
 #include "station/core/number.hpp"
 #include "station/core/usage_error.hpp"
 #include "station/protocol/protocol.hpp"
+#include "station/report/document.hpp"
 #include "station/report/figure_files.hpp"
-#include "station/report/html.hpp"
 #include "station/report/pdf.hpp"
 #include "station/report/stored_estimates.hpp"
 #include "station/session/program_estimator.hpp"
@@ -85,10 +85,11 @@ void report_session(Options options, Context& context) {
   if (!options.estimator.empty()) add_estimates(options.estimator, database, id, collected);
   const auto summary = report::summarise(collected);
   if (context.json) context.out << report::to_json(summary) << "\n";
-  write_figures(options.figures, report::figures_of(summary));
+  const auto document = report::document(summary);
+  write_figures(options.figures, figures_of(document));
   if (options.out.empty() && !context.json) options.out = "report-" + id + ".html";
   if (options.out.empty()) return;
-  system::write_file(options.out, report::to_html(summary));
+  system::write_file(options.out, to_html(document));
   if (context.json) return;
   const auto& data = summary.data;
   fmt::print(context.out, "{}: session {} of {}, {}, {} trials\n", options.out, data.session_id,
@@ -135,7 +136,7 @@ void print_study(std::ostream& out, const std::string& file, const report::Study
   for (const auto& person : study.persons) excluded += !person.excluded.empty();
   fmt::print(out, "{}: {} participants, {} excluded\n", file, study.persons.size(), excluded);
   for (const auto& group : study.groups) {
-    const auto name = group.condition.empty() ? "all trials" : group.condition;
+    const auto name = core::say(report::name_of(group.condition), "en");
     if (group.result.fit && group.result.fit->threshold) {
       fmt::print(out, "  {}: threshold of the group {} {}\n", name,
                  interval_in_words(*group.result.fit->threshold), study.settings.level_unit);
@@ -172,10 +173,11 @@ void report_study(Options options, Context& context) {
       system::write_file(options.tables + "/" + table.name, table.csv);
   }
   if (context.json) context.out << report::to_json(study) << "\n";
-  write_figures(options.figures, report::figures_of(study));
+  const auto document = report::document(study);
+  write_figures(options.figures, figures_of(document));
   if (options.out.empty() && !context.json) options.out = "study.html";
   if (options.out.empty()) return;
-  system::write_file(options.out, report::to_html(study));
+  system::write_file(options.out, to_html(document));
   if (!context.json) print_study(context.out, options.out, study);
 }
 

@@ -55,6 +55,7 @@ Json to_json(const session::Summary& summary) {
           {"anticipations", summary.anticipations},
           {"voided", summary.voided},
           {"accuracy", json_number(summary.accuracy)},
+          {"points", json_number(summary.points)},
           {"duration_s", json_number(summary.duration_s)},
           {"xruns", summary.xruns},
           {"triggers", summary.triggers},
@@ -75,6 +76,7 @@ void print_summary(std::ostream& out, const session::Summary& s) {
   fmt::print(out, "  {} answered, {} too late, {} too early, {} void\n", s.answered, s.timeouts,
              s.anticipations, s.voided);
   if (s.accuracy) fmt::print(out, "  {} % of the scored answers right\n", number(100 * *s.accuracy, 3));
+  if (s.points) fmt::print(out, "  {} points\n", number(*s.points, 6));
   for (const auto& e : s.estimates)
     fmt::print(out, "  {}: {} {}\n", e.procedure, e.parameter, trial::in_words(e));
   if (s.triggers_missed + s.triggers_extra > 0)
@@ -103,7 +105,7 @@ void show_summary(Context& context, const session::Summary& summary, const std::
   const bool interrupted = summary.status == core::SessionStatus::interrupted;
   if (interrupted) context.exit_code = 1;
   if (context.json) {
-    context.out << to_json(summary).dump(2, ' ', false, kInvalidBytes) << "\n";
+    print_json(context.out, to_json(summary));
     return;
   }
   print_summary(context.out, summary);

@@ -55,9 +55,7 @@ void self_test(const Options& options, Context& context) {
   for (const auto& check : found) checks.push_back(session::row_of(check));
   context.exit_code = good ? 0 : 1;
   if (context.json) {
-    context.out << Json{{"rig", rig.name}, {"passed", good}, {"checks", to_json(checks)}}.dump(2, ' ', false,
-                                                                                               kInvalidBytes)
-                << "\n";
+    print_json(context.out, Json{{"rig", rig.name}, {"passed", good}, {"checks", to_json(checks)}});
     return;
   }
   print(context.out, checks);

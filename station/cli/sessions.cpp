@@ -61,7 +61,7 @@ void sessions(const Options& options, Context& context) {
   if (!context.json) return print(context.out, list);
   Json json = Json::array();
   for (const auto& session : list) json.push_back(to_json(session));
-  context.out << json.dump(2, ' ', false, kInvalidBytes) << "\n";
+  print_json(context.out, json);
 }
 
 }  // namespace sessions_command

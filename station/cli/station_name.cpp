@@ -31,6 +31,11 @@ void print(std::ostream& out, const store::NamedStation& station) {
              station.machine.empty() || here.empty() ? "not known"
              : station.machine == here               ? "this one"
                                                      : "another one than this");
+  if (store::machine_traits().hardware.empty())
+    fmt::print(
+        out,
+        "this machine has no number of its own from its maker that users may read, so a copy of its disk in "
+        "another one is not noticed\n");
 }
 
 void name_station(const Options& options, Context& context) {

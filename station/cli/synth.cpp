@@ -94,7 +94,7 @@ void synth(const Options& options, Context& context) {
   const auto rig = rig::load(session::rig_or_default(options.rig, context.err));
   const auto report = play(rig, options);
   if (context.json) {
-    context.out << to_json(report, options).dump(2, ' ', false, kInvalidBytes) << "\n";
+    print_json(context.out, to_json(report, options));
     return;
   }
   fmt::print(context.out, "{}: {} frames, onset at frame {}, peak {} of full scale, {} underruns\n",

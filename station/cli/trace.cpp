@@ -60,7 +60,7 @@ void trace(const Options& options, Context& context) {
               {"reversals", json_numbers(result.reversals)}};
     if (spec.second)
       json["second"] = json_numbers(result.second), json["next_second"] = json_number(result.next_second);
-    context.out << json.dump(2, ' ', false, kInvalidBytes) << "\n";
+    print_json(context.out, json);
     return;
   }
   for (std::size_t i = 0; i < result.levels.size(); ++i)

@@ -47,7 +47,7 @@ void verify(const Options& options, Context& context) {
   const auto result = store::verify(options.database, options.verify);
   if (!result.good()) context.exit_code = 1;
   if (context.json)
-    context.out << to_json(result).dump(2, ' ', false, kInvalidBytes) << "\n";
+    print_json(context.out, to_json(result));
   else
     print(context.out, result);
 }

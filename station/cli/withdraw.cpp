@@ -86,7 +86,7 @@ void withdraw(const Options& options, Context& context) {
   const auto gone = options.dry_run ? store::plan_withdrawal(options.database, options.withdraw)
                                     : store::withdraw(options.database, options.withdraw);
   if (context.json) {
-    context.out << to_json(gone, options).dump(2, ' ', false, kInvalidBytes) << "\n";
+    print_json(context.out, to_json(gone, options));
   } else {
     print(context.out, gone, options.dry_run ? "would be deleted" : "deleted");
     print_what_stays(context.out, gone, options);

@@ -113,11 +113,14 @@ void ReadableDatabase::fetch(const std::string& address, const store::SessionFil
   database.execute("PRAGMA synchronous = OFF");
   const ServerTransaction snapshot(server, "ISOLATION LEVEL REPEATABLE READ READ ONLY");
   store::Transaction transaction(database);
+  database.execute("PRAGMA defer_foreign_keys = ON");  // the codes come last
   const auto copy = [&](const CollectedTable& table, const std::string& sessions) {
     receive_rows(server, select(table, sessions), table, database);
   };
   for (const auto& table : collected_tables())
     if (!is_part_of_session(table)) copy(table, "");
+  database.execute(
+      "INSERT INTO participant SELECT participant FROM session UNION SELECT participant FROM enrolment");
   const bool all = filter.session_id.empty() && filter.participant.empty() && filter.protocol_id.empty();
   const auto chosen = store::list_sessions(database, filter);
   for (const auto& table : collected_tables())

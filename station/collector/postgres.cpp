@@ -60,10 +60,11 @@ void Connection::fail(const pg_result* result) const {
   const char* primary = result != nullptr ? PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY) : nullptr;
   const std::string code = state != nullptr ? state : "";
   const std::string message = primary != nullptr ? primary : PQerrorMessage(connection_.get());
-  const auto* advice = code == "53100" ? "; the server has no room: free some on the server, and push again"
-                       : code == "55P03"
-                           ? "; another connection holds the rows that this one needs: push again in a minute"
-                           : "";
+  const auto* advice =
+      code == "53100" ? "; the server has no room: free some on the server, and push again"
+      : code == "55P03"
+          ? "; another connection holds the rows that this one needs: push again in five minutes"
+          : "";
   throw ServerError(
       fmt::format("collector: {}{}", message.empty() ? "the connection was lost" : one_line(message), advice),
       code);

@@ -133,7 +133,6 @@ std::int64_t send_table(Database& database, const CollectedTable& table, const s
                         const store::Link& last, Connection& server) {
   std::string where = "session_id = ?1";
   std::int64_t beyond = last.index;
-  if (table.name == "participant") where = "code = (SELECT participant FROM session WHERE session_id = ?1)";
   if (table.name == "enrolment")
     where = "(station_id, participant) = (SELECT station_id, participant FROM session WHERE session_id = ?1)";
   for (const auto* key : {"protocol_key", "rig_key", "calibration_id"})

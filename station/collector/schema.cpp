@@ -58,7 +58,7 @@ std::string create_table(const CollectedTable& table) {
   return fmt::format("CREATE TABLE IF NOT EXISTS turnpoint.{} (\n{}\n);\n", table.name, lines);
 }
 
-/// Returns the SQL that adds the columns which an older version of the collector did not have.
+/// Returns the SQL that describes the columns.
 std::string comments(const CollectedTable& table) {
   std::string sql;
   for (const auto& column : table.columns) {
@@ -104,12 +104,13 @@ BEGIN
   -- nothing is ended. A role can change these for itself, so turnpoint.end_stale() ends those that did.
   EXECUTE format('ALTER DATABASE %I SET lock_timeout = %L', current_database(), '30s');
   EXECUTE format('ALTER DATABASE %I SET idle_in_transaction_session_timeout = %L', current_database(), '60s');
-  -- PostgreSQL lets everybody store large objects, take advisory locks, fill the queue of notifications and run
-  -- programs in DO. The collector uses none of these.
+  -- PostgreSQL lets everybody store large objects, take advisory locks, write messages into its log of changes and run
+  -- programs in DO. Stations need none of these. (NOTIFY needs no right; what is sent with it, only LISTEN would see.)
   FOR wanted IN SELECT p.oid::regprocedure FROM pg_proc p WHERE p.pronamespace = 'pg_catalog'::regnamespace
-      AND (p.proname ~ '^(lo_|pg_(try_)?advisory_)' OR p.proname IN ('loread', 'lowrite', 'pg_notify')) LOOP
+      AND (p.proname ~ '^(lo_|pg_(try_)?advisory_)' OR p.proname IN ('loread', 'lowrite', 'pg_notify', 'pg_logical_emit_message')) LOOP
     EXECUTE 'REVOKE EXECUTE ON FUNCTION ' || wanted || ' FROM PUBLIC';
   END LOOP;
+  GRANT EXECUTE ON FUNCTION pg_advisory_xact_lock_shared(int, int) TO turnpoint_owner;  -- for turnpoint.note_hold()
   REVOKE USAGE ON LANGUAGE plpgsql FROM PUBLIC;
   GRANT USAGE ON LANGUAGE plpgsql TO turnpoint_owner;
 END $do$;
@@ -343,17 +344,16 @@ BEGIN
   END IF;
   IF EXISTS (SELECT FROM pg_temp.incoming_link WHERE session_id <> id)
     OR EXISTS (SELECT FROM pg_temp.incoming_annotation WHERE session_id <> id)
-     OR EXISTS (SELECT FROM pg_temp.incoming_participant i WHERE i.code <> s.participant)
     OR EXISTS (SELECT FROM pg_temp.incoming_enrolment e WHERE (e.station_id, e.participant)
                  IS DISTINCT FROM (s.station_id, s.participant)) THEN
     RAISE EXCEPTION 'session %: rows of another session', id USING ERRCODE = 'TP004';
   END IF;
-  INSERT INTO turnpoint.participant SELECT * FROM pg_temp.incoming_participant ON CONFLICT DO NOTHING;
 )sql";
   sql += check_content("protocol", "protocol_key",
                        R"(concat_ws(E'\n', i.protocol_id, i.version, i.sha256, i.text, i.canonical))");
   sql += check_content("rig", "rig_key", R"(concat_ws(E'\n', i.name, i.sha256, i.text))");
   sql += check_content("calibration", "calibration_id", "i.text");
+  sql += "  PERFORM turnpoint.note_hold();\n";
   sql += take_shared(collected_table("enrolment"), "its participant has another place on the server");
   for (const auto* table : {"protocol", "rig", "calibration"})
     sql += take_shared(collected_table(table), fmt::format("its {} differs on the server", table));
@@ -438,18 +438,31 @@ CREATE OR REPLACE FUNCTION turnpoint.is_withdrawn(id text, station text, code te
 LANGUAGE sql STABLE AS $$ SELECT EXISTS (SELECT FROM turnpoint.tombstone t WHERE t.station_id = station
   AND (t.session_id = id OR t.participant_sha256 = turnpoint.code_sha256(t.salt, code))) $$;
 
--- How long a transaction of a station may stand idle, and how long it may last, while others want to send.
+-- How long a transaction of a station may stand idle, how long it may last, and how long it may last after it has begun
+-- to store, while others want to send.
 CREATE OR REPLACE FUNCTION turnpoint.longest_idle() RETURNS interval LANGUAGE sql AS $$ SELECT interval '1 minute' $$;
 CREATE OR REPLACE FUNCTION turnpoint.longest_transaction() RETURNS interval LANGUAGE sql AS
   $$ SELECT interval '2 hours' $$;
+CREATE OR REPLACE FUNCTION turnpoint.longest_hold() RETURNS interval LANGUAGE sql AS $$ SELECT interval '5 minutes' $$;
 
--- Ends the transactions of stations that last too long: each may hold rows for which other stations wait.
+-- Notes that the caller's transaction is about to store what others may wait for: a new protocol, rig or calibration,
+-- or a place. The note is a lock that nobody waits for, because others see the locks of a transaction at once; its
+-- number is the time, in whole seconds since the server started, never a time to come.
+CREATE OR REPLACE FUNCTION turnpoint.note_hold() RETURNS void LANGUAGE sql AS $$ SELECT
+  pg_advisory_xact_lock_shared(1, floor(extract(epoch FROM clock_timestamp() - pg_postmaster_start_time()))::int) $$;
+
+-- Ends the transactions of stations that last too long: each may hold rows for which other stations wait. If one has
+-- held them too long, all connections of its role end, because another of them may be the next in line.
 CREATE OR REPLACE FUNCTION turnpoint.end_stale() RETURNS bigint LANGUAGE sql AS $$
   SELECT count(pg_terminate_backend(a.pid, 1000)) FROM pg_stat_activity a
   WHERE a.datname = current_database() AND a.pid <> pg_backend_pid()
     AND a.usename IN (SELECT s.role FROM turnpoint.station s)
     AND (a.xact_start < now() - turnpoint.longest_transaction()
-      OR (a.state LIKE 'idle in transaction%' AND a.state_change < clock_timestamp() - turnpoint.longest_idle())) $$;
+      OR (a.state LIKE 'idle in transaction%' AND a.state_change < clock_timestamp() - turnpoint.longest_idle())
+      OR a.usename IN (SELECT h.usename FROM pg_locks k JOIN pg_stat_activity h USING (pid)
+        WHERE k.locktype = 'advisory' AND (k.classid, k.objsubid) = (1, 2) AND h.datname = current_database()
+          AND k.objid::bigint <= extract(epoch FROM clock_timestamp() - pg_postmaster_start_time() - turnpoint.longest_hold())
+        )) $$;
 
 CREATE OR REPLACE FUNCTION turnpoint.annotations_sha256(id text) RETURNS text LANGUAGE sql STABLE AS
   $$ SELECT encode(sha256(coalesce(string_agg(convert_to(turnpoint.coded(annotation_id)
@@ -487,10 +500,6 @@ BEGIN
   DELETE FROM turnpoint.same_person e USING turnpoint.tombstone t
     WHERE (t.station_id = e.station_a AND t.participant_sha256 = turnpoint.code_sha256(t.salt, e.code_a))
       OR (t.station_id = e.station_b AND t.participant_sha256 = turnpoint.code_sha256(t.salt, e.code_b));
-  -- A code that another transaction has locked is about to be used, so do not wait for it.
-  DELETE FROM turnpoint.participant WHERE code IN (SELECT p.code FROM turnpoint.participant p
-    WHERE NOT EXISTS (SELECT FROM turnpoint.session s WHERE s.participant = p.code)
-      AND NOT EXISTS (SELECT FROM turnpoint.enrolment e WHERE e.participant = p.code) FOR UPDATE SKIP LOCKED);
 END $fn$;
 
 -- Takes the tombstones that a station holds, as a JSON list of rows of table tombstone, and the ids of the sessions of
@@ -541,6 +550,7 @@ BEGIN
     RAISE EXCEPTION 'a station cannot lease % more places; it may hold up to 10000 that nobody has', more
       USING ERRCODE = 'TP003';
   END IF;
+  PERFORM turnpoint.note_hold();
   LOCK TABLE turnpoint.lease IN SHARE ROW EXCLUSIVE MODE;  -- the database's lock_timeout limits how long this waits
   INSERT INTO turnpoint.lease (protocol_id, sequence_index, station_id)
     SELECT protocol, i, mine FROM generate_series(0::bigint,
@@ -558,6 +568,7 @@ CREATE OR REPLACE FUNCTION turnpoint.return_places(protocol text, places json) R
 LANGUAGE plpgsql SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS $fn$
 DECLARE mine text := turnpoint.own_station();
 BEGIN
+  PERFORM turnpoint.note_hold();
   DELETE FROM turnpoint.lease t WHERE t.protocol_id = protocol AND t.station_id = mine
     AND t.sequence_index IN (SELECT value::bigint FROM json_array_elements_text(places))
     AND NOT EXISTS (SELECT FROM turnpoint.enrolment e WHERE e.protocol_id = protocol

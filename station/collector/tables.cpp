@@ -59,7 +59,9 @@ void read_references(Database& database, CollectedTable& table) {
     reference.columns.push_back(rows.text(2));
     reference.to.push_back(rows.text(3));
   }
-  for (auto& [id, reference] : references) table.references.push_back(std::move(reference));
+  for (auto& [id, reference] : references)
+    if (reference.table != "participant")  // is not collected
+      table.references.push_back(std::move(reference));
 }
 
 /// Adds the columns' descriptions, and returns the columns that the checksum chain covers, in the order in
@@ -116,9 +118,9 @@ std::vector<CollectedTable> read_tables() {
   store::create_schema(database);
   std::vector<CollectedTable> tables;
   for (const auto* name :
-       {"participant",    "enrolment", "protocol", "rig",    "calibration", "session",     "segment",
-        "block",          "trial",     "tone",     "signal", "event",       "self_test",   "answer",
-        "friction_level", "program",   "estimate", "link",   "annotation",  "same_person", "tombstone"}) {
+       {"enrolment", "protocol", "rig",    "calibration", "session",     "segment",  "block",
+        "trial",     "tone",     "signal", "event",       "self_test",   "answer",   "friction_level",
+        "program",   "estimate", "link",   "annotation",  "same_person", "tombstone"}) {
     CollectedTable table;
     table.name = name;
     read_columns(database, table);

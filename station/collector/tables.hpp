@@ -46,7 +46,8 @@ struct CollectedTable {
 
 /// Returns the collected tables. Each comes after those to which it refers. The list is made from the schema
 /// of an empty station database and from the descriptions of its columns, so that the server's tables cannot
-/// differ from the station's.
+/// differ from the station's. The table participant is not collected. Its codes, such as P01, are the same at many
+/// stations, so a row that one station has not committed yet would make others wait.
 const std::vector<CollectedTable>& collected_tables();
 
 const CollectedTable& collected_table(std::string_view name);

@@ -147,6 +147,8 @@ struct ToneRow {
   /// amplitude at the pick-up relative to the plan, and its phase relative to the calibration; empty if the
   /// tone was not measured
   std::optional<double> measured_dB, measured_phase_deg;
+  /// standard deviation of the level that the rig's parameters cause; empty if the rig does not say theirs
+  std::optional<double> level_uncertainty_dB;
 };
 
 /// The channels of a signal: one number per channel and point.
@@ -214,6 +216,8 @@ struct TrialRow {
   /// how sure the participant was, from 1 (guessed) up; only if the task asks for it
   std::optional<int> confidence;
   std::optional<double> confidence_time_s;  ///< time from the answer to the statement of confidence
+  /// what the result was worth to the participant; empty without points in the protocol, and for void trials
+  std::optional<double> points;
   /// response_time_quality: "kernel", "toolkit" or "simulated", by the origin of the time stamp
   std::string response_zero, response_time_quality;
   double response_offset_s = 0;

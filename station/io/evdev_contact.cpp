@@ -4,6 +4,7 @@
 #include <poll.h>
 #include <time.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <system_error>
@@ -12,7 +13,8 @@
 namespace turnpoint::io {
 
 std::optional<Contact> ContactReader::take(std::int64_t time_ns, bool on, int position) noexcept {
-  const double place = static_cast<double>(position - range_.lowest) / (range_.highest - range_.lowest);
+  const double share = static_cast<double>(position - range_.lowest) / (range_.highest - range_.lowest);
+  const double place = std::clamp(share, 0.0, 1.0);  // some devices report more than their range
   const bool moved = on && std::abs(place - told_) >= 0.01;
   if (on == told_on_ && !moved) return std::nullopt;
   told_on_ = on;

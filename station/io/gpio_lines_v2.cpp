@@ -196,8 +196,6 @@ std::unique_ptr<Lines> open_gpio_lines(const std::vector<LineRequest>& requests)
   return std::make_unique<GpioLines>(requests);
 }
 
-std::string gpio_library() { return std::string("libgpiod ") + gpiod_api_version(); }
-
 std::optional<LineState> find_line(const std::string& name) {
   const Found found = find(name);
   if (!found.chip) return std::nullopt;

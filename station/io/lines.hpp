@@ -76,9 +76,6 @@ class Outputs {
 std::unique_ptr<Outputs> open_gpio_outputs(const std::vector<std::string>& names,
                                            const std::string& consumer);
 
-/// Name and version of the library that this build uses, such as "libgpiod 1.6.3".
-std::string gpio_library();
-
 /// What `doctor` can find out about a named line without requesting it.
 struct LineState {
   std::string name, chip;

@@ -29,6 +29,19 @@
 #include "station/system/condition.hpp"
 
 namespace turnpoint::maintenance {
+
+bool names_a_card(const std::string& uri) {
+  // The devices that alsa-lib makes for every card; a name from the machine's own configuration may be any
+  // other.
+  static const std::regex of_card(
+      "alsa:(plug:)?['\"]?(hw|plughw|default|sysdefault|front|rear|side|center_lfe|surround[0-9]+|iec958|"
+      "spdif|hdmi|dmix|dshare|dsnoop)(:(.*))?");
+  static const std::regex named(
+      "(.*,)?CARD=(?![0-9]+([,'\"].*)?$).+|(?!.*CARD=)(?![A-Z]+=)(?![0-9]*([,'\"].*)?$).+");
+  std::smatch parts;
+  return !std::regex_match(uri, parts, of_card) || std::regex_match(parts[4].str(), named);
+}
+
 namespace {
 
 using Status = io::Finding::Status;
@@ -56,11 +69,14 @@ io::Finding measured_clock(audio::Stream& stream) {
           phrase("doctor.no_stamps_mend")};
 }
 
-// Returns the card name for amixer: NAME in alsa:hw:CARD=NAME,DEV=0 or alsa:hw:NAME,0.
-std::string card_of(std::string_view uri) {
-  uri.remove_prefix(std::string_view("alsa:hw:").size());
-  if (uri.starts_with("CARD=")) uri.remove_prefix(5);
-  return std::string(uri.substr(0, uri.find(',')));
+// Returns the card for amixer: NAME in alsa:hw:CARD=NAME,DEV=0 or alsa:plughw:NAME,0; the first one if none
+// is named.
+std::string card_for_amixer(const std::string& uri) {
+  const auto card = audio::card_of(uri);
+  const auto from = card.find_first_of(":=");
+  if (from == std::string::npos) return "0";
+  const auto last = card.find('=', from);
+  return card.substr((last == std::string::npos ? from : last) + 1);
 }
 
 // A PCM512x mutes its analogue outputs after 1024 frames of zeros (5 ms at 192 kHz), and unmutes them at the
@@ -71,7 +87,7 @@ void converter_mute(const rig::Rig& rig, std::vector<io::Finding>& checks) {
   if (!on) return;
   checks.push_back({phrase("doctor.converter_mute"), *on ? Status::failed : Status::ok,
                     phrase(*on ? "doctor.mute_on" : "doctor.mute_off"),
-                    *on ? phrase("doctor.mute_mend", {plain(card_of(rig.output.uri))}) : Phrase()});
+                    *on ? phrase("doctor.mute_mend", {plain(card_for_amixer(rig.output.uri))}) : Phrase()});
 }
 
 // Compares the card's levels with those of the calibration.
@@ -83,17 +99,17 @@ void mixer(const rig::Rig& rig, std::vector<io::Finding>& checks) {
                     good ? Phrase() : phrase("refusal.mixer")});
 }
 
-/// True for alsa:hw:0 or alsa:plughw:CARD=0: the numbers of cards change between boots.
-bool has_card_number(const std::string& uri) {
-  static const std::regex numbered("alsa:(plug)?hw:(CARD=)?[0-9]+(,.*)?");
-  return std::regex_match(uri, numbered);
-}
-
 /// What to do if a sound device does not open.
 Phrase sound_mend(const std::exception& error, const char* otherwise) {
   const auto* refused = dynamic_cast<const std::system_error*>(&error);
   const bool rights = refused != nullptr && refused->code() == std::errc::permission_denied;
   return phrase(rights ? "doctor.sound_rights_mend" : otherwise);
+}
+
+// Warns of a sound device that may be another card after the next boot.
+void card_name(const Phrase& name, const std::string& uri, std::vector<io::Finding>& checks) {
+  if (!names_a_card(uri))
+    checks.push_back({name, Status::warning, plain(uri), phrase("doctor.card_number_mend")});
 }
 
 void converter(const rig::Rig& rig, std::vector<io::Finding>& checks) {
@@ -102,6 +118,7 @@ void converter(const rig::Rig& rig, std::vector<io::Finding>& checks) {
     checks.push_back({name, Status::ok, phrase("doctor.no_converter", {uri}), {}});
     return;
   }
+  card_name(name, rig.output.uri, checks);
   try {
     const auto stream = audio::open_realtime(session::stream_of(rig));
     checks.push_back(
@@ -109,8 +126,6 @@ void converter(const rig::Rig& rig, std::vector<io::Finding>& checks) {
          Status::ok,
          phrase("doctor.converter_good", {uri, number(rig.output.rate_Hz), number(rig.output.bits)}),
          {}});
-    if (has_card_number(rig.output.uri))
-      checks.push_back({name, Status::warning, uri, phrase("doctor.card_number_mend")});
     checks.push_back(measured_clock(*stream));
     const auto underruns = stream->counters().underruns;
     checks.push_back({phrase("doctor.converter_stream"), underruns == 0 ? Status::ok : Status::failed,
@@ -265,9 +280,11 @@ io::Finding check_file_system(const std::string& file_system) {
   };
   const auto name = phrase("doctor.file_system"), what = plain(file_system);
   if (is({"tmpfs", "ramfs", "overlay"})) return {name, Status::failed, what, phrase("doctor.volatile_mend")};
-  if (is({"nfs", "cifs", "fuse", "9p", "ceph", "afs", "vboxsf"}))
+  if (is({"nfs", "cifs", "fuse", "9p", "ceph", "afs", "coda", "lustre", "gfs2", "ocfs2", "gpfs", "beegfs",
+          "vboxsf"}))
     return {name, Status::warning, what, phrase("doctor.network_mend")};
-  if (is({"vfat", "exfat", "ntfs"})) return {name, Status::warning, what, phrase("doctor.fat_mend")};
+  if (is({"vfat", "exfat", "ntfs", "hfsplus"}))
+    return {name, Status::warning, what, phrase("doctor.fat_mend")};
   return {name, Status::ok, what, {}};
 }
 
@@ -321,6 +338,7 @@ std::vector<io::Finding> examine(const rig::Rig& rig, const std::string& data_pa
   converter_mute(rig, checks);
   mixer(rig, checks);
   if (const auto plan = session::card_capture_of(rig)) {
+    card_name(phrase("doctor.capture"), plan->device.uri, checks);
     checks.push_back(capture(*plan));
     checks.push_back(pick_ups(rig));
     if (rig.capture->converter) checks.push_back(force_converter(*rig.capture->converter));

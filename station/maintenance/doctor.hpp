@@ -23,6 +23,10 @@ io::Finding check_swap(const std::string& swaps = "/proc/swaps");
 /// the kernel lists watchdogs.
 io::Finding check_watchdog(const std::string& folder = "/sys/class/watchdog");
 
+/// False for a device of alsa-lib that names no card, such as alsa:default, or names it by its number, as in
+/// alsa:hw:0 or alsa:plughw:CARD=0: after the next boot, this may be another card.
+bool names_a_card(const std::string& uri);
+
 /// Checks the file system of the data folder, as system::Disk names it: fails for those that lose their files
 /// when the machine is switched off, and warns of network and FUSE mounts.
 io::Finding check_file_system(const std::string& file_system);

@@ -19,11 +19,7 @@ namespace {
 std::optional<rig::Calibration> in_force(const rig::Rig& rig, const std::string& path) {
   if (path.empty()) return std::nullopt;
   auto newest = rig::load_calibration(path);
-  // A calibration that has only friction or sound levels is not used by sessions, but what is in it still
-  // counts when more is measured.
-  const int left_days = rig::days_left(newest, rig::today());
-  const bool current = left_days >= 0 && left_days <= newest.valid_days;
-  return newest.rig_sha256 == rig.sha256 && current ? std::optional(newest) : std::nullopt;
+  return rig::problems(newest, rig.sha256, rig::today()).empty() ? std::optional(newest) : std::nullopt;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "station/core/median.hpp"
 #include "station/procedure/description.hpp"
 #include "station/procedure/keys.hpp"
 #include "station/procedure/state_hash.hpp"
@@ -22,10 +23,8 @@ void Adjustment::record_setting(double setting) {
 std::map<std::string, Estimate> Adjustment::estimates() const {
   const auto n = settings_.size();
   if (n < 2) return {};
-  auto sorted = settings_;
-  std::sort(sorted.begin(), sorted.end());
   Estimate estimate;
-  estimate.mode = 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]);
+  estimate.mode = core::median(settings_);
   for (const double setting : settings_) estimate.mean += setting / static_cast<double>(n);
   double squares = 0;
   for (const double setting : settings_) squares += (setting - estimate.mean) * (setting - estimate.mean);

@@ -44,36 +44,66 @@ std::vector<std::size_t> combination(const Levels& factors, std::size_t repeat) 
 
 }  // namespace
 
+/// Whether an order is found depends on the draws. A protocol is checked with the list that these give, which
+/// a session therefore takes if its own draws give none.
+constexpr core::DrawKey kSureOrder{0, core::Stream::level_order, 0, 0, 0};
+
 ConstantStimuli::ConstantStimuli(const Spec& spec, const Context& context, const core::DrawKey& key)
     : spec_(spec), context_(context), key_(key) {
   core::Draws draws({key.seed, core::Stream::level_order, key.block, key.attempt, 0});
-  queue_ = items(draws);
-  order(queue_, draws);
+  queue_ = items(spec_, context_, draws);
+  if (spec_.rules.empty())
+    shuffle(queue_, draws);
+  else if (!order_by_rules(spec_, queue_, draws).problem.empty())
+    queue_ = sure_order(spec_, context_);
   for (const auto& item : queue_) ++left_[kind_of(item)];
   total_ = static_cast<int>(queue_.size());
 }
 
-std::vector<ConstantStimuli::Item> ConstantStimuli::items(core::Draws& draws) const {
-  const auto repeats = static_cast<std::size_t>(spec_.repeats);
-  std::vector<Item> all(repeats * spec_.values.size());
+std::vector<ConstantStimuli::Item> ConstantStimuli::sure_order(const Spec& spec, const Context& context) {
+  core::Draws draws(kSureOrder);
+  auto list = items(spec, context, draws);
+  if (auto found = order_by_rules(spec, list, draws); !found.problem.empty()) throw NoOrder(std::move(found));
+  return list;
+}
+
+std::vector<ConstantStimuli::Item> ConstantStimuli::items(const Spec& spec, const Context& context,
+                                                          core::Draws& draws) {
+  const auto repeats = static_cast<std::size_t>(spec.repeats);
+  std::vector<Item> all(repeats * spec.values.size());
   for (std::size_t i = 0; i < all.size(); ++i)
-    all[i].value = i % spec_.values.size(), all[i].repeat = i / spec_.values.size();
+    all[i].value = i % spec.values.size(), all[i].repeat = i / spec.values.size();
   Levels shuffled;
-  for (const auto& factor : spec_.balance) shuffled.emplace_back(context_.factor_levels.at(factor));
+  for (const auto& factor : spec.balance) shuffled.emplace_back(context.factor_levels.at(factor));
   const auto cells = crossed(shuffled);
-  for (std::size_t value = 0; value < spec_.values.size(); ++value)
+  for (std::size_t value = 0; value < spec.values.size(); ++value)
     for (std::size_t repeat = 0; repeat < repeats; ++repeat) {
       if (repeat % cells == 0)
         for (auto& levels : shuffled) {
           std::iota(levels.begin(), levels.end(), 0);
           draws.shuffle(levels);
         }
-      all[repeat * spec_.values.size() + value].balance = combination(shuffled, repeat);
+      all[repeat * spec.values.size() + value].balance = combination(shuffled, repeat);
     }
   return all;
 }
 
-void ConstantStimuli::order(std::vector<Item>& items, core::Draws& draws) const {
+ListOrder ConstantStimuli::order_by_rules(const Spec& spec, std::vector<Item>& items, core::Draws& draws) {
+  std::vector<OrderedItem> list;
+  for (const auto& item : items) {
+    const auto first = std::ranges::find(spec.values, spec.values[item.value]) - spec.values.begin();
+    list.push_back(
+        {{static_cast<std::size_t>(first)}, spec.shuffle == Shuffle::within_repeat ? item.repeat : 0});
+    list.back().values.insert(list.back().values.end(), item.balance.begin(), item.balance.end());
+  }
+  auto found = in_order(list, spec.rules, draws);
+  std::vector<Item> ordered;
+  for (const auto at : found.items) ordered.push_back(items[at]);
+  items = std::move(ordered);
+  return found;
+}
+
+void ConstantStimuli::shuffle(std::vector<Item>& items, core::Draws& draws) const {
   if (spec_.shuffle == Shuffle::none) return;
   const auto n = spec_.shuffle == Shuffle::within_repeat ? spec_.values.size() : items.size();
   for (std::size_t first = 0; first < items.size(); first += n) {
@@ -90,7 +120,7 @@ bool ConstantStimuli::in_repeat(std::size_t at) const {
 
 std::vector<Candidate> ConstantStimuli::candidates() const {
   if (!next()) return {};
-  if (spec_.shuffle == Shuffle::none) return {{choice(0)}};
+  if (spec_.shuffle == Shuffle::none || !spec_.rules.empty()) return {{choice(0)}};
   // This is called for each trial, and a list may be long: the search ends once all kinds of items are known.
   std::vector<Candidate> all;
   std::map<Kind, std::size_t> known;
@@ -102,7 +132,8 @@ std::vector<Candidate> ConstantStimuli::candidates() const {
   const bool in_block = spec_.shuffle == Shuffle::within_block;
   std::vector<bool> soon(spec_.values.size());  // the values that the present repeat still has
   auto at = position_;
-  for (; at < queue_.size() && in_repeat(at) && known.size() < (in_block ? left_.size() : queue_.size()); ++at) {
+  for (; at < queue_.size() && in_repeat(at) && known.size() < (in_block ? left_.size() : queue_.size());
+       ++at) {
     ++look(at).in_repeat;
     soon[queue_[at].value] = true;
   }
@@ -142,6 +173,10 @@ std::optional<Proposal> ConstantStimuli::next() const {
 }
 
 void ConstantStimuli::record(Answer answer) {
+  if (answer == Answer::none && !context_.unanswered_are_data && !spec_.rules.empty()) {
+    ++requeued_;
+    return;
+  }
   auto item = queue_[position_++];
   if (const auto left = left_.find(kind_of(item)); --left->second == 0) left_.erase(left);
   if (spec_.stop.right && answer != Answer::none) answers_.push_back(answer == Answer::one);
@@ -166,6 +201,18 @@ std::uint64_t ConstantStimuli::state_hash() const {
   for (const bool right : answers_) hash.add(right ? 1 : 0);
   for (std::size_t i = position_; i < queue_.size(); ++i) hash.add(queue_[i].value);
   return hash.value();
+}
+
+NoOrder::NoOrder(ListOrder order)
+    : std::invalid_argument(core::say(order.problem, "en")), found(std::move(order)) {}
+
+std::optional<Problem> order_problem(const Spec& spec, const Context& context) {
+  try {
+    ConstantStimuli::sure_order(spec, context);
+  } catch (const NoOrder& none) {
+    return Problem{"order", none.found.problem, none.found.allowed};
+  }
+  return std::nullopt;
 }
 
 extern const Description constant_stimuli{

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -10,8 +12,8 @@ namespace turnpoint::procedure {
 
 /// Presents every value `repeats` times. Combinations of the balanced factors occur equally often, as far as
 /// possible. The order is shuffled.
-/// Unanswered trials are repeated later. Ends early if enough of the last answers were right (Stop::right,
-/// Stop::of_last).
+/// Unanswered trials are repeated later; with rules of the order (Spec::rules), at once. Ends early if enough
+/// of the last answers were right (Stop::right, Stop::of_last).
 class ConstantStimuli : public Procedure {
  public:
   ConstantStimuli(const Spec& spec, const Context& context, const core::DrawKey& key);
@@ -30,11 +32,17 @@ class ConstantStimuli : public Procedure {
     std::size_t value = 0, repeat = 0;
     std::vector<std::size_t> balance;
   };
-  using Kind = std::pair<std::size_t, std::vector<std::size_t>>;  ///< value and levels of the balanced factors
+  using Kind =
+      std::pair<std::size_t, std::vector<std::size_t>>;  ///< value and levels of the balanced factors
   static Kind kind_of(const Item& item) { return {item.value, item.balance}; }
-  std::vector<Item> items(core::Draws& draws) const;
+  static std::vector<Item> items(const Spec& spec, const Context& context, core::Draws& draws);
+  /// Puts the items in an order that keeps the rules; or says why there is none, and leaves none.
+  static ListOrder order_by_rules(const Spec& spec, std::vector<Item>& items, core::Draws& draws);
+  /// The list that every session can have. Throws NoOrder.
+  static std::vector<Item> sure_order(const Spec& spec, const Context& context);
+  friend std::optional<Problem> order_problem(const Spec& spec, const Context& context);
   bool in_repeat(std::size_t at) const;
-  void order(std::vector<Item>& items, core::Draws& draws) const;
+  void shuffle(std::vector<Item>& items, core::Draws& draws) const;
 
   Spec spec_;
   Context context_;
@@ -46,5 +54,15 @@ class ConstantStimuli : public Procedure {
   std::vector<bool> answers_;
   int recorded_ = 0, requeued_ = 0, total_ = 0;
 };
+
+/// Thrown by the constructor if no order of the list keeps Spec::rules.
+struct NoOrder : std::invalid_argument {
+  explicit NoOrder(ListOrder found);
+  ListOrder found;
+};
+
+/// Says why no order of the list keeps Spec::rules; empty if there is one. The context needs the numbers of
+/// levels.
+std::optional<Problem> order_problem(const Spec& spec, const Context& context);
 
 }  // namespace turnpoint::procedure

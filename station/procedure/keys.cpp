@@ -31,7 +31,10 @@ void read_order(TableReader& reader, Spec& spec) {
     return;
   }
   TableReader inner(*table, reader.path("order"), reader.findings(), reader.keys("order"));
-  const auto shuffle = inner.word("shuffle");
+  spec.after_each_other = inner.maybe_strings("after_each_other");
+  if (inner.has("after_each_other")) spec.back = inner.integer("back");
+  if (const auto* never = inner.maybe_table("never_after")) spec.never_after = *never;
+  const auto shuffle = inner.has("after_each_other") ? "within-block" : inner.word("shuffle");
   spec.shuffle = shuffle == "none"           ? Shuffle::none
                  : shuffle == "within-block" ? Shuffle::within_block
                                              : Shuffle::within_repeat;

@@ -62,6 +62,15 @@ std::vector<Problem> validate(const Spec& spec) {
   return problems;
 }
 
+core::Phrase parameter_name(const std::string& parameter) {
+  static const std::map<std::string, const char*> known{
+      {"threshold", "report.threshold"}, {"pse", "report.pse"},     {"slope", "report.slope"},
+      {"spread", "report.spread"},       {"lapse", "report.lapse"}, {"criterion", "report.criterion"},
+      {"gradient", "report.gradient"},   {"floor", "report.floor"}};
+  const auto found = known.find(parameter);
+  return found == known.end() ? core::plain(parameter) : core::phrase(found->second);
+}
+
 std::optional<core::Phrase> end_in_words(Ended ended, const std::string& procedure, int count) {
   switch (ended) {
     case Ended::limit:

@@ -31,10 +31,11 @@ struct Candidate {
 
 /// How the participant answered at the level that the procedure proposed.
 enum class Answer {
-  one,   ///< the answer was right; or, if the procedure measures how often one answer is given, it was that
-         ///< one
-  zero,  ///< any other answer
-  none   ///< no valid answer (timeout, anticipation), from which the procedure learns nothing
+  one,    ///< the answer was right; or, if the procedure measures how often one answer is given, it was that
+          ///< one
+  zero,   ///< any other answer
+  none,   ///< no valid answer (timeout, anticipation), from which the procedure learns nothing
+  unsure  ///< the participant did not want to guess
 };
 
 /// An unanswered trial is repeated at the same level, up to kRepeatsInARow times. If the last repeat is
@@ -54,6 +55,10 @@ enum class Ended {
 /// Says about the procedure with this name how it ended if that was not by its rules; otherwise empty.
 /// `count` is the number of steps or trials.
 std::optional<core::Phrase> end_in_words(Ended ended, const std::string& procedure, int count);
+
+/// How pages and reports call an estimated parameter, such as "threshold". A parameter of a separate program keeps the
+/// name that the program gives it.
+core::Phrase parameter_name(const std::string& parameter);
 
 struct Estimate {
   double mode = 0, mean = 0;

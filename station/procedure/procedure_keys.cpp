@@ -75,10 +75,26 @@ Key prior(const char* name) {
 
 Key order(bool listed_levels) {
   Keys keys;
-  if (listed_levels)
+  if (listed_levels) {
     keys.list.push_back(
         word("shuffle", {"within-repeat", "within-block", "none"}, "among which trials the order is drawn")
-            .by_default("\"within-repeat\""));
+            .by_default("\"within-repeat\"")
+            .only_without("after_each_other"));
+    keys.list.push_back(
+        strings("after_each_other",
+                "factors of which each combination of values comes equally often after each other "
+                "one; the level, or those of \"balance\""));
+    keys.list.push_back(
+        integer("back", 1, 5, "how many trials back that holds: 2 for each value after each pair of values")
+            .by_default("1")
+            .only_with("after_each_other"));
+    keys.list.push_back(table(
+        "never_after",
+        Keys{}.with_free_names(list("FACTOR",
+                                    {numbers("", any_level, "").holding(2, 2), strings("", "").holding(2, 2)},
+                                    "pairs of its values")),
+        "pairs of values, of which the second never comes right after the first"));
+  }
   keys.list.push_back(several(
       "max_run",
       {integer("", 1, 1000, ""),

@@ -68,9 +68,7 @@ void read_grids(core::TableReader& reader, Spec& spec) {
   read_scale(reader, spec);
   const auto function = reader.word("function");
   spec.signal_detection = function == "signal-detection";
-  spec.function = function == "normal"     ? core::Function::normal
-                  : function == "logistic" ? core::Function::logistic
-                                           : core::Function::weibull;
+  spec.function = core::function_named(function);
   if (const auto* stimuli = reader.require(
           "stimuli", phrase("give the levels from which to choose: %1", {plain("{ from, to, step }")})))
     spec.stimuli = read_grid(*stimuli, reader, "stimuli");

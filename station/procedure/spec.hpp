@@ -11,6 +11,7 @@
 #include "station/core/psychometric.hpp"
 #include "station/core/texts.hpp"
 #include "station/core/toml.hpp"
+#include "station/procedure/order.hpp"
 
 namespace turnpoint::procedure {
 
@@ -103,7 +104,9 @@ struct Program {
 struct Spec {
   std::string name;
   Kind kind = Kind::constant_stimuli;
-  std::string level;   ///< the factor that the procedure sets
+  std::string level;  ///< the factor that the procedure sets
+  /// the probability that a guess is right, if the participant may be unsure instead of guessing
+  std::optional<double> guess_rate;
   std::string tracks;  ///< the answer that counts as 1; "" if right answers count as 1
   Scale scale = Scale::linear;
   /// the values that some factors have in all trials of this procedure
@@ -121,6 +124,13 @@ struct Spec {
   /// The largest number of trials in a row that may have the same value of a factor or, for kRightAnswer, the
   /// same right answer. It holds over all trials of a block in which the procedure runs.
   std::map<std::string, int> max_run;
+  /// factors whose values follow each other equally often, and how many trials back
+  std::vector<std::string> after_each_other;
+  int back = 1;
+  core::Value never_after = {};  ///< the table of pairs of values, as written
+  /// the same rules, with numbers: factor 0 is the level, with the places of `values` (the first of equal
+  /// ones); the others are those of `balance`, with the places of their levels
+  OrderRules rules;
 
   // The following members are for procedures that move one level up and down. `start` is the first level; the
   // level stays between `min` and `max`.
@@ -195,6 +205,12 @@ bool enough_right(const Stop& stop, std::size_t answers, const AnswerAt& answer_
 const char* name(Kind kind);  ///< the kind's name in a protocol: "constant-stimuli", "up-down", ...
 std::optional<Kind> parse_kind(const std::string& text);
 std::vector<std::string> kind_names();
+
+/// Returns the number of trials in a list.
+inline std::size_t list_trials(const Spec& spec) {
+  const auto trials = spec.values.size() * static_cast<std::size_t>(spec.repeats);
+  return spec.rules.equally.empty() ? trials : trials + spec.rules.back;
+}
 
 /// Returns about how many trials the method of limits takes. Assumes that the answers change half-way between
 /// the ascending and the descending starts. If all series have one direction, the limit `min` or `max` stands

@@ -32,9 +32,22 @@ std::pair<std::vector<double>, std::vector<double>> step_sizes(const Spec& spec)
   return {down, up};
 }
 
+/// The sizes of the steps upwards after an answer of those who do not want to guess: the mean step after a
+/// guess (Kaernbach 2001). With it, the steps balance at the same level as if they had guessed.
+std::vector<double> unsure_steps(const Spec& spec) {
+  const auto [down, up] = step_sizes(spec);
+  std::vector<double> steps;
+  if (!spec.guess_rate || spec.kind != Kind::weighted_up_down) return steps;
+  for (std::size_t i = 0; i < std::min(down.size(), up.size()); ++i)
+    steps.push_back((1 - *spec.guess_rate) * up[i] - *spec.guess_rate * down[i]);
+  return steps;
+}
+
 std::vector<double> all_steps(const Spec& spec) {
   auto [all, up] = step_sizes(spec);
   all.insert(all.end(), up.begin(), up.end());
+  const auto unsure = unsure_steps(spec);
+  all.insert(all.end(), unsure.begin(), unsure.end());
   return all;
 }
 
@@ -42,18 +55,25 @@ std::vector<double> all_steps(const Spec& spec) {
 
 Staircase::Staircase(const Spec& spec) : Track(spec, all_steps(spec)) {
   std::tie(steps_down_, steps_up_) = step_sizes(spec);
+  steps_unsure_ = unsure_steps(spec);
 }
 
 void Staircase::step_towards(Direction direction) {
+  step_towards(direction, direction == Direction::down ? steps_down_ : steps_up_);
+}
+
+void Staircase::step_towards(Direction direction, const std::vector<double>& sizes) {
   turn(direction);
-  const auto& sizes = direction == Direction::down ? steps_down_ : steps_up_;
   step(sizes[std::min(reversals_.size(), sizes.size() - 1)], direction);
 }
 
 void Staircase::learn(Answer answer) {
   const bool initial = spec_.initial_down && reversals_.empty() && direction_ != Direction::up;
   const int n_down = initial ? *spec_.initial_down : spec_.n_down;
-  if (answer == Answer::one) {
+  if (answer == Answer::unsure && !steps_unsure_.empty()) {
+    ones_ = zeros_ = 0;
+    step_towards(Direction::up, steps_unsure_);
+  } else if (answer == Answer::one) {
     zeros_ = 0;
     if (++ones_ >= n_down) ones_ = 0, step_towards(Direction::down);
   } else {

@@ -18,8 +18,10 @@ class Staircase : public Track {
  private:
   void learn(Answer answer) override;
   void step_towards(Direction direction);
+  void step_towards(Direction direction, const std::vector<double>& sizes);
 
   std::vector<double> steps_down_, steps_up_;
+  std::vector<double> steps_unsure_;  ///< upwards, after an answer of those who do not want to guess
   int ones_ = 0, zeros_ = 0;
 };
 

@@ -112,7 +112,8 @@ void check_unused(AdviceList& advice) {
   for (const auto& factor : protocol.factors) {
     const auto sets = [&](const Source& source) { return source.sets.count(factor.name) > 0; };
     // a factor that divides participants into groups need not change what the surface presents
-    if (!is_group(factor) && !used.count(factor.name) && std::none_of(sources.begin(), sources.end(), sets))
+    if (!is_group(factor) && !used.count(factor.name) && factor.name != protocol.task.question_shows &&
+        std::none_of(sources.begin(), sources.end(), sets))
       advice.add("factor." + factor.name + ".name",
                  phrase("the factor \"%1\" is not used", {plain(factor.name)}));
   }

@@ -109,6 +109,24 @@ void check_block(AdviceList& advice, const std::variant<Block, Sequence>& part) 
                phrase("use levels at which each answer is right equally often"));
 }
 
+/// True if an answer names an interval; which of them has the target is drawn in each trial.
+bool answers_are_places(const Task& task) {
+  return task.kind != TaskKind::single_interval && task.kind != TaskKind::same_different &&
+         task.kind != TaskKind::adjustment;
+}
+
+// Reports a procedure that follows an answer which no level makes more frequent.
+void check_tracked(AdviceList& advice, const Spec& spec) {
+  if (spec.tracks.empty() || !answers_are_places(advice.protocol.task)) return;
+  advice.add(
+      key_of(spec, "tracks"),
+      phrase(
+          "\"%1\" follows the answer \"%2\", but which interval has the target is drawn in each trial, so no "
+          "level makes this answer more frequent",
+          {plain(spec.name), plain(spec.tracks)}),
+      phrase("leave out \"tracks\", so that the procedure follows right answers"));
+}
+
 // A staircase or a Bayesian procedure assumes that the task becomes easier in one direction only, either
 // towards higher or towards lower levels. Reports one whose task is easy on both sides of zero.
 void check_followed(AdviceList& advice, const Source& source) {
@@ -124,12 +142,15 @@ void check_followed(AdviceList& advice, const Source& source) {
   const auto& levels = source.levels;
   if (levels.empty() || levels.front() >= 0 || levels.back() <= 0) return;
   if (kind == AnswerKind::side)
-    advice.add(key_of(*spec, "level"),
-               phrase("\"%1\" follows right answers over levels on both sides of zero, but the task is easy "
-                      "on both sides",
-                      {plain(spec->name)}),
-               phrase("set \"tracks\" to the answer that the procedure should follow, or use levels on one "
-                      "side of zero only"));
+    advice.add(
+        key_of(*spec, "level"),
+        phrase("\"%1\" follows right answers over levels on both sides of zero, but the task is easy "
+               "on both sides",
+               {plain(spec->name)}),
+        answers_are_places(advice.protocol.task)
+            ? phrase("use levels on one side of zero only, or %1", {plain("kind = \"constant-stimuli\"")})
+            : phrase("set \"tracks\" to the answer that the procedure should follow, or use levels on one "
+                     "side of zero only"));
 }
 
 // Checks that some order of the trials of the procedure satisfies `max_run`. Only a trial with another right
@@ -221,6 +242,7 @@ void advise_on_answers(AdviceList& advice) {
   if (compared) check_each_answer(advice);
   if (compared)
     for (const auto& source : sources_of(protocol)) check_followed(advice, source);
+  for (const auto& spec : protocol.procedures) check_tracked(advice, spec);
   if (compared)
     for (const auto& spec : protocol.procedures) check_runs(advice, spec);
   for (const auto& part : protocol.plan) {

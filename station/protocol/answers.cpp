@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "station/core/median.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/sources.hpp"
 
@@ -208,6 +209,29 @@ bool two_sided(const Protocol& protocol, const std::string& level) {
   return ends && ends->first < 0 && ends->second > 0;
 }
 
+int answer_count(const Task& task) {
+  return static_cast<int>(task.choices.size()) + (task.unsure.empty() ? 0 : 1);
+}
+
+std::string answer_id(const Task& task, int index) {
+  if (index < 0 || index >= answer_count(task)) return "";
+  const auto place = static_cast<std::size_t>(index);
+  return place < task.choices.size() ? task.choices[place].id : kUnsure;
+}
+
+std::optional<int> answer_index(const Task& task, const std::string& id) {
+  for (int i = 0; i < answer_count(task); ++i)
+    if (answer_id(task, i) == id) return i;
+  return std::nullopt;
+}
+
+procedure::Answer learned_from(const procedure::Spec& spec, const std::string& response,
+                               const std::optional<bool>& correct) {
+  if (spec.guess_rate && response == kUnsure) return procedure::Answer::unsure;
+  const bool one = spec.tracks.empty() ? correct.value_or(false) : response == spec.tracks;
+  return one ? procedure::Answer::one : procedure::Answer::zero;
+}
+
 bool explored(const Task& task) {
   return (task.kind == TaskKind::single_interval && task.standard.empty()) ||
          task.kind == TaskKind::adjustment;
@@ -225,6 +249,16 @@ std::optional<StimulusEnd> stimulus_end(const Protocol& protocol) {
   const double even = *whole / static_cast<double>(scenes);
   const auto change = task.foreperiod_s.value_or(Distribution{even, even});
   return StimulusEnd{*whole - change.high, *whole - change.low};
+}
+
+double quick_trial_s(const Protocol& protocol, double answer_s) {
+  const auto mean = [](const Distribution& times_s) { return 0.5 * (times_s.low + times_s.high); };
+  const auto& task = protocol.task;
+  const double gaps = static_cast<double>(std::max<std::size_t>(1, task.intervals.size()) - 1);
+  const double stimuli_s = explored(task)
+                               ? (task.foreperiod_s ? mean(*task.foreperiod_s) : 0)
+                               : task.duration_s.value_or(0) * (gaps + 1) + task.gap_s.value_or(0) * gaps;
+  return kCue_s + stimuli_s + answer_s + mean(protocol.timing.iti_s);
 }
 
 std::optional<double> accepted(const ValueAnswer& answer, double given) {
@@ -250,8 +284,7 @@ double middle_level(const Protocol& protocol, const std::string& level) {
   }
   auto& all = by_procedures.empty() ? by_blocks : by_procedures;
   if (all.empty()) return 1;
-  std::sort(all.begin(), all.end());
-  return 0.5 * (all[(all.size() - 1) / 2] + all[all.size() / 2]);
+  return core::median(all);
 }
 
 }  // namespace turnpoint::protocol

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "station/procedure/procedure.hpp"
 #include "station/protocol/protocol.hpp"
 
 namespace turnpoint::protocol {
@@ -25,6 +26,20 @@ std::string scene_of(const Task& task, int number);
 /// True if the answers can be right or wrong.
 bool scored(const Task& task);
 
+/// The number of answers that the participant can choose from: the choices, and then `unsure`, if the task
+/// has it.
+int answer_count(const Task& task);
+
+/// The id of the answer with this index; "" if there is none.
+std::string answer_id(const Task& task, int index);
+
+/// The index of the answer with this id; empty if there is none.
+std::optional<int> answer_index(const Task& task, const std::string& id);
+
+/// What a procedure learns from an answer: its id, and whether it was right, if it can be.
+procedure::Answer learned_from(const procedure::Spec& spec, const std::string& response,
+                               const std::optional<bool>& correct);
+
 /// True if the participant may answer while the surface moves.
 bool explored(const Task& task);
 
@@ -34,6 +49,10 @@ struct StimulusEnd {
   double earliest_s = 0, latest_s = 0;
 };
 std::optional<StimulusEnd> stimulus_end(const Protocol& protocol);
+
+/// About how long a trial lasts that is answered `answer_s` after its stimuli: the get-ready cue, the
+/// stimuli, the answer and the pause.
+double quick_trial_s(const Protocol& protocol, double answer_s);
 
 /// True if answers are ratings or numbers, none of which is right or wrong.
 inline bool judges(const Task& task) { return task.rating || task.value; }

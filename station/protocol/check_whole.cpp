@@ -79,6 +79,23 @@ void check_present(const std::vector<Source>& sources, const Reading& reading) {
                          phrase("levels with a signal and levels without one, such as 0"));
 }
 
+// Points and goals need answers that are right or wrong.
+void check_goals(const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  const auto& task = protocol.task;
+  const bool judged = task.kind != TaskKind::adjustment && scored(task);
+  if (judged || !reading.places.has("task") || reading.places.has("task.correct")) return;
+  const auto report = [&](const std::string& key) {
+    reading.findings.add(reading.places.of(key),
+                         phrase("\"%1\" judges answers, but no answer is correct", {plain(key)}),
+                         task.kind == TaskKind::adjustment ? phrase("use another kind of task")
+                                                           : phrase("set \"correct\" in [task]"));
+  };
+  if (protocol.payoff) report("payoff");
+  for (const auto& [name, instruction] : protocol.instructions)
+    if (instruction.goal) report("instructions." + name + ".goal");
+}
+
 // Without correct answers, a procedure cannot follow right answers, and practice cannot be passed. Reports
 // such procedures and blocks.
 void check_scored(core::TableReader& file, const Reading& reading) {
@@ -272,6 +289,7 @@ void check_whole(core::TableReader& file, Reading& reading) {
   check_timing(file, reading);
   check_signal(reading);
   check_scored(file, reading);
+  check_goals(reading);
   check_limits(reading);
   check_detection(reading);
   check_adjustment(reading);

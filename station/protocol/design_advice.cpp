@@ -148,7 +148,7 @@ std::optional<double> most_trials(const Protocol& protocol, const Block& block) 
     const auto* spec = find_procedure(protocol, name);
     if (!spec) return std::nullopt;
     if (!spec->values.empty())
-      trials += static_cast<double>(spec->values.size()) * spec->repeats;
+      trials += static_cast<double>(procedure::list_trials(*spec));
     else if (spec->stop.trials && spec->stop.rule == procedure::StopRule::any)
       trials += *spec->stop.trials;
     else
@@ -185,6 +185,82 @@ void check_counts(AdviceList& advice, const std::variant<Block, Sequence>& part)
         phrase("have the break after fewer trials"));
 }
 
+/// Compares the points of the answer "unsure" with those of a guess, for which it stands in the analysis.
+/// People who win by it say it of what they have felt, too, and people who lose by it guess.
+void check_unsure_points(AdviceList& advice, const Payoff& payoff) {
+  const auto& protocol = advice.protocol;
+  const bool stated = advice.places.has("payoff.unsure");
+  if (protocol.task.unsure.empty()) {
+    if (stated)
+      advice.add("payoff.unsure", phrase("\"unsure\" has no effect: the task has no such answer"),
+                 phrase("set \"unsure\" in [task], or leave it out here"));
+    return;
+  }
+  const auto* key = stated                              ? "payoff.unsure"
+                    : advice.places.has("payoff.wrong") ? "payoff.wrong"
+                                                        : "payoff.right";
+  const double p = chance(protocol);
+  std::vector<const Linear*> points{&payoff.right, &payoff.wrong, &payoff.unsure};
+  if (payoff.fast) points.push_back(&payoff.fast->points);
+  for (const auto& factors : corners(points, protocol.factors)) {
+    const auto of = [&](const Linear& worth) { return evaluate(worth, factors); };
+    const double right = of(payoff.right), wrong = of(payoff.wrong), unsure = of(payoff.unsure);
+    const double guess = p * right + (1 - p) * wrong;
+    const double fast = guess + p * std::max(0.0, payoff.fast ? of(payoff.fast->points) : 0.0);
+    const double rounding = 1e-9 * (std::fabs(right) + std::fabs(wrong) + std::fabs(unsure));
+    const bool more = unsure > fast + rounding;
+    if (!more && unsure > guess - rounding) continue;
+    const auto worth = plain(number(unsure, 3)), of_guess = plain(number(more ? fast : guess, 3));
+    return advice.add(
+        key,
+        more ? phrase("an \"unsure\" answer is worth %1 points, more than a guess (%2 on average): it pays "
+                      "to give it although one has felt something",
+                      {worth, of_guess})
+             : phrase("an \"unsure\" answer is worth %1 points, less than a guess (%2 on average): it pays "
+                      "to guess instead",
+                      {worth, of_guess}),
+        phrase("points for \"unsure\" that a guess wins on average: %1", {of_guess}));
+  }
+}
+
+/// Compares the points of trials with each other: whether it pays to be right, and to answer at all.
+void check_payoff(AdviceList& advice) {
+  const auto& protocol = advice.protocol;
+  if (!protocol.payoff) return;
+  const auto& payoff = *protocol.payoff;
+  const auto of = [&](const Linear& points) { return bounds(points, protocol.factors); };
+  const auto right = of(payoff.right), wrong = of(payoff.wrong), late = of(payoff.late);
+  if (right.second <= wrong.first)
+    advice.add("payoff.right", phrase("a right answer is never worth more than a wrong one"),
+               phrase("more than %1 points", {plain(number(wrong.first))}));
+  const double p = chance(protocol);
+  if (const double guess = p * right.second + (1 - p) * wrong.second; late.first > guess)
+    advice.add(
+        advice.places.has("payoff.late") ? "payoff.late" : "payoff.wrong",
+        phrase("a missed deadline is worth %1 points, more than a guess (%2 on average): it pays not to "
+               "answer",
+               {plain(number(late.first)), plain(number(guess, 3))}),
+        phrase("fewer points for \"late\" than for a guess"));
+  if (payoff.fast && of(payoff.fast->points).second <= 0)
+    advice.add("payoff.fast", phrase("a fast answer is not worth more than a slow one"),
+               phrase("points above 0"));
+  check_unsure_points(advice, payoff);
+}
+
+/// Warns of a block whose procedures may end before its time is up.
+void check_lasting(AdviceList& advice, const std::variant<Block, Sequence>& part) {
+  const auto& block = block_of(part);
+  const auto trials = most_trials(advice.protocol, block);
+  if (!block.lasts_s || !trials) return;
+  const double shortest_s = quick_trial_s(advice.protocol, shortest_deadline_s);
+  if (*trials * shortest_s < *block.lasts_s)
+    advice.add(key_of(part, "lasts_s"),
+               phrase("the %1 trials of the block can be over before %2 s",
+                      {plain(number(std::floor(*trials))), plain(number(*block.lasts_s))}),
+               phrase("plan %1 trials or more, such as by \"repeats\" of the procedure",
+                      {plain(number(std::ceil(*block.lasts_s / shortest_s)))}));
+}
+
 void check_blocks(AdviceList& advice) {
   const auto& protocol = advice.protocol;
   double practice = 0, rest = 0;
@@ -192,6 +268,7 @@ void check_blocks(AdviceList& advice) {
   for (const auto& part : protocol.plan) {
     const auto& block = block_of(part);
     check_counts(advice, part);
+    check_lasting(advice, part);
     if (block.kind != BlockKind::trials) continue;
     if (advice.places.has(key_of(part, "interleave")) && block.procedures.size() < 2)
       advice.add(key_of(part, "interleave"),
@@ -235,6 +312,9 @@ void check_instructions(AdviceList& advice) {
       advice.add("instructions." + name, phrase("no block shows the instruction \"%1\"", {plain(name)}),
                  phrase("set %1 in a block, or use a sequence over a factor named \"instruction\"",
                         {plain("instruction = \"" + name + "\"")}));
+    if (instruction.goal && instruction.goal->accuracy_above.value_or(1) < chance(advice.protocol))
+      advice.add("instructions." + name + ".goal", phrase("guessing already reaches this goal"),
+                 phrase("above %1", {plain(number(chance(advice.protocol), 3))}));
     const auto& target = instruction.target_accuracy;
     if (target && target->second <= chance(advice.protocol))
       advice.add("instructions." + name + ".target_accuracy",
@@ -266,6 +346,7 @@ void advise_on_plan(AdviceList& advice) {
   check_task(advice);
   check_blocks(advice);
   check_instructions(advice);
+  check_payoff(advice);
   check_analysis(advice);
 }
 

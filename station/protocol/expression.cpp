@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <set>
 
 #include "station/core/number.hpp"
 
@@ -318,24 +319,36 @@ std::optional<Linear> linear_from(const core::Value& value, const std::string& k
   return std::nullopt;
 }
 
+std::vector<Factors> corners(const std::vector<const Linear*>& expressions,
+                             const std::vector<Factor>& factors) {
+  constexpr std::size_t most_corners = 1024;  // an expression has ten factors at most
+  std::set<std::string> names;
+  for (const auto* expression : expressions)
+    for (const auto& name : factors_in(*expression)) names.insert(name);
+  std::vector<Factors> all{{}};
+  for (const auto& name : names) {
+    const auto* factor = find_factor(factors, name);
+    const auto ends = (factor ? span(*factor) : std::nullopt).value_or(std::pair(0.0, 0.0));
+    const auto count = all.size() < most_corners ? all.size() : 0;
+    if (count == 0)
+      for (auto& corner : all) corner[name] = ends.first;
+    for (std::size_t i = 0; i < count; ++i) {
+      all.push_back(all[i]);
+      all[i][name] = ends.first, all.back()[name] = ends.second;
+    }
+  }
+  return all;
+}
+
 namespace {
 
 /// The smallest and largest value of the expression without abs(). It is linear in each factor, so both are
 /// at ends of the factors' ranges.
 std::pair<double, double> signed_bounds(Linear expression, const std::vector<Factor>& factors) {
   expression.absolute = false;
-  std::vector<Factors> corners{{}};
-  for (const auto& name : factors_in(expression)) {
-    const auto* factor = find_factor(factors, name);
-    const auto ends = (factor ? span(*factor) : std::nullopt).value_or(std::pair(0.0, 0.0));
-    const auto count = corners.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      corners.push_back(corners[i]);
-      corners[i][name] = ends.first, corners.back()[name] = ends.second;
-    }
-  }
-  double low = evaluate(expression, corners.front()), high = low;
-  for (const auto& corner : corners) {
+  const auto all = corners({&expression}, factors);
+  double low = evaluate(expression, all.front()), high = low;
+  for (const auto& corner : all) {
     const double value = evaluate(expression, corner);
     low = std::min(low, value), high = std::max(high, value);
   }

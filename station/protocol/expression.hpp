@@ -24,6 +24,11 @@ std::optional<Comparison> parse_comparison(const std::string& source, const core
 std::optional<Linear> linear_from(const core::Value& value, const std::string& key, const core::Range& range,
                                   const std::vector<Factor>& factors, core::Findings& findings);
 
+/// Returns the combinations of the smallest and largest values of the factors in these expressions. Where
+/// there would be more than 1024, the last factors keep their smallest value.
+std::vector<Factors> corners(const std::vector<const Linear*>& expressions,
+                             const std::vector<Factor>& factors);
+
 /// Returns the smallest and largest value of the expression if each factor varies over its range or levels
 /// independently of the others.
 std::pair<double, double> bounds(const Linear& expression, const std::vector<Factor>& factors);

@@ -140,11 +140,25 @@ void check_asked(AdviceList& advice, const Interlude& screening) {
       }
 }
 
+/// Reports examples that are felt only when there are no more trials.
+void check_examples(AdviceList& advice, const Interlude& explanation) {
+  const bool last = explanation.above > 0 && explanation.above == advice.protocol.plan.size() &&
+                    explanation.after_each.empty();
+  const auto shows = [](const ExplanationPage& page) { return !page.examples.empty(); };
+  if (last && std::ranges::any_of(explanation.pages, shows))
+    advice.found.push_back(
+        {explanation.place,
+         phrase("the examples of \"%1\" come after the last block, because it stands below it",
+                {plain(explanation.name)}),
+         phrase("an explanation above the first block whose trials need it")});
+}
+
 }  // namespace
 
 void advise_on_interludes(AdviceList& advice) {
   for (const auto& interlude : advice.protocol.interludes) {
     if (interlude.kind == InterludeKind::screening) check_asked(advice, interlude);
+    check_examples(advice, interlude);
     if (interlude.kind != InterludeKind::questionnaire) continue;
     for (std::size_t i = 0; i < interlude.items.size(); ++i) {
       const auto key = "questionnaire." + interlude.name + ".item." + std::to_string(i);

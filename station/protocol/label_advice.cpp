@@ -15,7 +15,7 @@ namespace {
 struct Room {
   int word, label;
 };
-Room room_for(std::size_t answers) {
+Room room_for(int answers) {
   if (answers <= 2) return {24, 96};
   if (answers == 4) return {19, 76};
   return {13, 52};
@@ -42,7 +42,7 @@ Length length_of(const std::string& label) {
   return length;
 }
 
-void check_label(AdviceList& advice, const std::string& key, const std::string& label, std::size_t answers) {
+void check_label(AdviceList& advice, const std::string& key, const std::string& label, int answers) {
   const auto room = room_for(answers);
   const auto length = length_of(label);
   if (length.word > room.word)
@@ -68,13 +68,15 @@ void advise_on_labels(AdviceList& advice) {
     for (std::size_t i = 0; i < task.choices.size(); ++i)
       for (const auto& [language, label] : task.choices[i].label)
         check_label(advice, "task.choices." + std::to_string(i) + ".label." + language, label,
-                    task.choices.size());
+                    answer_count(task));
+  for (const auto& [language, label] : task.unsure)
+    check_label(advice, "task.unsure." + language, label, answer_count(task));
   if (!task.confidence) return;
   const auto& labels = task.confidence->labels;
   for (std::size_t i = 0; i < labels.size(); ++i)
     for (const auto& [language, label] : labels[i])
       check_label(advice, "task.confidence.labels." + std::to_string(i) + "." + language, label,
-                  labels.size());
+                  static_cast<int>(labels.size()));
 }
 
 }  // namespace turnpoint::protocol

@@ -36,6 +36,7 @@ Protocol parse(const std::string& source, const std::string& path) {
   read_instructions(file, reading);
   read_task(file, reading);
   read_timing(file, reading);
+  read_payoff(file, reading);
   read_procedures(file, reading);
   read_sessions(file, reading);
   read_plan(file, reading);

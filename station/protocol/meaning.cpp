@@ -265,6 +265,7 @@ std::string in_words(const Meaning& meaning, const Protocol& protocol) {
       words = "threshold of " + level + " at " +
               core::number(100 * threshold_proportion(meaning).value_or(0.5), 3) + " % correct, guess rate " +
               core::number(1.0 / meaning.alternatives, 3);
+      if (!protocol.task.unsure.empty()) words += " (the answer \u201cunsure\u201d counts as a guess)";
       break;
   }
   if (!meaning.along.empty())

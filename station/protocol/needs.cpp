@@ -4,6 +4,7 @@
 
 #include "station/core/number.hpp"
 #include "station/core/usage_error.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/protocol/resolve.hpp"
 #include "station/protocol/triggers.hpp"
 #include "station/scene/measures.hpp"
@@ -32,7 +33,7 @@ void check_devices(const Protocol& protocol, const rig::Rig& rig, Survey& survey
         phrase("use a rig with [touch] or [buttons]"));
   const bool two_lines = rig.buttons_uri && rig.buttons_uri->rfind("gpio:", 0) == 0 &&
                          rig.buttons_uri->find("third=") == std::string::npos;
-  const std::size_t answers = task.choices.size(), buttons = two_lines ? 2 : 3;
+  const int answers = answer_count(task), buttons = two_lines ? 2 : 3;
   if (task.device == Device::buttons && answers > buttons && rig.buttons_uri)
     add(task.device_place,
         phrase("the task has %1 answers, but the rig has only %2 buttons", {plain(answers), plain(buttons)}),

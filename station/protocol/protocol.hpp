@@ -60,6 +60,9 @@ struct ValueAnswer {
   std::vector<Anchor> anchors;  ///< texts along the line, in the order of their values
 };
 
+/// The id of the answer Task::unsure.
+inline constexpr const char* kUnsure = "unsure";
+
 /// Asks after each answer how sure the participant is.
 struct Confidence {
   Localised question;
@@ -80,8 +83,12 @@ struct Task {
   Sound sound = Sound::none;  ///< sound that is played while the surface vibrates
   Place sound_place;
   Localised question;
+  std::string question_shows;  ///< the factor whose value stands for %1 in the question; "" if there is none
   /// If the answer is a value, there is one choice, which says that a value was given.
   std::vector<Choice> choices;
+  /// What the participant may answer instead of guessing; empty if everybody must choose. It is no choice,
+  /// but comes after the choices on the page, and its index is their number.
+  Localised unsure;
   /// for a rating: texts at some of the choices, which are the points 1, 2, ...
   std::vector<Anchor> anchors;
   bool rating = false;  ///< true if the choices are the points of a scale, in ascending order
@@ -122,6 +129,14 @@ inline bool in_stimulus(const ResponseSignal& signal) {
   return signal.by == ResponseSignal::By::tone || signal.by == ResponseSignal::By::buzz;
 }
 
+/// How long the page shows the get-ready cue, the feedback, and the message after a late answer.
+inline constexpr double kCue_s = 0.8, kFeedback_s = 0.8, kLate_s = 1.0;
+
+/// What the pause before the next trial is longer by, after a trial that was not right.
+struct Delay {
+  Linear wrong, late, early;
+};
+
 struct Timing {
   ResponseZero response_zero = ResponseZero::go_cue;
   Place response_zero_place;
@@ -131,8 +146,25 @@ struct Timing {
   /// if there is a response signal
   std::optional<Linear> deadline_s;
   Distribution iti_s;
+  Delay delay_s;
   Linear anticipation_s;
   std::optional<ResponseSignal> signal;
+};
+
+/// What a trial is worth to the participant, in points. The score is the sum over all trials outside
+/// practice.
+struct Payoff {
+  /// points of a right answer, of a wrong one, of one that came too late, and of one that came too early
+  Linear right, wrong, late, early;
+  Linear unsure;  ///< points of the answer Task::unsure
+  /// points that a right answer is worth beyond `right` if its response time is below `below_s`
+  struct Fast {
+    Linear below_s, points;
+  };
+  std::optional<Fast> fast;
+  Localised text;    ///< how pages say a score, with %1 for its worth; if empty, "%1 points"
+  double worth = 1;  ///< what one point is worth in `text`, such as an amount of money
+  int decimals = 0;  ///< decimals of the worth
 };
 
 enum class Feedback { none, trial, block };
@@ -176,6 +208,7 @@ struct Strokes {
   int repeats = 0;                ///< friction table: number of trials at each displacement
   /// Friction table: trials after the block are planned with the measured table instead of the rig's.
   bool used = false;
+  bool operator==(const Strokes&) const = default;
 };
 
 /// A block as it runs for one participant. block_order() makes such blocks from the `sequence` tables of the
@@ -188,6 +221,9 @@ struct Block {
   std::string level;           ///< for practice with fixed levels: the factor to which the levels belong
   std::vector<double> levels;  ///< the fixed levels, presented in shuffled order
   std::optional<int> trials;
+  /// The block ends with the trial in which its trials have lasted this long together, pauses between them
+  /// included. Breaks, waits that the rig's limits impose, and void trials do not count.
+  std::optional<double> lasts_s;
   Feedback feedback = Feedback::none;
   bool practice = false;
   std::optional<Pass> pass;
@@ -210,10 +246,17 @@ struct Sequence {
   Block block;
 };
 
+/// What the participant is to reach in a block: a higher proportion of right answers, and a shorter median
+/// response time.
+struct Goal {
+  std::optional<double> accuracy_above, median_time_below_s;
+};
+
 struct Instruction {
   Localised text, late_message;
   std::optional<Linear> deadline_s;
-  std::optional<std::pair<double, double>> target_accuracy;
+  std::optional<std::pair<double, double>> target_accuracy;  ///< for the researcher
+  std::optional<Goal> goal;  ///< for the participant, who learns at the end of a block whether it was reached
 };
 
 /// A condition on an earlier answer ("about-you.age") or on the proportion correct in a block
@@ -369,6 +412,7 @@ struct Protocol {
   std::map<std::string, Scene> scenes;
   Task task;
   Timing timing;
+  std::optional<Payoff> payoff;
   std::vector<procedure::Spec> procedures;
   std::optional<SessionPlan> sessions;  ///< empty: the protocol does not say how many sessions there are
   std::vector<std::variant<Block, Sequence>> plan;  ///< blocks and sequences in the order of the file

@@ -28,6 +28,7 @@ const Range displacement_um{0, 1000, Ends::open_low, "um"};
 const Range share{0, 1, Ends::open};
 const Range deadline_s{0, 3600, Ends::open_low, "s"};
 const Range seconds{0, 3600, Ends::closed, "s"};
+const Range delay_s{0, 120, Ends::closed, "s"};
 constexpr int most = static_cast<int>(most_choices);
 
 Key name(const char* key, const char* help) {
@@ -224,7 +225,10 @@ Keys task() {
       word("sound", {"none", "masking_noise"}, "noise on the rig's headphones while the surface vibrates")
           .by_default("\"none\""),
       localised("question", "what is asked").required(),
+      string("question_shows", "a factor whose value in the trial stands for %1 in the question"),
       choices("the answers").holding(1, most_choices),
+      localised("unsure", "an answer for those who do not want to guess")
+          .only_with("kind", {"2ifc", "3ifc", "4ifc", "oddity", "abx", "match-to-sample"}),
       several("correct", {string("", ""), comparisons("SCENE", "a comparison, such as \"change > 0\"")},
               "the scene whose interval is right; or a comparison for each of the two scenes, if the level "
               "decides it")
@@ -289,11 +293,36 @@ Keys timing() {
           "a signal to answer at once, instead of a deadline; trials answered too early or too late are "
           "repeated"),
       time("iti_s", "pause between trials").required(),
+      table("delay_s",
+            Keys{expression("wrong", delay_s, "after a wrong answer").by_default("0"),
+                 expression("late", delay_s, "after a missed deadline").by_default("0"),
+                 expression("early", delay_s, "after an answer that was too early").by_default("0")}
+                .some_of({"wrong", "late", "early"}),
+            "how much longer the pause is after trials that were not right"),
       expression("anticipation_s", {0, 10, Ends::closed, "s"},
                  "earlier answers are anticipations, and do not count")
           .by_default("0")
           .only_without("response_signal"),
   };
+}
+
+Keys payoff() {
+  const auto points = [](const char* key, const char* help) {
+    return expression(key, any_value, help).by_default("0");
+  };
+  return {
+      expression("right", any_value, "points of a right answer").required(),
+      points("wrong", "points of a wrong answer"),
+      points("late", "points of a missed deadline"),
+      points("early", "points of an answer that was too early"),
+      points("unsure", "points of the answer \"unsure\" of [task]"),
+      table("fast",
+            {expression("below_s", {0, 600, Ends::open_low, "s"}, "for response times below this").required(),
+             expression("points", any_value, "points").required()},
+            "more points for right answers that are fast"),
+      localised("text", "how a score is said, with %1 for its worth").without_it("\"%1 points\""),
+      number("worth", {0, 1e6, Ends::open_low}, "worth of one point in this text").by_default("1"),
+      integer("decimals", 0, 3, "decimals of the worth").by_default("0")};
 }
 
 Keys pass_of_trials() {
@@ -309,6 +338,11 @@ Keys trials(bool of_block) {
       string("level", "instead of procedures: the factor of the fixed levels"),
       numbers("levels", any_value, "fixed levels, presented in shuffled order"),
       integer("trials", 1, 100000, "number of trials at most").without_it("until the procedures end"),
+      number(
+          "lasts_s", {10, 7200, Ends::closed, "s"},
+          "the block ends with the trial in which its trials, with the pauses between them, have lasted this "
+          "long; breaks, waits that the rig's limits impose, and void trials do not count")
+          .without_it("until the procedures end"),
       word("feedback", {"none", "trial", "block"},
            "when the participant learns what was right: never, after each trial, after the block")
           .by_default("\"none\""),
@@ -499,6 +533,7 @@ const Keys& all() {
           .required(),
       table("task", task(), "what a trial is and how people answer").required(),
       table("timing", timing(), "when things happen in a trial").required(),
+      table("payoff", payoff(), "points for answers"),
       tables("procedure", procedure(), "how levels are chosen"),
       tables("block", block(), "blocks of trials"),
       tables("sequence", sequence(), "counterbalanced blocks, one for each level of a factor"),
@@ -513,7 +548,13 @@ const Keys& all() {
                             "not come again")
                      .without_it("that of [timing]"),
                  interval("target_accuracy", {0, 1},
-                          "accuracy to aim at: a note for you, which check compares with guessing")},
+                          "accuracy to aim at: a note for you, which check compares with guessing"),
+                 table("goal",
+                       Keys{number("accuracy_above", share, "proportion of right answers"),
+                            number("median_time_below_s", {0, 600, Ends::open_low, "s"},
+                                   "median response time")}
+                           .some_of({"accuracy_above", "median_time_below_s"}),
+                       "what to reach in a block: said before it, and at its end whether it was reached")},
                 "an instruction")),
             "instructions of blocks"),
       table(
@@ -532,9 +573,10 @@ const Keys& all() {
            word("incomplete_sessions", {"leave_out", "count"},
                 "whether a report of a study counts sessions that were not completed")
                .without_it("as [sessions] says"),
-           word("holm", {"measure", "all"},
-                "which differences between conditions have their p values corrected together for their number "
-                "(Holm): those of each measure, or all of a table")
+           word(
+               "holm", {"measure", "all"},
+               "which differences between conditions have their p values corrected together for their number "
+               "(Holm): those of each measure, or all of a table")
                .without_it("no correction"),
            table(
                "response_time_exclude",

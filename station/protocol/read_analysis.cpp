@@ -2,6 +2,7 @@
 #include <set>
 
 #include "station/protocol/answers.hpp"
+#include "station/protocol/conditions.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/protocol/visits.hpp"
@@ -42,6 +43,17 @@ void read_by(TableReader& reader, Reading& reading) {
                        phrase("use factors that no procedure sets, because each curve needs several levels "
                               "of the procedure's own factor"));
   }
+  if (seen.size() != by.size()) return;
+  // Reports name a condition by its levels, which may contain commas themselves.
+  Protocol all = reading.protocol;
+  for (const auto& factor : factors)
+    if (is_group(factor) && !seen.count(factor.name))
+      all.analysis.by.insert(all.analysis.by.begin(), factor.name);
+  std::set<std::string> named;
+  for (const auto& name : conditions(all))
+    if (!named.insert(name).second)
+      return reader.problem("by", phrase("two conditions have the name \"%1\"", {plain(name)}),
+                            phrase("levels whose combinations have different names"));
 }
 
 /// The number of conditions that the report of a study has: those of `by` or the instructions, for each group
@@ -129,8 +141,7 @@ void read_analysis(TableReader& file, Reading& reading) {
   read_show(reader, reading);
   const auto& sessions = reading.protocol.sessions;
   const auto incomplete = reader.maybe_word("incomplete_sessions");
-  if (const auto holm = reader.maybe_word("holm"))
-    analysis.holm = *holm == "all" ? Holm::all : Holm::measure;
+  if (const auto holm = reader.maybe_word("holm")) analysis.holm = *holm == "all" ? Holm::all : Holm::measure;
   if (incomplete) analysis.count_incomplete = *incomplete == "count";
   if (incomplete == "leave_out" && sessions && sessions->incomplete == Unfinished::count)
     reader.problem(

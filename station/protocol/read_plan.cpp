@@ -5,6 +5,7 @@
 
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
+#include "station/protocol/sources.hpp"
 
 namespace turnpoint::protocol {
 
@@ -102,10 +103,38 @@ void read_practice(TableReader& reader, Block& block, const Reading& reading) {
   inner.finish();
 }
 
+/// Reports what would come between the trials of a list whose order has rules, or end it before it is done.
+void check_order_rules(TableReader& reader, const Block& block, const Reading& reading) {
+  for (const auto& name : block.procedures) {
+    const auto* spec = find_procedure(reading.protocol, name);
+    if (!spec || spec->rules.empty()) continue;
+    const auto refuse = [&](const char* key, core::Phrase what) {
+      reader.problem(key, std::move(what), phrase("leave it out, or leave out the rules of the order"));
+    };
+    if (block.procedures.size() > 1 && block.interleave != Interleave::none)
+      refuse("interleave",
+             phrase("trials of other procedures would come between those of \"%1\", whose order has "
+                    "rules",
+                    {plain(name)}));
+    if (block.catch_trials)
+      refuse("catch",
+             phrase("catch trials would come between those of \"%1\", whose order has rules", {plain(name)}));
+    // Even a block with as many trials as the list ends early: a trial without an answer comes again.
+    if (!spec->rules.equally.empty() && (block.lasts_s || block.trials))
+      refuse(block.lasts_s ? "lasts_s" : "trials",
+             phrase("the block may end before each value of \"%1\" has followed each other one equally often",
+                    {plain(name)}));
+  }
+}
+
 void read_block_keys(TableReader& reader, Block& block, const Reading& reading) {
   block.place = reader.place();
   read_what(reader, block, reading);
   block.trials = reader.maybe_integer("trials");
+  block.lasts_s = reader.maybe_number("lasts_s");
+  if (block.lasts_s && !block.level.empty())
+    reader.problem("lasts_s", phrase("a list of fixed levels has its own end"),
+                   phrase("use \"procedures\", or give \"trials\" instead"));
   if (!block.levels.empty() && !block.trials) block.trials = static_cast<int>(block.levels.size());
   const auto feedback = reader.word("feedback");
   block.feedback = feedback == "trial"   ? Feedback::trial
@@ -119,6 +148,7 @@ void read_block_keys(TableReader& reader, Block& block, const Reading& reading) 
                                             : Interleave::none;
   if (std::set(block.procedures.begin(), block.procedures.end()).size() > 1) reader.require("interleave");
   read_catch(reader, block, reading);
+  check_order_rules(reader, block, reading);
   read_break(reader, block, reading);
   if (const auto name = reader.maybe_string("instruction")) {
     std::vector<std::string> known;

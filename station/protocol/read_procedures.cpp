@@ -4,6 +4,7 @@
 #include <set>
 
 #include "station/core/number.hpp"
+#include "station/procedure/constant_stimuli.hpp"
 #include "station/procedure/description.hpp"
 #include "station/procedure/keys.hpp"
 #include "station/protocol/expression.hpp"
@@ -64,6 +65,112 @@ void check_max_run(TableReader& reader, const Spec& spec, const Reading& reading
     if (name != procedure::kRightAnswer && !find_factor(factors, name))
       reader.problem("order", phrase("unknown factor \"%1\" in \"max_run\"", {plain(name)}),
                      core::suggestion(name, names(factors)));
+}
+
+/// The places of the values of a factor that the list sets, and the number of the factor in
+/// procedure::OrderRules.
+struct Listed {
+  std::size_t number = 0;
+  std::vector<FactorValue> values;
+};
+
+std::optional<Listed> listed(const Spec& spec, const std::string& name, const Reading& reading) {
+  if (name == spec.level) return Listed{0, {spec.values.begin(), spec.values.end()}};
+  const auto found = std::find(spec.balance.begin(), spec.balance.end(), name);
+  const auto* factor = find_factor(reading.protocol.factors, name);
+  if (found == spec.balance.end() || !factor) return std::nullopt;
+  return Listed{1 + static_cast<std::size_t>(found - spec.balance.begin()), factor->levels};
+}
+
+/// Reads the pairs of values of one factor that never follow each other.
+void read_never(const core::Entry& entry, const Listed& factor, Spec& spec, core::Findings& findings) {
+  const auto place_of = [&](const Value& value) -> std::optional<std::size_t> {
+    const bool is_number = value.kind == Value::Kind::number || value.kind == Value::Kind::integer;
+    const auto wanted = is_number ? FactorValue(value.number) : FactorValue(value.string);
+    const auto found = std::find(factor.values.begin(), factor.values.end(), wanted);
+    if (found == factor.values.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - factor.values.begin());
+  };
+  const auto allowed = phrase("pairs of values that the list has: %1", {plain("[[before, after], ...]")});
+  if (entry.value.kind != Value::Kind::array || entry.value.items.empty())
+    return findings.add(entry.place, phrase("\"%1\" is not a list of pairs", {plain(entry.key)}), allowed);
+  for (const auto& pair : entry.value.items) {
+    if (pair.kind != Value::Kind::array || pair.items.size() != 2) {
+      findings.add(pair.place, phrase("this is not a pair of values"), allowed);
+      continue;
+    }
+    const auto before = place_of(pair.items[0]), now = place_of(pair.items[1]);
+    if (!before || !now)
+      findings.add(pair.items[before ? 1 : 0].place,
+                   phrase("\"%1\" never has this value in the list", {plain(entry.key)}), allowed);
+    else
+      spec.rules.never.push_back({factor.number, *before, *now});
+  }
+}
+
+/// Reads the rules of the order of a list, and checks that some order keeps them.
+void read_order_rules(TableReader& reader, Spec& spec, const Reading& reading) {
+  if (spec.after_each_other.empty() && spec.never_after.entries.empty()) return;
+  auto& findings = reader.findings();
+  const auto before = findings.problems.size();
+  const auto in_list = phrase("the level, or a factor in \"balance\"");
+  const auto refuse = [&](core::Phrase what, core::Phrase allowed) {
+    reader.problem("order", std::move(what), std::move(allowed));
+  };
+  auto& rules = spec.rules;
+  rules.back = static_cast<std::size_t>(spec.back);
+  for (const auto& name : spec.after_each_other) {
+    const auto factor = listed(spec, name, reading);
+    if (!factor)
+      refuse(phrase("the list does not set \"%1\", so its order cannot follow a rule", {plain(name)}),
+             in_list);
+    else if (std::find(rules.equally.begin(), rules.equally.end(), factor->number) != rules.equally.end())
+      refuse(phrase("\"%1\" is set twice", {plain(name)}), phrase("name each factor once"));
+    else
+      rules.equally.push_back(factor->number);
+  }
+  for (const auto& entry : spec.never_after.entries) {
+    if (const auto factor = listed(spec, entry.key, reading))
+      read_never(entry, *factor, spec, findings);
+    else
+      findings.add(
+          entry.place,
+          phrase("the list does not set \"%1\", so its order cannot follow a rule", {plain(entry.key)}),
+          in_list);
+  }
+  for (const auto& [name, limit] : spec.max_run)
+    if (const auto factor = listed(spec, name, reading)) rules.runs.push_back({factor->number, limit});
+  if (spec.shuffle == procedure::Shuffle::none)
+    refuse(phrase("a list that is not shuffled cannot follow rules of its order"),
+           plain("shuffle = \"within-block\""));
+  if (spec.stop.right)
+    refuse(phrase("a list that ends early does not keep the rules of its order"),
+           phrase("leave out \"stop\""));
+  std::set<std::size_t> ruled(rules.equally.begin(), rules.equally.end());
+  for (const auto& never : rules.never) ruled.insert(never.factor);
+  for (const auto& run : rules.runs) ruled.insert(run.factor);
+  if (!rules.equally.empty() && ruled.size() > rules.equally.size())
+    refuse(phrase("\"after_each_other\" does not name all factors that have rules"),
+           phrase("name there what \"never_after\" and \"max_run\" name, too"));
+  std::size_t cells = 1;
+  procedure::Context context;
+  for (const auto& name : spec.balance)
+    if (const auto* factor = find_factor(reading.protocol.factors, name)) {
+      context.factor_levels[name] = factor->levels.size();
+      cells *= factor->levels.size();
+    }
+  if (ruled.lower_bound(1) != ruled.end()) {
+    if (cells > 0 && static_cast<std::size_t>(spec.repeats) % cells != 0)
+      refuse(
+          phrase(
+              "the combinations of \"balance\" do not come equally often, so the order cannot follow a rule"),
+          phrase("set \"repeats\" to a multiple of %1", {plain(cells)}));
+    if (spec.shuffle == procedure::Shuffle::within_repeat)
+      refuse(phrase("a rule for a factor in \"balance\" holds over the whole list, not within repeats"),
+             plain("shuffle = \"within-block\""));
+  }
+  if (findings.problems.size() > before || spec.values.empty() || spec.repeats < 1) return;
+  if (const auto problem = procedure::order_problem(spec, context)) refuse(problem->what, problem->allowed);
 }
 
 void check_tracks(TableReader& reader, const Spec& spec, const Reading& reading) {
@@ -226,6 +333,21 @@ void add_family(const Value& table, const std::string& name, std::vector<Spec> f
   }
 }
 
+/// Tells the procedure how often a guess is right, if the participant may be unsure instead of guessing.
+void read_unsure_rate(TableReader& reader, Spec& spec, const Reading& reading) {
+  const auto& task = reading.protocol.task;
+  if (task.unsure.empty() || task.choices.empty()) return;
+  spec.guess_rate = 1.0 / static_cast<double>(task.choices.size());
+  if (spec.kind != Kind::constant_stimuli && spec.kind != Kind::weighted_up_down &&
+      spec.kind != Kind::program)
+    reader.problem("kind",
+                   phrase("this kind of procedure does not know what to do with the answer \"unsure\""),
+                   phrase("use \"weighted-up-down\", \"constant-stimuli\" or \"program\""));
+  if (spec.target && *spec.target <= *spec.guess_rate)
+    reader.problem("target", phrase("a guess already reaches this target"),
+                   phrase("above %1", {plain(core::number(*spec.guess_rate, 3))}));
+}
+
 Spec read_procedure(const Value& table, const Reading& reading, core::Findings& findings) {
   TableReader reader(table, titled("procedure", table), findings, keys_of("procedure"));
   Spec spec;
@@ -235,11 +357,13 @@ Spec read_procedure(const Value& table, const Reading& reading, core::Findings& 
   const auto* factor = read_numeric_factor(reader, "level", reading);
   if (factor) spec.level = factor->name;
   procedure::description(spec.kind).read(reader, spec);
+  read_unsure_rate(reader, spec, reading);
   if (procedure::follows_answers(spec)) procedure::read_runs(reader, spec);
   check_max_run(reader, spec, reading);
   check_second(table, spec, reading, findings);
   check_tracks(reader, spec, reading);
   check_balance(reader, spec, reading);
+  if (findings.problems.empty()) read_order_rules(reader, spec, reading);
   read_with(reader, spec, reading, findings);
   if (reader.take("continues")) spec.continues = reader.boolean("continues");
   reader.take("for_each");

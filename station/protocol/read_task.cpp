@@ -270,6 +270,23 @@ void read_confidence(TableReader& reader, Task& task, const Reading& reading) {
   task.confidence = std::move(confidence);
 }
 
+/// Reads the answer for those who do not want to guess.
+void read_unsure(TableReader& reader, Task& task, const Reading& reading) {
+  const auto* text = reader.take("unsure");
+  if (!text) return;
+  task.unsure = localised_from(*text, "unsure", reading);
+  for (const auto& choice : task.choices)
+    if (choice.id == kUnsure)
+      reader.problem("choices", phrase("there is already an answer with the id \"%1\"", {plain(kUnsure)}),
+                     phrase("give this choice another id"));
+  if (task.kind == TaskKind::two_interval && !task.correct_answer.empty())
+    reader.problem("unsure", phrase("\"unsure\" needs an interval that is right at every level"),
+                   phrase("name the scene whose interval is right: %1", {plain("correct = \"SCENE\"")}));
+  if (task.confidence)
+    reader.problem("unsure", phrase("a task cannot have both \"unsure\" and \"confidence\""),
+                   phrase("use one of them"));
+}
+
 void read_choices(TableReader& reader, Task& task, const TaskForm& kind, const Reading& reading) {
   task.choices = read_choice_list(reader, "task.choices", reading);
   std::set<std::string> seen;
@@ -390,6 +407,22 @@ void read_correct(TableReader& reader, Task& task, const Reading& reading) {
   }
 }
 
+/// Reads the factor whose value the question shows.
+void read_shown(TableReader& reader, Task& task, const Reading& reading) {
+  const auto name = reader.maybe_string("question_shows");
+  if (!name) return;
+  if (!find_factor(reading.protocol.factors, *name))
+    return reader.problem("question_shows", phrase("unknown factor \"%1\"", {plain(*name)}),
+                          core::suggestion(*name, names(reading.protocol.factors)));
+  task.question_shows = *name;
+  for (const auto& [language, text] : task.question)
+    if (text.find("%1") == std::string::npos)
+      reader.problem(
+          "question",
+          phrase("the question in \"%1\" does not show the value of \"%2\"", {plain(language), plain(*name)}),
+          plain("%1"));
+}
+
 }  // namespace
 
 void read_task(TableReader& file, Reading& reading) {
@@ -412,12 +445,14 @@ void read_task(TableReader& file, Reading& reading) {
   if (reader.maybe_word("sound") == "masking_noise") task.sound = Sound::masking_noise;
   task.sound_place = reader.place("sound");
   task.question = read_localised(reader, "question", reading);
+  read_shown(reader, task, reading);
   read_judgement(reader, task, reading);
   read_confidence(reader, task, reading);
   read_times(reader, task);
   if (!judges(task) && !reader.has("rating") && !reader.has("number")) {
     read_choices(reader, task, *kind, reading);
     read_correct(reader, task, reading);
+    read_unsure(reader, task, reading);
   }
   reader.finish();
 }

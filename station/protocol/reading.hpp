@@ -33,6 +33,7 @@ void read_scenes(core::TableReader& file, Reading& reading);
 void read_instructions(core::TableReader& file, Reading& reading);
 void read_task(core::TableReader& file, Reading& reading);
 void read_timing(core::TableReader& file, Reading& reading);
+void read_payoff(core::TableReader& file, Reading& reading);
 void read_procedures(core::TableReader& file, Reading& reading);
 void read_sessions(core::TableReader& file, Reading& reading);
 void read_plan(core::TableReader& file, Reading& reading);

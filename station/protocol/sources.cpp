@@ -117,6 +117,14 @@ std::set<std::string> factors_used(const Protocol& protocol) {
   if (const auto& present = protocol.task.present) add(present->left, names), add(present->right, names);
   const auto& timing = protocol.timing;
   add(timing.anticipation_s, names);
+  for (const auto* delay : {&timing.delay_s.wrong, &timing.delay_s.late, &timing.delay_s.early})
+    add(*delay, names);
+  if (const auto& payoff = protocol.payoff) {
+    for (const auto* points :
+         {&payoff->right, &payoff->wrong, &payoff->late, &payoff->early, &payoff->unsure})
+      add(*points, names);
+    if (payoff->fast) add(payoff->fast->below_s, names), add(payoff->fast->points, names);
+  }
   if (timing.deadline_s) add(*timing.deadline_s, names);
   if (timing.signal) add(timing.signal->after_s, names);
   for (const auto& [name, instruction] : protocol.instructions)
@@ -173,6 +181,14 @@ std::vector<Block> all_blocks(const Protocol& protocol) {
     }
   }
   return blocks;
+}
+
+const Linear* deadline_of_instruction(const Protocol& protocol, const Block& block) {
+  const auto fixed = block.fixed.find("instruction");
+  const auto* name = fixed == block.fixed.end() ? nullptr : std::get_if<std::string>(&fixed->second);
+  const auto found = name != nullptr ? protocol.instructions.find(*name) : protocol.instructions.end();
+  return found != protocol.instructions.end() && found->second.deadline_s ? &*found->second.deadline_s
+                                                                          : nullptr;
 }
 
 }  // namespace turnpoint::protocol

@@ -52,4 +52,7 @@ const Block& block_of(const std::variant<Block, Sequence>& part);
 /// The blocks of all participants: a sequence gives one block for each level of its factor.
 std::vector<Block> all_blocks(const Protocol& protocol);
 
+/// The deadline that the block's instruction sets; null if the deadline of [timing] holds.
+const Linear* deadline_of_instruction(const Protocol& protocol, const Block& block);
+
 }  // namespace turnpoint::protocol

@@ -31,8 +31,17 @@ constexpr double longest_after_s = 30;
 /// and of one so long after the stimulus that it was probably meant otherwise.
 void check_reach(AdviceList& advice, const std::string& key, double shortest, double longest) {
   const auto end = stimulus_end(advice.protocol);
-  if (!end) return;
   const std::string zero = name(advice.protocol.timing.response_zero);
+  const double tones_s = advice.protocol.task.duration_s.value_or(0);
+  if (advice.protocol.timing.response_zero == ResponseZero::first_contact &&
+      !explored(advice.protocol.task) && shortest < tones_s)
+    advice.add(key,
+               phrase("people who touch the surface at once cannot meet the deadline of %1 s after \"%2\": "
+                      "answers are accepted when the last interval of %3 s has ended",
+                      {plain(number(shortest)), plain(zero), plain(number(tones_s))}),
+               phrase("%1 s or more, or %2", {plain(number(tones_s + shortest_deadline_s)),
+                                              plain("response_zero = \"interval_off\"")}));
+  if (!end) return;
   const double answers_from_s = explored(advice.protocol.task) ? 0 : end->latest_s;
   if (answers_from_s > 0 && shortest < answers_from_s + shortest_deadline_s)
     advice.add(key,

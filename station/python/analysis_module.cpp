@@ -408,9 +408,7 @@ void add_psychometric(py::module_& module) {
                                 const std::string& function, bool log10, const std::string& guess, double guess_value,
                                 double lapse_high, const std::optional<Range>& levels, std::uint64_t seed) {
     FitOptions options;
-    options.function = function == "weibull"  ? Function::weibull
-                       : function == "normal" ? Function::normal
-                                              : Function::logistic;
+    options.function = core::function_named(function);
     options.scale = log10 ? Scale::log10 : Scale::linear;
     options.guess = guess == "fixed" ? Guess::fixed : guess == "fitted" ? Guess::fitted : Guess::tied_to_lapse;
     options.guess_value = guess_value, options.lapse_high = lapse_high;

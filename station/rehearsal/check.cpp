@@ -1,14 +1,21 @@
 #include "station/rehearsal/check.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 
 #include "station/analysis/proportion.hpp"
 #include "station/core/draws.hpp"
+#include "station/core/number.hpp"
 #include "station/core/texts.hpp"
+#include "station/protocol/advice_list.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/design_advice.hpp"
 #include "station/protocol/glyphs.hpp"
@@ -19,6 +26,7 @@
 #include "station/rehearsal/rehearsal.hpp"
 #include "station/simulation/observer.hpp"
 #include "station/trial/earlier_trials.hpp"
+#include "station/trial/question.hpp"
 
 namespace turnpoint::rehearsal {
 
@@ -48,14 +56,29 @@ double longest_s(const Protocol& protocol) {
 }
 
 /// Returns the observer of `run --observer sim`, except that setting a slider takes as long as it would take
-/// a person.
+/// a person, and that this observer is as quick as a deadline asks, if people can be so quick, and never too
+/// early.
 Rehearser person(const Protocol& protocol) {
   auto person = rehearser(simulation::Observer{simulation::Parameters{}});
   person.adjust = [adjust = person.adjust, done_s = std::min(setting_s, longest_s(protocol))](
                       const trial::TrialSpec& spec, const simulation::Adjustment& asked) {
     auto setting = adjust(spec, asked);
-    setting.done_s = done_s;
+    setting.done_s = std::min(done_s, 0.9 * asked.within_s);
     return setting;
+  };
+  person.answer = [](const trial::TrialSpec& spec, const simulation::Question& asked) {
+    simulation::Parameters usual;
+    const double outside_s = simulation::Observer(usual).nondecision_s();
+    if (!asked.signal_s && asked.deadline_s >= protocol::shortest_deadline_s &&
+        asked.deadline_s < outside_s + trial::kLeastDecision_s) {
+      const double quicker = 0.5 * asked.deadline_s / outside_s;
+      usual.residual_s *= quicker, usual.travel_s *= quicker;
+    }
+    auto reply = simulation::Observer(usual).answer(asked);
+    constexpr double after_s = 1e-3;
+    if (!asked.signal_s)
+      reply.response_time_s = std::max(reply.response_time_s, spec.anticipation_s + after_s);
+    return reply;
   };
   return person;
 }
@@ -108,7 +131,8 @@ Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::u
                                  start.instruction,
                                  start.practice,
                                  {}});
-      estimate.blocks.back().before = interludes(protocol, order, static_cast<std::size_t>(start.block_index), visit);
+      estimate.blocks.back().before =
+          interludes(protocol, order, static_cast<std::size_t>(start.block_index), visit);
       estimate.trials.push_back(0);
     }
     estimate.trials.back() += static_cast<double>(trials.size());
@@ -277,6 +301,40 @@ std::optional<scene::FingerShares> shares(const protocol::Survey& survey, const 
   return scene::finger_shares(rig, {*least, *most});
 }
 
+/// Says that scenes ask more of the model than the rig's parameters are known for.
+void note_needless_tolerances(const Protocol& protocol, Check& check) {
+  constexpr double far_below = 0.1;
+  const double level_sd_dB = check.finger ? check.finger->level_sd_dB.value_or(0) : 0;
+  double boundary_sd_mm = 0, boundary_mm = std::numeric_limits<double>::infinity(), level_dB = boundary_mm;
+  std::set<std::string> scenes;
+  for (const auto& sight : check.survey.sights) {
+    const auto& allowed = protocol.scenes.at(sight.scene).tolerance;
+    if (allowed.boundary_mm && *allowed.boundary_mm < far_below * sight.uncertainty_mm) {
+      boundary_sd_mm = std::max(boundary_sd_mm, sight.uncertainty_mm);
+      boundary_mm = std::min(boundary_mm, *allowed.boundary_mm);
+      scenes.insert(sight.scene);
+    }
+    if (allowed.level_dB && *allowed.level_dB < far_below * level_sd_dB) {
+      level_dB = std::min(level_dB, *allowed.level_dB);
+      scenes.insert(sight.scene);
+    }
+  }
+  if (scenes.empty()) return;
+  core::Phrase compared{"", "", {}};
+  if (boundary_sd_mm > 0)
+    compared.values.push_back(phrase("problem.needless_boundary", {plain(core::number(boundary_mm, 3)),
+                                                                   plain(core::number(boundary_sd_mm, 2))}));
+  if (std::isfinite(level_dB)) {
+    if (!compared.values.empty()) compared.values.push_back(plain(", "));
+    compared.values.push_back(phrase(
+        "problem.needless_level", {plain(core::number(level_dB, 3)), plain(core::number(level_sd_dB, 2))}));
+  }
+  check.notes.push_back(
+      {{protocol.path, 0, 0},
+       phrase("problem.needless", {std::move(compared), plain(fmt::format("{}", fmt::join(scenes, ", ")))}),
+       phrase("problem.needless_allowed")});
+}
+
 std::vector<core::Problem> language_notes(const Protocol& protocol) {
   std::vector<core::Problem> notes;
   for (const auto& language : protocol.languages) {
@@ -408,6 +466,8 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   check.warnings.insert(check.warnings.end(), drawn.other_languages.begin(), drawn.other_languages.end());
   check.notes = protocol::notes(*protocol);
   for (const auto& note : language_notes(*protocol)) check.notes.push_back(note);
+  for (const auto& note : trial::observer_notes(*protocol, simulation::Observer{{}}))
+    check.notes.push_back(note);
   if (rig::largest_trigger_code(*rig) > 0) check.triggers = protocol::trigger_codes(*protocol);
   try {
     const auto& finish = options.steps.finish;
@@ -419,6 +479,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
     warn_of_runs(protocol->path, check);
     if (check.problems.empty()) {
       if (options.finger) check.finger = shares(check.survey, *rig);
+      note_needless_tolerances(*protocol, check);
       if (options.sound) check.sound = loudest(check.survey, *rig, stop, options.steps);
       // if the work was stopped early, this upper limit may not cover all scenes
       if (finish.stop_requested()) check.sound.reset();

@@ -54,10 +54,13 @@ class Truths {
   Truths(const protocol::Protocol& protocol, const PowerOptions& options,
          const std::vector<SessionOutcome>& outcomes) {
     const simulation::Observer observer(options.observer);
-    for (const auto& spec : protocol.procedures)
+    // a procedure may run in blocks with different boundaries, and then converges on no one level
+    for (const auto& spec : protocol.procedures) {
+      if (!options.cautions.empty()) break;
       for (const auto& [parameter, value] : true_parameters(protocol, spec, observer))
         for (int number = 1; number <= protocol::session_count(protocol); ++number)
           add("procedure " + spec.name + session_suffix(protocol, number), parameter, value);
+    }
     for (const auto& spec : protocol.procedures)
       if (spec.kind == procedure::Kind::adjustment)
         for (const auto& condition : with_none(protocol::analysed_conditions(protocol)))
@@ -70,16 +73,16 @@ class Truths {
     for (const auto& outcome : outcomes) generating.add(outcome.generating);
     if (outcomes.front().design == report::Design::categories)
       for (const auto& condition : with_none(protocol::analysed_conditions(protocol)))
-        add(source_of("answers", condition), "proportion correct", generating.share_correct(condition));
+        add(source_of("answers", condition), analysis::kCorrect, generating.share_correct(condition));
     add_d_primes(protocol, generating, observer);
     add_fits(generating, observer, outcomes);
     add_differences(generating, observer, protocol::analysed_conditions(protocol));
     for (const auto& condition : with_none(protocol::analysed_conditions(protocol))) {
       const auto diffusion = source_of("diffusion", condition), signal = source_of("signal", condition);
-      add(diffusion, "boundary", generating.boundary(condition, observer));
-      add(diffusion, "drift", generating.drift(condition));
+      add(diffusion, analysis::kBoundary, generating.boundary(condition, observer));
+      add(diffusion, analysis::kDrift, generating.drift(condition));
       if (options.observer.residual_range_s == 0)
-        add(diffusion, "time outside the decision", observer.nondecision_s());
+        add(diffusion, analysis::kNondecision, observer.nondecision_s());
       if (const auto curve = generating.curve(condition)) {
         add(signal, kAsymptote, (*curve)[0]);
         add(signal, kRate, (*curve)[1]);
@@ -128,14 +131,17 @@ class Truths {
 
   void add_fits(const GeneratingValues& generating, const simulation::Observer& observer,
                 const std::vector<SessionOutcome>& outcomes) {
-    for (const auto& [condition, options] : outcomes.front().fits) {
-      const auto truth = generating.fit(condition, options, observer);
-      const auto source = source_of("fit", condition);
-      const bool two_sided = options.guess == analysis::Guess::tied_to_lapse;
-      add(source, two_sided ? "PSE" : "threshold", truth.threshold);
-      add(source, spread_name(options), truth.slope);
-      add(source, "75 % point", truth.level_75);
-    }
+    std::set<std::string> added;
+    for (const auto& outcome : outcomes)  // of groups, each person has only some of the conditions
+      for (const auto& [condition, options] : outcome.fits) {
+        if (!added.insert(condition).second) continue;
+        const auto truth = generating.fit(condition, options, observer);
+        const auto source = source_of("fit", condition);
+        const bool two_sided = options.guess == analysis::Guess::tied_to_lapse;
+        add(source, two_sided ? "PSE" : "threshold", truth.threshold);
+        add(source, spread_name(options), truth.slope);
+        add(source, "75 % point", truth.level_75);
+      }
   }
 
   void add_differences(const GeneratingValues& generating, const simulation::Observer& observer,
@@ -147,13 +153,14 @@ class Truths {
                                  std::optional<double> second) {
           if (first && second) add(source, parameter, *second - *first);
         };
-        add_gap("proportion correct", generating.share_correct(names[a]), generating.share_correct(names[b]));
-        add_gap("boundary", generating.boundary(names[a], observer), generating.boundary(names[b], observer));
+        add_gap(analysis::kCorrect, generating.share_correct(names[a]), generating.share_correct(names[b]));
+        add_gap(analysis::kBoundary, generating.boundary(names[a], observer),
+                generating.boundary(names[b], observer));
         // the time that a simulated observer needs outside the decision is the same in all conditions, so the
         // true difference is 0
-        add(source, "time outside the decision", 0);
+        add(source, analysis::kNondecision, 0);
         // its drift depends on the stimulus only
-        add(source, "drift", 0);
+        add(source, analysis::kDrift, 0);
         const auto first = generating.curve(names[a]), second = generating.curve(names[b]);
         if (!first || !second) continue;
         add(source, kAsymptote, (*second)[0] - (*first)[0]);
@@ -321,11 +328,11 @@ Measures true_measures(const SessionOutcome& outcome, const simulation::Observer
     if (value) truths.push_back({"", condition, measure, "", *value});
   };
   for (const auto& condition : conditions) {
-    add(condition, report::kCorrect, generating.share_correct(condition));
-    add(condition, "boundary", generating.boundary(condition, observer));
-    add(condition, "drift", generating.drift(condition));
+    add(condition, analysis::kCorrect, generating.share_correct(condition));
+    add(condition, analysis::kBoundary, generating.boundary(condition, observer));
+    add(condition, analysis::kDrift, generating.drift(condition));
     if (observer.parameters().residual_range_s == 0)
-      add(condition, "time outside the decision", observer.nondecision_s());
+      add(condition, analysis::kNondecision, observer.nondecision_s());
     if (const auto curve = generating.curve(condition)) {
       add(condition, kAsymptote, (*curve)[0]);
       add(condition, kRate, (*curve)[1]);

@@ -27,6 +27,8 @@ struct PowerOptions {
   /// study; its findings are those of the report of a study. `observers` must be a multiple.
   int people = 0;
   simulation::Spread between;  ///< how much these people differ
+  /// simulation::Question::caution in each block, by its block_labels()
+  std::map<std::string, double> cautions;
   std::uint64_t seed = 1;  ///< session i runs with seed + i, at place i of the counterbalancing
   /// Number of sessions with bootstrap intervals, which take most of the time. With a procedure
   /// that chooses levels by the answers, intervals come from a posterior instead. That is fast, so every

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "station/core/number.hpp"
+#include "station/report/words.hpp"
 
 namespace turnpoint::rehearsal {
 
@@ -23,7 +24,8 @@ report::Chart panel_of(const Recovery& recovery) {
   std::vector<double> ends{at(0.01), at(0.99)};
   if (recovery.truth) ends.push_back(*recovery.truth);
   panel.x = report::fitted(
-      recovery.parameter + " (" + (recovery.unit.empty() ? "no unit" : recovery.unit) + ")", ends, 0.1);
+      core::say(report::in_unit(core::plain(recovery.parameter), core::plain(recovery.unit)), "en"), ends,
+      0.1);
   std::vector<double> shown;
   std::copy_if(sorted.begin(), sorted.end(), std::back_inserter(shown),
                [&](double value) { return value >= panel.x.low && value <= panel.x.high; });

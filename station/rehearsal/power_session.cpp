@@ -16,6 +16,7 @@
 #include "station/report/study.hpp"
 #include "station/report/summary.hpp"
 #include "station/trial/earlier_trials.hpp"
+#include "station/trial/rows.hpp"
 
 namespace turnpoint::rehearsal {
 
@@ -90,7 +91,7 @@ void add_fits(const report::SessionData& data, const std::string& unit, SessionO
     for (const auto& confusion :
          analysis::confusions(data.trials, data.conditions, static_cast<int>(data.choices.size())))
       if (confusion.right)
-        outcome.findings.push_back({source_of("answers", confusion.condition), "proportion correct", "",
+        outcome.findings.push_back({source_of("answers", confusion.condition), analysis::kCorrect, "",
                                     confusion.right->value, confusion.right->interval});
     return;
   }
@@ -145,11 +146,12 @@ void add_trade(const report::SessionData& data, SessionOutcome& outcome) {
   for (const auto& entry : trade.instructions) {
     const auto add = [&](const char* parameter, const char* unit, const auto& found) {
       if (found)
-        findings.push_back({source_of("diffusion", entry.instruction), parameter, unit, found->value, found->interval});
+        findings.push_back(
+            {source_of("diffusion", entry.instruction), parameter, unit, found->value, found->interval});
     };
-    add("boundary", "s = 0.1", entry.boundary);
-    add("time outside the decision", "s", entry.nondecision_s);
-    add("drift", "s = 0.1", entry.drift);
+    add(analysis::kBoundary, "s = 0.1", entry.boundary);
+    add(analysis::kNondecision, "s", entry.nondecision_s);
+    add(analysis::kDrift, "s = 0.1", entry.drift);
   }
   for (const auto& difference : trade.differences) {
     if (!difference.estimate) continue;
@@ -167,7 +169,8 @@ void add_curves(const report::SessionData& data, std::vector<Finding>& findings)
   for (const auto& curve : curves) {
     const auto add = [&](const char* parameter, const char* unit, const auto& found) {
       if (found)
-        findings.push_back({source_of("signal", curve.condition), parameter, unit, found->value, found->interval});
+        findings.push_back(
+            {source_of("signal", curve.condition), parameter, unit, found->value, found->interval});
     };
     add(kAsymptote, "SD", curve.asymptote);
     add(kRate, "1/s", curve.rate_per_s);
@@ -244,33 +247,74 @@ simulation::Parameters person_in(const PowerOptions& options, int session) {
 }
 
 /// Adds the participant's part of the report of a study.
-void add_person(const protocol::Protocol& protocol, const report::SessionData& data, SessionOutcome& outcome) {
+void add_person(const protocol::Protocol& protocol, const report::SessionData& data,
+                SessionOutcome& outcome) {
   outcome.person = report::study_person(data, protocol.exclusion.value_or(protocol::Exclusion{}), false);
   for (const auto& named : outcome.person->fits) outcome.fits.emplace_back(named.name, named.fit.options);
   outcome.person->fits.clear();  // a fit of all people together would take longer than all the rest
 }
 
+/// The cautions of the blocks of a session, in the participant's order; empty without any cautions.
+std::vector<std::optional<double>> cautions_in(const protocol::Protocol& protocol,
+                                               const PowerOptions& options, const protocol::Visit& visit) {
+  std::vector<std::optional<double>> cautions;
+  if (options.cautions.empty()) return cautions;
+  for (const auto& label : block_labels(protocol, visit)) {
+    const auto found = options.cautions.find(label);
+    cautions.push_back(found == options.cautions.end() ? std::nullopt : std::optional(found->second));
+  }
+  return cautions;
+}
+
 }  // namespace
+
+std::vector<std::string> block_labels(const protocol::Protocol& protocol, const protocol::Visit& visit) {
+  std::vector<std::string> labels;
+  procedure::StandIns programs;
+  const trial::Director director(protocol, visit, 0, &programs);  // the seed does not change the blocks
+  for (const auto& block : director.all_blocks()) {
+    auto& label = labels.emplace_back(block.name);
+    for (const auto& [factor, value] : block.fixed) label += ", " + protocol::level_in_words(factor, value);
+  }
+  return labels;
+}
+
+std::vector<Rehearsal> planned_sessions(const protocol::Protocol& protocol, std::uint64_t seed,
+                                        int participant, const simulation::Observer& observer,
+                                        const VisitAnswerer& answer) {
+  std::vector<Rehearsal> sessions;
+  procedure::EarlierTrials earlier;
+  auto sits = rehearser(observer);
+  for (int number = 1; number <= protocol::session_count(protocol); ++number) {
+    const protocol::Visit visit{participant, number};
+    sits.answer = [&](const trial::TrialSpec& trial, const simulation::Question& question) {
+      return answer(visit, trial, question);
+    };
+    const auto own_seed =
+        seed + static_cast<std::uint64_t>(participant) + static_cast<std::uint64_t>(number - 1) * kSeedStep;
+    sessions.push_back(rehearse(protocol, visit, own_seed, sits, earlier));
+    trial::add_earlier_trials(protocol, sessions.back().blocks, earlier);
+  }
+  return sessions;
+}
 
 SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerOptions& options,
                                 int session) {
   const simulation::Observer observer(person_in(options, session));
   SessionOutcome outcome;
-  const auto seed = options.seed + static_cast<std::uint64_t>(session);
-  auto sits = rehearser(observer);
-  sits.answer = [&](const trial::TrialSpec& trial, const simulation::Question& q) {
-    outcome.generating.add(protocol, trial, q, observer);
-    return observer.answer(q);
+  std::map<int, std::vector<std::optional<double>>> cautions;  // by the visit's number
+  const auto answer = [&](const protocol::Visit& visit, const trial::TrialSpec& trial,
+                          simulation::Question question) {
+    auto [entry, is_new] = cautions.try_emplace(visit.session);
+    if (is_new) entry->second = cautions_in(protocol, options, visit);
+    const auto block = static_cast<std::size_t>(trial.block_index);
+    if (block < entry->second.size()) question.caution = entry->second[block];
+    outcome.generating.add(protocol, trial, question, observer);
+    return observer.answer(question);
   };
   report::SessionData data;
-  data.seed = seed;
-  std::vector<Rehearsal> sessions;
-  procedure::EarlierTrials earlier;
-  for (int number = 1; number <= protocol::session_count(protocol); ++number) {
-    sessions.push_back(rehearse(protocol, {session, number},
-                                seed + static_cast<std::uint64_t>(number - 1) * kSeedStep, sits, earlier));
-    trial::add_earlier_trials(protocol, sessions.back().blocks, earlier);
-  }
+  data.seed = options.seed + static_cast<std::uint64_t>(session);
+  const auto sessions = planned_sessions(protocol, options.seed, session, observer, answer);
   report::add_trials(joined(sessions), protocol, data);
   const auto& unit = data.level_unit;
   for (const auto& one : sessions) outcome.presented += one.trials, outcome.duration_s += one.duration_s;

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -8,6 +10,7 @@
 #include "station/protocol/protocol.hpp"
 #include "station/rehearsal/power.hpp"
 #include "station/rehearsal/power_truth.hpp"
+#include "station/rehearsal/rehearsal.hpp"
 #include "station/report/session_data.hpp"
 #include "station/report/study.hpp"
 
@@ -36,9 +39,23 @@ struct SessionOutcome {
   std::optional<double> model_p;  ///< analysis::Trade::model_p
   /// the participant's part of a study; only with PowerOptions::people
   std::optional<report::StudyPerson> person;
-  Measures truths;                              ///< the true values of this person's measures
-  report::SessionData settings;                 ///< of session 0: how trials are analysed; without trials
+  Measures truths;               ///< the true values of this person's measures
+  report::SessionData settings;  ///< of session 0: how trials are analysed; without trials
 };
+
+/// The blocks of a session in the participant's order, by their names and by the factors that are fixed in
+/// them: "main, penalty 1.5 s".
+std::vector<std::string> block_labels(const protocol::Protocol& protocol, const protocol::Visit& visit);
+
+/// Answers a question of a trial in the session of this visit.
+using VisitAnswerer =
+    std::function<simulation::Reply(const protocol::Visit&, const trial::TrialSpec&, simulation::Question)>;
+
+/// Simulates all planned sessions of one participant (from 0) of a study. The observer makes the settings, if
+/// the task is an adjustment; `answer` gives all other answers.
+std::vector<Rehearsal> planned_sessions(const protocol::Protocol& protocol, std::uint64_t seed,
+                                        int participant, const simulation::Observer& observer,
+                                        const VisitAnswerer& answer);
 
 /// Simulates session number `session` (from 0) of a study and analyses it. Depends on nothing but its
 /// arguments.
@@ -63,8 +80,8 @@ void complete(const protocol::Protocol& protocol, const PowerOptions& options,
 inline constexpr const char *kAsymptote = "asymptote of d'", *kRate = "rate of d'",
                             *kIntercept = "intercept of d'", *kRateRatio = "ratio of rates of d'";
 
-/// What is true of the person in a session: the measures that the report of a study has, as far as they follow
-/// from the person's parameters.
+/// What is true of the person in a session: the measures that the report of a study has, as far as they
+/// follow from the person's parameters.
 Measures true_measures(const SessionOutcome& outcome, const simulation::Observer& observer,
                        const report::SessionData& settings);
 

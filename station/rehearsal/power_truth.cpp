@@ -111,11 +111,11 @@ std::map<std::string, double> true_parameters(const protocol::Protocol& protocol
   }
   trial::TrialSpec trial;
   trial.procedure = spec.name;
-  const auto question = trial::question_of(trial, protocol, 0);
+  auto question = trial::question_of(trial, protocol, 0);
   const auto& deadline = protocol.timing.deadline_s;
-  const bool own_function = deadline && deadline->is_constant() &&
-                            observer.bound(deadline->constant) == p.bound && p.drift_sd == 0 &&
-                            p.start_range == 0;
+  if (!deadline || !deadline->is_constant()) return truth;
+  question.deadline_s = deadline->constant;
+  const bool own_function = observer.bound(question) == p.bound && p.drift_sd == 0 && p.start_range == 0;
   if (!own_function) return truth;
   const bool weibull = question.decides == simulation::Decides::right_answer &&
                        question.finding == simulation::Finding::weibull &&
@@ -130,7 +130,8 @@ namespace {
 
 /// The drift towards the right answer, with s = 0.1; NaN if the diffusion that the report fits does not have
 /// it: it varies, or more than the drift decides.
-double drift_towards(const simulation::Question& question, int correct, const simulation::Observer& observer) {
+double drift_towards(const simulation::Question& question, int correct,
+                     const simulation::Observer& observer) {
   using simulation::Decides;
   const auto& p = observer.parameters();
   if (question.answers != 2 || question.rating || question.decides == Decides::category ||
@@ -177,10 +178,11 @@ void GeneratingValues::add(const protocol::Protocol& protocol, const trial::Tria
       protocol::condition_in(meaning, protocol::condition_of(protocol, trial.factors, instruction));
   auto [entry, is_new] = conditions_.try_emplace(condition);
   auto& made = entry->second;
-  if (is_new) made.question = question, made.sum.deadline_s = question.deadline_s;
+  if (is_new)
+    made.question = question, made.sum.deadline_s = question.deadline_s, made.sum.caution = question.caution;
   auto& sum = made.sum;
-  sum.one_deadline =
-      sum.one_deadline && !question.signal_s && made.question.deadline_s == question.deadline_s;
+  sum.one_bound = sum.one_bound && !question.signal_s && sum.deadline_s == question.deadline_s &&
+                  sum.caution == question.caution;
   if (!trial.correct) return;
   ++sum.trials;
   sum.correct += observer.share(question, *trial.correct);
@@ -199,9 +201,11 @@ void GeneratingValues::add(const protocol::Protocol& protocol, const trial::Tria
 }
 
 void GeneratingValues::add(const Sum& more, Sum& sum) {
-  sum.one_deadline = sum.one_deadline && more.one_deadline && sum.deadline_s == more.deadline_s;
+  sum.one_bound =
+      sum.one_bound && more.one_bound && sum.deadline_s == more.deadline_s && sum.caution == more.caution;
   sum.trials += more.trials, sum.correct += more.correct;
-  // with levels that follow the answers, sessions have different difficulties, so no mean drift is true of all
+  // with levels that follow the answers, sessions have different difficulties, so no mean drift is true of
+  // all
   const bool same = sum.drifts.size() == more.drifts.size() &&
                     std::equal(sum.drifts.begin(), sum.drifts.end(), more.drifts.begin(),
                                [](const auto& a, const auto& b) { return a.first == b.first; });
@@ -231,7 +235,7 @@ GeneratingValues GeneratingValues::of_sums(const std::map<std::string, Sum>& sum
   GeneratingValues values;
   for (const auto& [condition, sum] : sums) {
     auto& made = values.conditions_[condition];
-    made.sum = sum, made.question.deadline_s = sum.deadline_s;
+    made.sum = sum, made.question.deadline_s = sum.deadline_s, made.question.caution = sum.caution;
   }
   return values;
 }
@@ -262,7 +266,7 @@ std::optional<double> GeneratingValues::share_correct(const std::string& conditi
 std::optional<double> GeneratingValues::share_correct_at(const std::string& condition, double level,
                                                          const simulation::Observer& observer) const {
   const auto* made = find(condition);
-  if (!made || !made->sum.one_deadline || made->question.decides != simulation::Decides::right_answer)
+  if (!made || !made->sum.one_bound || made->question.decides != simulation::Decides::right_answer)
     return std::nullopt;
   auto question = made->question;
   question.level = level, question.correct = 0;
@@ -272,8 +276,8 @@ std::optional<double> GeneratingValues::share_correct_at(const std::string& cond
 std::optional<double> GeneratingValues::boundary(const std::string& condition,
                                                  const simulation::Observer& observer) const {
   const auto* made = find(condition);
-  if (!made || !made->sum.one_deadline) return std::nullopt;
-  return 2 * analysis::kDiffusionScale * observer.bound(made->question.deadline_s);
+  if (!made || !made->sum.one_bound) return std::nullopt;
+  return 2 * analysis::kDiffusionScale * observer.bound(made->question);
 }
 
 std::optional<double> GeneratingValues::drift(const std::string& condition) const {
@@ -300,7 +304,7 @@ std::optional<std::array<double, 3>> GeneratingValues::curve(const std::string& 
 FitTruth GeneratingValues::fit(const std::string& condition, const analysis::FitOptions& options,
                                const simulation::Observer& observer) const {
   const auto* made = find(condition);
-  if (!made || !made->sum.one_deadline) return {};
+  if (!made || !made->sum.one_bound) return {};
   const auto& p = observer.parameters();
   auto question = made->question;
   question.absent = false, question.correct = 0;
@@ -321,8 +325,7 @@ FitTruth GeneratingValues::fit(const std::string& condition, const analysis::Fit
                         ? question.cut + p.bias
                         : crosses(share(low) + way * (share(high) - share(low)));
   truth.level_75 = crosses(0.75);
-  const bool own_function =
-      observer.bound(question.deadline_s) == p.bound && p.drift_sd == 0 && p.start_range == 0;
+  const bool own_function = observer.bound(question) == p.bound && p.drift_sd == 0 && p.start_range == 0;
   if (own_function && decides == simulation::Decides::right_answer &&
       question.finding == simulation::Finding::weibull && options.function == core::Function::weibull)
     truth.slope = p.slope;

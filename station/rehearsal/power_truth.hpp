@@ -52,8 +52,9 @@ class GeneratingValues {
   /// Sums over the trials of one condition. Sums of several sessions can be added. They do not contain the
   /// questions that were asked.
   struct Sum {
-    double deadline_s = 0;  ///< deadline of the condition's first trial
-    bool one_deadline = true;
+    double deadline_s = 0;               ///< deadline of the condition's first trial
+    std::optional<double> caution = {};  ///< simulation::Question::caution of that trial
+    bool one_bound = true;               ///< both are the same in all trials, and there is no response signal
     int trials = 0;
     double correct = 0;
     /// by difficulty: the drift towards the right answer (s = 0.1); NaN if it is not the same in all trials

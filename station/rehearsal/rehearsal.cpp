@@ -143,6 +143,7 @@ Rehearsal rehearse(const protocol::Protocol& protocol, const protocol::Visit& vi
       trial::TrialEnd end{row.outcome, result.response, row.correct, {}};
       if (result.response) end.setting = doing.setting;
       director.record(end);
+      director.spend(row.duration_s);
       now_ns = bench.now_ns();
       record.trials.push_back(std::move(row));
       if (++rehearsal.trials > most_trials)

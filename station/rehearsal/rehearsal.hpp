@@ -36,9 +36,10 @@ struct Rehearsal {
 
 /// Simulates a whole session in memory, with the director, trial machine and scoring of `run` but without
 /// drive, screen and database. A trial takes microseconds. Levels, answers and response times equal those of
-/// `run --observer` with the same seed and visit. Separate programs are not started: procedure::StandIns take
-/// the place of their procedures. `earlier` are the trials of the participant's earlier sessions. Several
-/// threads may use the same protocol at once.
+/// `run --observer` with the same seed and visit. Only the last trial of a block of a fixed time may be in
+/// one of them alone, because a trial of a session lasts whole frames. Separate programs are not started:
+/// procedure::StandIns take the place of their procedures. `earlier` are the trials of the participant's
+/// earlier sessions. Several threads may use the same protocol at once.
 Rehearsal rehearse(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed,
                    const Rehearser& rehearser, const procedure::EarlierTrials& earlier = {});
 

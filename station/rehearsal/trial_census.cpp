@@ -20,7 +20,7 @@ using trial::TrialSpec;
 constexpr int most_trials_of_a_block = 20'000, enough_trials = 40'000;
 
 double trials_of(const procedure::Spec& spec) {
-  if (!follows_answers(spec)) return static_cast<double>(spec.values.size()) * spec.repeats;
+  if (!follows_answers(spec)) return static_cast<double>(procedure::list_trials(spec));
   if (spec.kind == procedure::Kind::limits) return procedure::series_trials(spec);
   return spec.stop.trials.value_or(spec.stop.reversals ? 6 * *spec.stop.reversals : 60);
 }
@@ -40,7 +40,8 @@ bool begins_unlike_it_goes_on(const Protocol& protocol, const Block& block) {
   for (const auto& name : block.procedures) {
     const auto* spec = protocol::find_procedure(protocol, name);
     if (!spec || follows_answers(*spec)) return false;
-    unlike = unlike || spec->shuffle == procedure::Shuffle::none || !spec->max_run.empty();
+    unlike =
+        unlike || spec->shuffle == procedure::Shuffle::none || !spec->max_run.empty() || !spec->rules.empty();
   }
   return unlike;
 }
@@ -118,10 +119,6 @@ void TrialCensus::add(const Block& block, const TrialSpec& trial) {
   std::vector<double> second;
   if (spec && spec->second) second.push_back(std::get<double>(trial.factors.at(spec->second->level)));
   add(block, spec, {trial.level.value_or(0)}, second, 1);
-}
-
-void TrialCensus::add(const TrialCensus& other) {
-  for (const auto& [cell, trials] : other.cells_) cells_[cell] += trials;
 }
 
 std::vector<protocol::Factors> TrialCensus::combinations(const protocol::Factors& cell) const {

@@ -25,7 +25,6 @@ class TrialCensus {
   /// the block's fixed levels.
   void add(const protocol::Block& block, const procedure::Spec* spec, const std::vector<double>& levels,
            const std::vector<double>& seconds, double trials);
-  void add(const TrialCensus& other);
 
   /// The number of trials of each kind (cell). A cell is identified by the factors that the block, procedure
   /// or catch trial sets.

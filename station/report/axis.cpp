@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "station/core/number.hpp"
+#include "station/report/words.hpp"
 
 namespace turnpoint::report {
 
@@ -27,11 +28,7 @@ void check(const Axis& axis) {
 }
 
 /// Formats a tick's value with a typographic minus sign.
-std::string label(double value) {
-  auto result = core::number(std::abs(value) < 1e-12 ? 0 : value, 6);
-  if (result[0] == '-') result = "\u2212" + result.substr(1);
-  return result;
-}
+std::string label(double value) { return with_minus(core::number(std::abs(value) < 1e-12 ? 0 : value, 6)); }
 
 std::vector<Tick> linear_ticks(const Axis& axis, int wanted) {
   const double rough = (axis.high - axis.low) / std::max(wanted, 2);

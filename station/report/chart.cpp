@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "station/report/canvas.hpp"
@@ -28,8 +29,8 @@ struct LegendEntry {
   bool line = false, faint_line = false, points = false, open_points = false, area = false;
 };
 
-/// Returns an entry for each layer of the chart that has a name; none if there is only one, which has nothing to be told
-/// from.
+/// Returns an entry for each layer of the chart that has a name; none if there is only one, which has nothing
+/// to be told from.
 std::vector<LegendEntry> legend_of(const Chart& chart);
 
 /// Draws the legend between title and data, in rows that fit the width (px). Returns its height in px.
@@ -103,7 +104,8 @@ double draw_legend(Canvas* canvas, const std::vector<LegendEntry>& entries, doub
       if (entry.area)
         canvas->rectangle({x, y + 3}, sample, 10, {"", look.colour, 0, "", entry.line ? 0.18 : 0.85});
       if (entry.line) canvas->line({x, y + 8}, {x + sample, y + 8}, {look.colour, "", 2, look.dash, 1});
-      if (entry.faint_line) canvas->line({x, y + 8}, {x + sample, y + 8}, {look.colour, "", 1, look.dash, 0.4});
+      if (entry.faint_line)
+        canvas->line({x, y + 8}, {x + sample, y + 8}, {look.colour, "", 1, look.dash, 0.4});
       if (entry.points || entry.open_points) marker(*canvas, {x + sample / 2, y + 8}, 4, look, !entry.points);
       canvas->text({x + sample + 6, y + 12}, entry.name, kText_px, Anchor::start, kInk);
     }
@@ -115,6 +117,8 @@ double draw_legend(Canvas* canvas, const std::vector<LegendEntry>& entries, doub
 namespace {
 
 constexpr double kTitle = 13.5, kPad = 10, kTick = 5, kCaptionLine = 16;
+// of a chart: its least size in px, and its best proportions
+constexpr double kLeastWidth = 200, kLeastHeight = 165, kBestShape = 1.5;
 const std::string kSoft = "#545454", kGrid = "#e6e6e6";
 
 void check(bool good, const std::string& what) {
@@ -229,7 +233,8 @@ struct Draw {
     end(high, part->cut_high, 1);
   }
 
-  /// An arrow with its tip at the edge of the axes, in the direction of the part of an interval that is not shown.
+  /// An arrow with its tip at the edge of the axes, in the direction of the part of an interval that is not
+  /// shown.
   void arrow(Point tip, double to_right, double down, const std::string& colour) const {
     constexpr double length = 8, half = 4;
     const auto [x, y] = tip;
@@ -274,8 +279,8 @@ bool have_room(const std::vector<Tick>& list, const Axis& axis, double width) {
   });
 }
 
-/// If the names on a horizontal axis do not fit beside each other, they are turned upright. Returns the height in px that
-/// they then need below an ordinary label; otherwise 0.
+/// If the names on a horizontal axis do not fit beside each other, they are turned upright. Returns the
+/// height in px that they then need below an ordinary label; otherwise 0.
 double turned_names_px(const Axis& axis, double width) {
   if (axis.names.empty()) return 0;
   const auto names = ticks(axis);
@@ -348,8 +353,7 @@ Division divided(const Chart& chart, const Place& place, VerticalLabels where, i
   d.entries = legend_of(chart);
   Frame frame{d.left, d.legend_top, d.width, 0, &chart.x, &chart.y};
   frame.y += draw_legend(nullptr, d.entries, d.left, 0, d.width);
-  frame.height =
-      place.top + place.height - kPad - 38 - turned_names_px(chart.x, frame.width) - frame.y;
+  frame.height = place.top + place.height - kPad - 38 - turned_names_px(chart.x, frame.width) - frame.y;
   d.layers = beside(chart, frame);
   Chart moved;
   moved.layers = d.layers;
@@ -367,12 +371,7 @@ Division divided(const Chart& chart, const Place& place, VerticalLabels where) {
   }
 }
 
-Division divided_with_room(const Chart& chart, const Place& place, VerticalLabels where) {
-  auto d = divided(chart, place, where);
-  check(d.labelled.frame.width > 40 && d.labelled.frame.height > 40,
-        "chart \"" + chart.title + "\" leaves no room for its data");
-  return d;
-}
+bool has_room(const Division& d) { return d.labelled.frame.width > 40 && d.labelled.frame.height > 40; }
 
 /// Draws a chart's title above its data. A long title begins further left, and shrinks if that is not enough.
 void draw_title(Canvas& canvas, const std::string& title, const Place& place, double left) {
@@ -421,29 +420,39 @@ std::vector<std::string> caption_lines(const std::string& caption, double width)
   return lines;
 }
 
+std::vector<Place> places_of(const Figure& figure) {
+  const int count = static_cast<int>(figure.charts.size()), columns = std::min(figure.columns, count);
+  std::vector<Place> places;
+  for (int i = 0; i < count; ++i)
+    places.push_back({i % columns * figure.chart_width_px, i / columns * figure.chart_height_px,
+                      figure.chart_width_px, figure.chart_height_px});
+  return places;
+}
+
+std::vector<Division> divided(const Figure& figure, const std::vector<Place>& places) {
+  const auto where = labels_of(figure.charts, places);
+  std::vector<Division> divisions;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    divisions.push_back(divided(figure.charts[i], places[i], where));
+  return divisions;
+}
+
 }  // namespace
 
 void draw(Canvas& canvas, const Figure& figure) {
   check(!figure.charts.empty(), "a figure needs a chart");
   check(figure.columns > 0, "the number of columns must be at least 1");
-  const int count = static_cast<int>(figure.charts.size());
-  const int columns = std::min(figure.columns, count), rows = (count + columns - 1) / columns;
-  const auto [width, height] = size_px(figure);
-  const double charts = rows * figure.chart_height_px;
-  std::vector<Place> places;
-  for (int i = 0; i < count; ++i)
-    places.push_back({i % columns * figure.chart_width_px, i / columns * figure.chart_height_px,
-                      figure.chart_width_px, figure.chart_height_px});
-  const auto where = labels_of(figure.charts, places);
-  std::vector<Division> divisions;
+  const auto places = places_of(figure);
+  const auto divisions = divided(figure, places);
   for (std::size_t i = 0; i < places.size(); ++i)
-    divisions.push_back(divided_with_room(figure.charts[i], places[i], where));
+    check(has_room(divisions[i]), "chart \"" + figure.charts[i].title + "\" leaves no room for its data");
+  const auto [width, height] = size_px(figure);
   const auto caption = caption_lines(figure.caption, width - 4 * kPad);
   canvas.begin(width, height, figure.title);
   canvas.rectangle({0, 0}, width, height, {"", "#ffffff", 0, "", 1});
   for (std::size_t i = 0; i < places.size(); ++i)
     draw_chart(canvas, figure.charts[i], places[i], divisions[i]);
-  double y = charts + kText_px;
+  double y = height - caption_height_px(figure) + kText_px;
   for (const auto& line : caption) {
     canvas.text({2 * kPad, y}, line, kText_px, Anchor::start, kSoft);
     y += kCaptionLine;
@@ -470,25 +479,56 @@ std::string render(const Figure& figure) {
 
 Figure laid_out(Figure figure, double width_px, double height_px) {
   check(width_px > 0 && height_px > 0, "the size of a figure must be above 0");
-  constexpr double best = 1.5, least_width = 200, least_height = 165;
   const auto count = static_cast<int>(figure.charts.size());
   Figure chosen = figure;
   double nearest = std::numeric_limits<double>::infinity();
   for (int columns = 1; columns <= count; ++columns) {
     const int rows = (count + columns - 1) / columns;
-    const double larger = std::max({1.0, least_width * columns / width_px, least_height * rows / height_px});
+    const double larger = std::max({1.0, kLeastWidth * columns / width_px, kLeastHeight * rows / height_px});
     const double width = width_px * larger;
     const auto caption = static_cast<double>(caption_lines(figure.caption, width - 4 * kPad).size());
     figure.columns = columns;
     figure.chart_width_px = width / columns;
     figure.chart_height_px = std::max(
-        least_height, (height_px * larger - (caption > 0 ? kPad + kCaptionLine * caption : 0)) / rows);
+        kLeastHeight, (height_px * larger - (caption > 0 ? kPad + kCaptionLine * caption : 0)) / rows);
     // Prefer the layout whose charts are closest to the best proportions, and whose document grows least.
-    const double off =
-        std::abs(std::log(figure.chart_width_px / figure.chart_height_px / best)) + 2 * std::log(larger);
+    const double off = std::abs(std::log(figure.chart_width_px / figure.chart_height_px / kBestShape)) +
+                       2 * std::log(larger);
     if (off < nearest) nearest = off, chosen = figure;
   }
   return chosen;
+}
+
+Figure laid_out_to_scroll(Figure figure, double width_px, double height_px) {
+  const auto caption_px = [&] {
+    auto one_column = figure;
+    one_column.columns = 1, one_column.chart_width_px = width_px;
+    return caption_height_px(one_column);
+  }();
+  const auto caption = std::exchange(figure.caption, "");
+  // a caption leaves the charts four fifths of the height, or else stands below what is seen first
+  if (caption_px <= 0.2 * height_px) height_px -= caption_px;
+  const auto all_has_room = [](const Figure& placed) {
+    const auto divisions = divided(placed, places_of(placed));
+    for (std::size_t i = 0; i < divisions.size(); ++i) {
+      const auto& label =
+          placed.charts[i].y.label;  // reaches beyond the data, as far as the numbers below it
+      const double room_px = divisions[i].labelled.frame.height + 2 * 40;
+      if (!has_room(divisions[i]) || text_width(label, kText_px) > room_px) return false;
+    }
+    return true;
+  };
+  auto placed = laid_out(figure, width_px, height_px);
+  if (size_px(placed).first > width_px + 0.5 || !all_has_room(placed)) {
+    placed.columns = 1;
+    placed.chart_width_px = std::max(width_px, kLeastWidth);
+    placed.chart_height_px =
+        std::clamp(placed.chart_width_px / kBestShape, kLeastHeight, std::max(kLeastHeight, height_px));
+    // a long legend, or a long label beside the data, needs more height than is seen at once
+    for (int i = 0; i < 10 && !all_has_room(placed); ++i) placed.chart_height_px *= 1.15;
+  }
+  placed.caption = caption;
+  return placed;
 }
 
 Histogram histogram(const std::vector<double>& values, double low, double high, int bins) {

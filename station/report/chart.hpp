@@ -30,6 +30,12 @@ struct Points {
   std::vector<bool> open;
   int series = 0;
   std::string name;
+
+  /// Adds a marker with an error bar.
+  void add(double at, double height, double from, double to) {
+    x.push_back(at), y.push_back(height);
+    low.push_back(from), high.push_back(to);
+  }
 };
 
 /// A horizontal interval at one height, such as that of a threshold, with a stroke at each end.
@@ -75,8 +81,8 @@ struct Chart {
   std::string title;
   Axis x, y;
   std::vector<Layer> layers;  ///< drawn one over another, the first at the bottom
-  /// Whether intervals of several series that would lie on each other are drawn beside each other. The distance is a few
-  /// px, the same for all points of a series.
+  /// Whether intervals of several series that would lie on each other are drawn beside each other. The
+  /// distance is a few px, the same for all points of a series.
   bool beside = true;
 };
 
@@ -89,9 +95,10 @@ struct Figure {
   std::string caption;  ///< text below the charts, broken into lines; "" for none
 };
 
-/// Draws the figure. Where an axis cuts an interval, an arrow points to the end that is not shown. A legend appears
-/// only if there are several entries. Throws std::invalid_argument for lists of different lengths, axes without a range, or a
-/// figure without charts. If a chart leaves no room for its data, it throws before anything is drawn.
+/// Draws the figure. Where an axis cuts an interval, an arrow points to the end that is not shown. A legend
+/// appears only if there are several entries. Throws std::invalid_argument for lists of different lengths,
+/// axes without a range, or a figure without charts. If a chart leaves no room for its data, it throws before
+/// anything is drawn.
 void draw(Canvas& canvas, const Figure& figure);
 
 /// Returns the figure as an SVG document. The same figure always gives the same bytes.
@@ -105,6 +112,10 @@ Point size_px(const Figure& figure);
 /// charts have the best proportions. Text is never made smaller: if there is not enough room, the document
 /// becomes larger and keeps its proportions.
 Figure laid_out(Figure figure, double width_px, double height_px);
+/// The same for a view of this size that can be scrolled downwards. The figure has the view's width, so that
+/// text keeps its size: charts that have no room side by side stand below each other, each about as high as
+/// the view, and a long caption stands below them.
+Figure laid_out_to_scroll(Figure figure, double width_px, double height_px);
 
 /// Counts `values` in at most `bins` bins of equal width. The bins reach from `low` to `high`, rounded
 /// outwards.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "station/report/figures.hpp"
+#include "station/report/study.hpp"
 #include "station/report/svg.hpp"
 
 namespace turnpoint::report {
@@ -12,10 +12,6 @@ namespace turnpoint::report {
 namespace {
 
 constexpr double kPixelsPerMm = 96 / 25.4;
-
-void keep(std::vector<NamedFigure>& list, const char* name, std::optional<Figure> figure) {
-  if (figure) list.push_back({name, std::move(*figure)});
-}
 
 /// Writes the rows of one chart.
 struct Rows {
@@ -70,41 +66,6 @@ struct Rows {
 };
 
 }  // namespace
-
-std::vector<NamedFigure> figures_of(const Summary& summary) {
-  const auto& data = summary.data;
-  std::vector<NamedFigure> list;
-  if (judges(data.design)) {
-    keep(list, "judgements", judgement_figure(summary));
-    keep(list, "roc", roc_figure(summary));
-  } else if (data.design == Design::adjustment) {
-    keep(list, "settings", settings_figure(summary));
-  } else {
-    if (!summary.fits.empty()) keep(list, "psychometric-function", psychometric_figure(summary));
-    keep(list, "threshold-curve", threshold_curve_figure(summary));
-    if (!summary.confusions.empty()) keep(list, "answers-to-each-stimulus", confusion_figure(summary));
-    keep(list, "roc", roc_figure(summary));
-    if (!summary.curves.empty()) keep(list, "response-signal", signal_figure(summary));
-    if (!summary.trade.instructions.empty() && data.scored) {
-      keep(list, "speed-accuracy", trade_figure(summary));
-      keep(list, "response-times", response_time_figure(summary));
-      if (summary.trade.model_p) keep(list, "quantiles", quantile_probability_figure(summary));
-    }
-  }
-  keep(list, "levels", trace_figure(summary));
-  keep(list, "finger", finger_figure(summary));
-  keep(list, "friction", friction_figure(summary));
-  keep(list, "vibration", vibration_figure(summary));
-  return list;
-}
-
-std::vector<NamedFigure> figures_of(const Study& study) {
-  std::vector<NamedFigure> list;
-  keep(list, "group", group_curve_figure(study));
-  keep(list, "participants", shrinkage_figure(study));
-  keep(list, "speed-accuracy", group_trade_figure(study));
-  return list;
-}
 
 std::string data_csv(const Figure& figure) {
   std::string csv = "chart,x_axis,y_axis,kind,series,x,x_low,x_high,y,y_low,y_high,value,open\n";

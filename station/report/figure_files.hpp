@@ -4,20 +4,14 @@
 #include <vector>
 
 #include "station/report/chart.hpp"
-#include "station/report/study.hpp"
-#include "station/report/summary.hpp"
 
 namespace turnpoint::report {
 
-/// A figure and the name under which it is saved, such as "psychometric-function".
+/// A figure of a report, and the name under which it is saved, such as "psychometric-function".
 struct NamedFigure {
   std::string name;
   Figure figure;
 };
-/// All figures of a report for which there are data, in the order of its page.
-std::vector<NamedFigure> figures_of(const Summary& summary);
-std::vector<NamedFigure> figures_of(const Study& study);
-
 /// The data of a figure as CSV: a row for each point, bar, cell, rule and interval, with the chart, its axes and the
 /// series it belongs to. A value that does not exist is an empty cell.
 std::string data_csv(const Figure& figure);

@@ -24,11 +24,8 @@ Points observed(const NamedFit& named, int series, const std::string& name) {
   points.name = name;
   for (const auto& point : named.fit.data) {
     if (point.level == analysis::kNoise) continue;
-    const auto interval = analysis::wilson(point.positive, point.trials);
-    points.x.push_back(point.level);
-    points.y.push_back(static_cast<double>(point.positive) / point.trials);
-    points.low.push_back(interval.low);
-    points.high.push_back(interval.high);
+    const auto interval = analysis::wilson(point.sum(), point.trials);
+    points.add(point.level, point.sum() / point.trials, interval.low, interval.high);
     points.weight.push_back(point.trials);
   }
   return points;
@@ -42,7 +39,8 @@ Line curve(const NamedFit& named, int series, const Axis& axis, const std::strin
   const bool logarithmic = axis.scale == AxisScale::log10;
   // the curve ends where its band does
   const auto& along = named.intervals.band_level;
-  const double low = along.empty() ? axis.low : along.front(), high = along.empty() ? axis.high : along.back();
+  const double low = along.empty() ? axis.low : along.front(),
+               high = along.empty() ? axis.high : along.back();
   for (int i = 0; i <= 120; ++i) {
     const double share = i / 120.0;
     const double x = logarithmic ? low * std::pow(high / low, share) : low + share * (high - low);
@@ -55,12 +53,12 @@ Line curve(const NamedFit& named, int series, const Axis& axis, const std::strin
 /// Returns the proportion of "yes" answers in trials without a signal.
 std::optional<double> false_alarms(const NamedFit& named) {
   for (const auto& point : named.fit.data)
-    if (point.level == analysis::kNoise) return static_cast<double>(point.positive) / point.trials;
+    if (point.level == analysis::kNoise) return point.sum() / point.trials;
   return std::nullopt;
 }
 
-/// Marks the threshold (or PSE) on the curve: a thin line labelled with its value and the height of the curve there,
-/// which is the criterion that the threshold stands for, and its interval at that height.
+/// Marks the threshold (or PSE) on the curve: a thin line labelled with its value and the height of the curve
+/// there, which is the criterion that the threshold stands for, and its interval at that height.
 void mark_threshold(const NamedFit& named, const LevelAnalysis& data, const Words& words, int series,
                     const std::string& name, Chart& panel) {
   const auto& fit = named.fit;
@@ -112,15 +110,12 @@ std::string psychometric_caption(const Summary& summary) {
     bands = bands || !named.intervals.band_level.empty();
     thresholds = thresholds || named.intervals.threshold;
   }
-  auto caption = of_trials(summary, trials) + " " +
-                 words.together({"figure.caption_points", curve_caption(summary.fits.front().fit.options.function)});
+  auto caption =
+      of_trials(summary, trials) + " " +
+      words.together({"figure.caption_points", curve_caption(summary.fits.front().fit.options.function)});
   if (bands) caption += " " + words("figure.caption_band");
   if (thresholds) caption += " " + words("figure.caption_threshold");
   return caption;
-}
-
-std::string or_default(const std::string& name, const std::string& fallback) {
-  return name.empty() ? fallback : name;
 }
 
 }  // namespace
@@ -137,8 +132,8 @@ std::optional<Chart> psychometric_chart(const std::vector<const NamedFit*>& fits
   if (levels.empty()) return std::nullopt;
   const bool logarithmic = data.scale == analysis::Scale::log10;
   Chart panel;
-  panel.x =
-      report::fitted(data.level_label, levels, 0.05, logarithmic ? AxisScale::log10 : AxisScale::linear);
+  panel.x = report::fitted(words(data.level_label), levels, 0.05,
+                           logarithmic ? AxisScale::log10 : AxisScale::linear);
   const bool forced = data.design == Design::forced_choice;
   const auto& positive = fits.front()->positive;
   panel.y = {words("figure.proportion", positive == "correct" ? words("figure.correct") : positive),
@@ -146,7 +141,7 @@ std::optional<Chart> psychometric_chart(const std::vector<const NamedFit*>& fits
   if (forced)
     for (const auto* named : fits)
       for (const auto& point : named->fit.data)
-        panel.y.low = std::min(panel.y.low, analysis::wilson(point.positive, point.trials).low - 0.03);
+        panel.y.low = std::min(panel.y.low, analysis::wilson(point.sum(), point.trials).low - 0.03);
   for (std::size_t i = 0; i < fits.size(); ++i)
     if (const auto& band = fits[i]->intervals; !band.band_level.empty())
       panel.layers.push_back(Band{band.band_level, band.band_low, band.band_high, static_cast<int>(i), ""});
@@ -216,10 +211,10 @@ std::optional<Figure> trace_figure(const Summary& summary) {
     }
     if (!wrong.x.empty()) right.name = words("figure.right"), wrong.name = words("figure.wrong");
     Chart panel;
-    panel.title = or_default(trace.procedure, words("figure.all_trials"));
+    panel.title = words(name_of(trace.procedure));
     panel.x = report::fitted(words("figure.trial_in_session"), line.x, 0.03);
     panel.x.counts = true;
-    panel.y = report::fitted(summary.data.level_label, line.y, 0.1);
+    panel.y = report::fitted(words(summary.data.level_label), line.y, 0.1);
     // Draw a line only if the procedure moves in small steps. A line through shuffled levels would only
     // zigzag.
     double steps = 0;
@@ -237,6 +232,7 @@ std::optional<Figure> trace_figure(const Summary& summary) {
 }
 
 std::optional<Figure> settings_figure(const Summary& summary) {
+  const Words words(summary.data.language);
   Figure figure;
   std::size_t count = 0;
   figure.title = "Settings in the order made";
@@ -259,7 +255,7 @@ std::optional<Figure> settings_figure(const Summary& summary) {
     Chart panel;
     panel.title = settings.procedure + (settings.condition.empty() ? "" : ", " + settings.condition);
     panel.x = report::fitted("Setting (number)", starts.x, 0.03);
-    panel.y = report::fitted(summary.data.level_label, both, 0.1);
+    panel.y = report::fitted(words(summary.data.level_label), both, 0.1);
     if (settings.mean)
       panel.layers.push_back(Rule{Rule::Direction::horizontal, settings.mean->value,
                                   "mean " + in_digits(settings.mean->value, &settings.mean->interval)});
@@ -268,7 +264,7 @@ std::optional<Figure> settings_figure(const Summary& summary) {
     figure.charts.push_back(std::move(panel));
   }
   if (figure.charts.empty()) return std::nullopt;
-  figure.caption = of_trials(summary, count) + " " + Words(summary.data.language)("figure.caption_settings");
+  figure.caption = of_trials(summary, count) + " " + words("figure.caption_settings");
   return figure;
 }
 
@@ -286,8 +282,7 @@ std::optional<Figure> judgement_figure(const Summary& summary) {
     for (const auto& level : judged.levels) {
       count += level.values.size();
       if (!level.mean) continue;
-      points.x.push_back(level.level), points.y.push_back(level.mean->value);
-      points.low.push_back(level.mean->interval.low), points.high.push_back(level.mean->interval.high);
+      points.add(level.level, level.mean->value, level.mean->interval.low, level.mean->interval.high);
     }
     if (points.x.empty()) continue;
     line.x = points.x, line.y = points.y;
@@ -300,15 +295,15 @@ std::optional<Figure> judgement_figure(const Summary& summary) {
   const bool ratios =
       numbers && summary.data.level_unit != "dB" && *std::min_element(levels.begin(), levels.end()) > 0;
   const auto scale = [](bool logarithmic) { return logarithmic ? AxisScale::log10 : AxisScale::linear; };
-  chart.x = report::fitted(summary.data.level_label, levels, 0.06, scale(ratios));
+  chart.x = report::fitted(words(summary.data.level_label), levels, 0.06, scale(ratios));
   chart.y = report::fitted(words(numbers ? "figure.geometric_mean" : "figure.mean_rating"), values, 0.08,
                            scale(numbers));
   Figure figure;
   figure.title = numbers ? "Numbers at each level" : "Ratings at each level";
   figure.chart_width_px = 620;
   figure.chart_height_px = 320;
-  figure.caption = of_trials(summary, count) + " " +
-                   words(numbers ? "figure.caption_numbers" : "figure.caption_ratings");
+  figure.caption =
+      of_trials(summary, count) + " " + words(numbers ? "figure.caption_numbers" : "figure.caption_ratings");
   figure.charts.push_back(std::move(chart));
   return figure;
 }
@@ -333,14 +328,14 @@ std::optional<Figure> confusion_figure(const Summary& summary) {
     for (const auto& row : confusion.rows)
       for (const int count : row.answers) shares.values.push_back(static_cast<double>(count) / row.trials);
     Chart chart;
-    chart.title = or_default(confusion.condition, words("figure.all_trials"));
-    chart.x = {words("figure.answer"), 0.5, shares.x_edges.back(), AxisScale::linear, true,
-               summary.data.choices};
+    chart.title = words(name_of(confusion.condition));
+    chart.x = {words("figure.answer"), 0.5,  shares.x_edges.back(),
+               AxisScale::linear,      true, summary.data.choices};
     chart.y = {words("figure.stimulus"), 0.5, shares.y_edges.back(), AxisScale::linear, true};
     for (const auto& row : confusion.rows)
       chart.y.names.push_back(row.stimulus ? summary.data.choices.at(static_cast<std::size_t>(*row.stimulus))
-                              : row.level ? in_digits(*row.level, nullptr)
-                                          : "");
+                              : row.level  ? in_digits(*row.level, nullptr)
+                                           : "");
     chart.layers.push_back(std::move(shares));
     figure.charts.push_back(std::move(chart));
   }
@@ -368,8 +363,8 @@ std::optional<Figure> vibration_figure(const Summary& summary) {
   chart.layers.push_back(points);
   Figure figure;
   figure.title = "Vibration of the surface";
-  figure.caption = of_trials(summary, points.x.size()) + " " +
-                   Words(summary.data.language)("figure.caption_vibration");
+  figure.caption =
+      of_trials(summary, points.x.size()) + " " + Words(summary.data.language)("figure.caption_vibration");
   figure.chart_width_px = 620;
   figure.chart_height_px = 220;
   figure.charts.push_back(std::move(chart));
@@ -399,15 +394,15 @@ std::optional<Figure> response_time_figure(const Summary& summary) {
     const auto& entry = summary.trade.instructions[i];
     bars[i].series = static_cast<int>(i);
     Chart panel;
-    panel.title = or_default(entry.instruction, words("figure.all_trials"));
+    panel.title = words(name_of(entry.instruction));
     panel.x = {words("figure.response_time"), 0, high};
     panel.y = {words("figure.trials"), 0, tallest * 1.12, AxisScale::linear, true};
     panel.layers.push_back(bars[i]);
     if (entry.times)
-      panel.layers.push_back(Rule{Rule::Direction::vertical, entry.times->median_s,
-                                  words("figure.median", in_digits(entry.times->median_s,
-                                                                   entry.median_s ? &entry.median_s->interval
-                                                                                  : nullptr))});
+      panel.layers.push_back(Rule{
+          Rule::Direction::vertical, entry.times->median_s,
+          words("figure.median",
+                in_digits(entry.times->median_s, entry.median_s ? &entry.median_s->interval : nullptr))});
     figure.charts.push_back(std::move(panel));
   }
   figure.caption = of_trials(summary, all.size()) + " " + words("figure.caption_times");
@@ -427,7 +422,7 @@ std::optional<Figure> quantile_probability_figure(const Summary& summary) {
   std::vector<double> times{0};
   for (const auto& entry : summary.trade.instructions) {
     if (!entry.check) continue;
-    Chart chart{or_default(entry.instruction, "all trials"), {}, {}, {}, false};
+    Chart chart{core::say(name_of(entry.instruction), summary.data.language), {}, {}, {}, false};
     for (std::size_t q = 0; q < analysis::kPredictedQuantiles.size(); ++q) {
       Points points;
       std::vector<std::pair<double, double>> predicted;
@@ -437,9 +432,8 @@ std::optional<Figure> quantile_probability_figure(const Summary& summary) {
           const int answered = difficulty.right.observed + difficulty.wrong.observed;
           if (answers->observed_quantiles.empty() || answered == 0) continue;
           const auto& observed = answers->observed_quantiles[q];
-          points.x.push_back(static_cast<double>(answers->observed) / answered);
-          points.y.push_back(observed.value);
-          points.low.push_back(observed.interval.low), points.high.push_back(observed.interval.high);
+          points.add(static_cast<double>(answers->observed) / answered, observed.value, observed.interval.low,
+                     observed.interval.high);
           times.push_back(observed.interval.high);
         }
       std::sort(predicted.begin(), predicted.end());
@@ -518,7 +512,7 @@ std::optional<Chart> conditions_chart(const Summary& summary, const Words& words
     Points point;
     point.x = {right.mean_s}, point.y = {accuracy.value};
     region.series = point.series = own;
-    point.name = or_default(entry.instruction, words("figure.all_trials"));
+    point.name = words(name_of(entry.instruction));
     times_s.insert(times_s.end(), region.x.begin(), region.x.end());
     accuracies.insert(accuracies.end(), {accuracy.interval.low, accuracy.interval.high});
     chart.layers.push_back(region);
@@ -548,23 +542,17 @@ std::optional<Figure> trade_figure(const Summary& summary) {
     Line bin_line;
     for (const auto& bin : entry.caf) {
       const auto interval = analysis::wilson(bin.correct, bin.trials);
-      bins.x.push_back(bin.mean_time_s);
-      bins.y.push_back(static_cast<double>(bin.correct) / bin.trials);
-      bins.low.push_back(interval.low);
-      bins.high.push_back(interval.high);
+      bins.add(bin.mean_time_s, static_cast<double>(bin.correct) / bin.trials, interval.low, interval.high);
       accuracies.push_back(interval.low);
     }
     for (const auto& cell : entry.cells) {
       if (!cell.mean_correct_s || cell.answered < kFewestOfCell || categories) continue;
-      by_difficulty.x.push_back(*cell.mean_correct_s);
-      by_difficulty.y.push_back(cell.proportion_correct);
-      by_difficulty.low.push_back(cell.accuracy.low);
-      by_difficulty.high.push_back(cell.accuracy.high);
+      by_difficulty.add(*cell.mean_correct_s, cell.proportion_correct, cell.accuracy.low, cell.accuracy.high);
       accuracies.push_back(cell.accuracy.low);
     }
     caf_times.insert(caf_times.end(), bins.x.begin(), bins.x.end());
     cell_times.insert(cell_times.end(), by_difficulty.x.begin(), by_difficulty.x.end());
-    const auto name = or_default(entry.instruction, words("figure.all_trials"));
+    const auto name = words(name_of(entry.instruction));
     bins.series = bin_line.series = by_difficulty.series = series++;
     bins.name = bin_line.name = by_difficulty.name = name;
     bin_line.x = bins.x, bin_line.y = bins.y;
@@ -607,10 +595,9 @@ std::optional<Figure> macro_figure(const Summary& summary) {
     Line across;
     across.x = {time.interval.low, time.interval.high}, across.y = {height.value, height.value};
     Points point;
-    point.x = {time.value}, point.y = {height.value};
-    point.low = {height.interval.low}, point.high = {height.interval.high};
+    point.add(time.value, height.value, height.interval.low, height.interval.high);
     across.series = point.series = own;
-    point.name = or_default(entry.instruction, words("figure.all_trials"));
+    point.name = words(name_of(entry.instruction));
     chart.layers.insert(chart.layers.end(), {across, point});
     joined.emplace_back(time.value, height.value);
     times_s.insert(times_s.end(), across.x.begin(), across.x.end());
@@ -627,6 +614,73 @@ std::optional<Figure> macro_figure(const Summary& summary) {
   Figure figure;
   figure.title = "Sensitivity against time over the conditions";
   figure.chart_width_px = 560;
+  figure.caption = of_answers(summary) + " " + words("figure.caption_trade");
+  figure.charts.push_back(std::move(chart));
+  return figure;
+}
+
+std::optional<Figure> roc_figure(const Summary& summary) {
+  if (summary.rocs.empty()) return std::nullopt;
+  const Words words(summary.data.language);
+  Figure figure;
+  figure.title = "Receiver operating characteristic";
+  figure.chart_width_px = 420, figure.chart_height_px = 420;
+  figure.caption = words("figure.caption_roc");
+  std::string last;
+  for (const auto& entry : summary.rocs) {
+    if (figure.charts.empty() || entry.condition != last) {
+      figure.charts.push_back({words(name_of(entry.condition)), {"False alarms", 0, 1}, {"Hits", 0, 1}, {}});
+      last = entry.condition;
+    }
+    auto& layers = figure.charts.back().layers;
+    Line line;
+    Points points;
+    line.series = points.series = static_cast<int>(layers.size() / 2);
+    line.name = entry.level ? with_minus(core::number(*entry.level, 4)) : "all";
+    for (const auto& point : entry.roc.points) {
+      line.x.push_back(point.false_alarms), line.y.push_back(point.hits);
+      points.x.push_back(point.false_alarms), points.y.push_back(point.hits);
+    }
+    layers.push_back(std::move(line));
+    layers.push_back(std::move(points));
+  }
+  return figure;
+}
+
+std::optional<Figure> signal_figure(const Summary& summary) {
+  const Words words(summary.data.language);
+  Chart chart{"", {}, {}, {}};
+  std::vector<double> times{0}, heights{0};
+  int series = 0;
+  for (const auto& curve : summary.curves) {
+    Points points;
+    Line line;
+    points.series = line.series = series++;
+    points.name = line.name = words(name_of(curve.condition));
+    for (const auto& point : curve.points) {
+      if (!point.d_prime) continue;
+      const auto& interval = point.d_prime->interval;
+      points.add(point.time_s, point.d_prime->value, interval.low, interval.high);
+      times.push_back(point.time_s);
+      heights.insert(heights.end(), {interval.low, interval.high});
+    }
+    const double last_s = *std::max_element(times.begin(), times.end());
+    if (curve.asymptote && curve.rate_per_s && curve.intercept_s)
+      for (int i = 0; i <= 200; ++i) {
+        line.x.push_back(1.05 * last_s * i / 200);
+        line.y.push_back(analysis::d_prime_at(curve.asymptote->value, curve.rate_per_s->value,
+                                              curve.intercept_s->value, line.x.back()));
+      }
+    if (!line.x.empty()) chart.layers.push_back(line);
+    chart.layers.push_back(points);
+  }
+  if (times.size() < 2) return std::nullopt;
+  chart.x = report::fitted("Time from response zero to the answer (s)", times, 0.06);
+  chart.y = report::fitted(words("figure.sensitivity"), heights, 0.08);
+  Figure figure;
+  figure.title = "Sensitivity over time";
+  figure.chart_width_px = 560;
+  figure.caption = words("figure.caption_signal");
   figure.charts.push_back(std::move(chart));
   return figure;
 }

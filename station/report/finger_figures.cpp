@@ -36,10 +36,7 @@ void add_mean(Points& points, std::span<const Reading> group) {
     mean.value += value / static_cast<double>(group.size());
     low = std::min(low, value), high = std::max(high, value);
   }
-  points.x.push_back(mean.trial);
-  points.y.push_back(mean.value);
-  points.low.push_back(low);
-  points.high.push_back(high);
+  points.add(mean.trial, mean.value, low, high);
 }
 
 /// Divides the readings into groups of `size` successive readings. A reading from another block always begins
@@ -98,10 +95,8 @@ Points markers(const std::vector<AtBoundary>& values, const Axis& along, int ser
     double x =
         group->planned_mm - 0.5 * kBeside * (along.high - along.low) * static_cast<double>(end - group - 1);
     for (; group != end; ++group, x += kBeside * (along.high - along.low)) {
-      points.x.push_back(x);
-      points.y.push_back(group->value);
-      points.low.push_back(group->interval ? group->interval->low : group->value);
-      points.high.push_back(group->interval ? group->interval->high : group->value);
+      const auto bar = group->interval.value_or(analysis::Interval{group->value, group->value});
+      points.add(x, group->value, bar.low, bar.high);
       points.open.push_back(group->trials == 1);
     }
   }
@@ -158,9 +153,8 @@ std::optional<Figure> finger_figure(const Summary& summary) {
     if (!chart.layers.empty()) figure.charts.push_back(std::move(chart));
   if (figure.charts.empty()) return std::nullopt;
   const auto trials = summary.finger->trials.size();
-  figure.caption =
-      words("figure.caption_trials", {summary.data.participant, std::to_string(trials)}) + " " +
-      words(trials > kMostMarkers ? "figure.caption_finger_means" : "figure.caption_finger");
+  figure.caption = words("figure.caption_trials", {summary.data.participant, std::to_string(trials)}) + " " +
+                   words(trials > kMostMarkers ? "figure.caption_finger_means" : "figure.caption_finger");
   return figure;
 }
 
@@ -175,12 +169,9 @@ std::optional<Chart> strip_chart(const std::vector<analysis::FrictionCurve>& cur
     Points points;
     points.series = static_cast<int>(chart.layers.size());
     points.name = words(curve.narrow ? "figure.towards_narrow" : "figure.towards_wide");
-    points.x = curve.from_boundary_mm;
-    points.y = curve.friction;
-    for (std::size_t i = 0; i < points.x.size(); ++i) {
-      points.low.push_back(curve.friction[i] - curve.se[i]);
-      points.high.push_back(curve.friction[i] + curve.se[i]);
-    }
+    for (std::size_t i = 0; i < curve.friction.size(); ++i)
+      points.add(curve.from_boundary_mm[i], curve.friction[i], curve.friction[i] - curve.se[i],
+                 curve.friction[i] + curve.se[i]);
     along.insert(along.end(), points.x.begin(), points.x.end());
     friction.insert(friction.end(), points.high.begin(), points.high.end());
     chart.layers.push_back(std::move(points));

@@ -2,8 +2,9 @@
 
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/psychometric_posterior.hpp"
-#include "station/report/html.hpp"
+#include "station/report/document.hpp"
 #include "station/report/json_parts.hpp"
+#include "station/report/measures.hpp"
 
 namespace turnpoint::report {
 
@@ -36,7 +37,7 @@ Json fit_json(const NamedFit& named, const SessionData& data) {
   const auto& p = named.fit.parameters;
   const bool posterior = named.intervals.method == analysis::IntervalMethod::posterior;
   Json json{{"name", named.name}, {"positive", named.positive}, {"measures", part.meaning}};
-  json["level"] = part.level_label;
+  json["level"] = core::say(part.level_label, "en");
   json["level_unit"] = part.level_unit;
   json["threshold"] = p ? value(p->threshold) : Json(nullptr);
   json["threshold_interval"] = value(named.intervals.threshold);
@@ -50,13 +51,14 @@ Json fit_json(const NamedFit& named, const SessionData& data) {
       p && !posterior ? value(named.fit.negative_log_likelihood) : Json(nullptr);
   json["deviance"] = p && !posterior ? value(named.fit.deviance) : Json(nullptr);
   json["deviance_p"] = value(named.intervals.deviance_p);
+  json["weight"] = named.fit.weight;
   json["replicates"] = named.intervals.replicates;
   json["intervals"] = core::say(describe_intervals(named, data), "en");
   json["prior"] = prior_json(named);
-  json["levels"] = Json::array();  // a noise trial has no level, so its level is null
-  for (const auto& point : named.fit.data)
-    json["levels"].push_back(
-        {{"level", value(point.level)}, {"trials", point.trials}, {"positive", point.positive}});
+  // a noise trial has no level, so its level is null
+  json["levels"] = list_of(named.fit.data, [](const auto& point) -> Json {
+    return {{"level", value(point.level)}, {"trials", point.trials}, {"positive", value(point.sum())}};
+  });
   auto statements = named.fit.statements;
   statements.insert(statements.end(), named.intervals.statements.begin(), named.intervals.statements.end());
   json["statements"] = value(statements);
@@ -64,8 +66,8 @@ Json fit_json(const NamedFit& named, const SessionData& data) {
 }
 
 Json prediction_json(const analysis::PredictedAnswers& answers) {
-  Json observed = Json::array();
-  for (const auto& quantile : answers.observed_quantiles) observed.push_back(value(std::optional(quantile)));
+  const auto observed =
+      list_of(answers.observed_quantiles, [](const auto& quantile) { return value(quantile); });
   return {{"observed", answers.observed},
           {"predicted_proportion", value(answers.probability)},
           {"observed_mean_s", value(answers.observed_mean_s)},
@@ -78,115 +80,70 @@ Json instruction_json(const analysis::InstructionResult& entry) {
   Json json{{"instruction", entry.instruction},     {"presented", entry.presented},
             {"answered", entry.answered},           {"timeouts", entry.timeouts},
             {"anticipations", entry.anticipations}, {"excluded", entry.excluded}};
-  json["proportion_correct"] = value(entry.proportion_correct);
+  for (const auto& row : kSpeedAndAccuracy) json[row.key] = value(entry.*row.value);
   json["deadline_s"] = value(entry.deadline_s);
-  json["median_response_time_s"] = value(entry.median_s);
-  json["d_prime"] = value(entry.d_prime);
-  json["boundary"] = value(entry.boundary);
-  json["nondecision_s"] = value(entry.nondecision_s);
-  json["contaminants"] = value(entry.contaminants);
-  json["drift"] = value(entry.drift);
-  json["lisas_s"] = value(entry.lisas_s);
-  json["inverse_efficiency_s"] = value(entry.inverse_efficiency_s);
-  json["post_error_slowing_s"] = value(entry.post_error_s);
-  json["repetition"] = value(entry.repetition);
-  json["late_boundary"] = value(entry.late_boundary);
+  json["effective_draws"] = value(entry.effective_draws);
   json["deciles_s"] = entry.times ? Json(entry.times->deciles_s) : Json(nullptr);
-  json["difficulties"] = Json::array();
-  for (const auto& cell : entry.cells)
-    json["difficulties"].push_back({{"difficulty", value(cell.difficulty)},
-                                    {"answered", cell.answered},
-                                    {"correct", cell.correct},
-                                    {"interval", value(cell.accuracy)},
-                                    {"mean_correct_s", value(cell.mean_correct_s)},
-                                    {"drift", value(cell.drift)}});
+  json["difficulties"] = list_of(entry.cells, [](const auto& cell) -> Json {
+    return {{"difficulty", value(cell.difficulty)},
+            {"answered", cell.answered},
+            {"correct", cell.correct},
+            {"interval", value(cell.accuracy)},
+            {"mean_correct_s", value(cell.mean_correct_s)},
+            {"drift", value(cell.drift)}};
+  });
   json["predicted"] = Json::array();
   if (entry.check)
-    for (const auto& difficulty : entry.check->difficulties)
-      json["predicted"].push_back(
-          {{"right", prediction_json(difficulty.right)}, {"wrong", prediction_json(difficulty.wrong)}});
-  json["caf"] = Json::array();
-  for (const auto& bin : entry.caf)
-    json["caf"].push_back({{"mean_time_s", value(bin.mean_time_s)},
-                           {"trials", bin.trials},
-                           {"correct", bin.correct},
-                           {"interval", value(analysis::wilson(bin.correct, bin.trials))}});
+    json["predicted"] = list_of(entry.check->difficulties, [](const auto& at) -> Json {
+      return {{"right", prediction_json(at.right)}, {"wrong", prediction_json(at.wrong)}};
+    });
+  json["caf"] = list_of(entry.caf, [](const auto& bin) -> Json {
+    return {{"mean_time_s", value(bin.mean_time_s)},
+            {"trials", bin.trials},
+            {"correct", bin.correct},
+            {"interval", value(analysis::wilson(bin.correct, bin.trials))}};
+  });
   json["statements"] = value(entry.statements);
   return json;
 }
 
 Json judgements_json(const analysis::Judgements& judged) {
-  Json json{{"condition", judged.condition}, {"levels", Json::array()}};
-  for (const auto& level : judged.levels)
-    json["levels"].push_back({{"level", value(level.level)},
-                              {"answers", level.values.size()},
-                              {"mean", value(level.mean)},
-                              {"median", value(level.median)}});
-  json["exponent"] = value(judged.exponent);
-  json["statements"] = value(judged.statements);
-  return json;
+  const auto levels = list_of(judged.levels, [](const auto& level) -> Json {
+    return {{"level", value(level.level)},
+            {"answers", level.values.size()},
+            {"mean", value(level.mean)},
+            {"median", value(level.median)}};
+  });
+  return {{"condition", judged.condition},
+          {"levels", levels},
+          {"exponent", value(judged.exponent)},
+          {"statements", value(judged.statements)}};
 }
 
 Json boundaries_json(const std::vector<analysis::AtBoundary>& values) {
-  Json list = Json::array();
-  for (const auto& at : values)
-    list.push_back({{"planned_mm", value(at.planned_mm)},
-                    {"value", value(at.value)},
-                    {"interval", at.interval ? value(*at.interval) : Json(nullptr)},
-                    {"trials", at.trials}});
-  return list;
+  return list_of(values, [](const auto& at) -> Json {
+    return {{"planned_mm", value(at.planned_mm)},
+            {"value", value(at.value)},
+            {"interval", value(at.interval)},
+            {"trials", at.trials}};
+  });
 }
 
 Json finger_json(const std::optional<analysis::Finger>& finger) {
   if (!finger) return nullptr;
-  Json json{{"conditions", Json::array()}};
-  for (const auto& entry : finger->conditions)
-    json["conditions"].push_back({{"condition", entry.condition},
-                                  {"trials", entry.trials},
-                                  {"measured", entry.measured},
-                                  {"felt", entry.felt},
-                                  {"normal_N", value(entry.normal_N)},
-                                  {"speed_mm_s", value(entry.speed_mm_s)},
-                                  {"mu_low", value(entry.mu_low)},
-                                  {"mu_high", value(entry.mu_high)},
-                                  {"felt_minus_planned_mm", value(entry.shift_mm)}});
+  Json json;
+  json["conditions"] = list_of(finger->conditions, [](const auto& entry) {
+    Json condition{{"condition", entry.condition},
+                   {"trials", entry.trials},
+                   {"measured", entry.measured},
+                   {"felt", entry.felt}};
+    for (const auto& row : kFinger) condition[row.key] = value(entry.*row.value);
+    return condition;
+  });
   json["felt_minus_planned_mm"] = boundaries_json(finger->boundaries.shift_mm);
   json["mu_low"] = boundaries_json(finger->boundaries.mu_low);
   json["mu_high"] = boundaries_json(finger->boundaries.mu_high);
   json["statements"] = value(finger->statements);
-  return json;
-}
-
-Json strip_json(const std::vector<analysis::FrictionCurve>& curves) {
-  Json json = Json::array();
-  for (const auto& curve : curves)
-    json.push_back({{"direction", curve.direction},
-                    {"from_boundary_mm", curve.from_boundary_mm},
-                    {"friction", curve.friction},
-                    {"se", curve.se}});
-  return json;
-}
-
-Json threshold_curves_json(const std::vector<ThresholdCurve>& curves) {
-  Json json = Json::array();
-  for (const auto& curve : curves) {
-    Json points = Json::array();
-    for (const auto& point : curve.points)
-      points.push_back({{"second", value(point.second)},
-                        {"threshold", value(point.threshold)},
-                        {"interval", value(point.interval)}});
-    json.push_back({{"procedure", curve.procedure},
-                    {"block", curve.block},
-                    {"second", curve.label},
-                    {"points", points}});
-  }
-  return json;
-}
-
-Json repeats_json(const std::vector<analysis::RepeatedTrials>& repeats) {
-  Json json = Json::array();
-  for (const auto& at : repeats)
-    json.push_back({{"level", value(at.level)}, {"presented", at.presented}, {"repeated", at.repeated}});
   return json;
 }
 
@@ -198,56 +155,89 @@ Json proportion_json(const std::optional<analysis::Proportion>& proportion) {
           {"interval", value(proportion->interval)}};
 }
 
+void add_counts(const analysis::YesNoCounts& counts, Json& json) {
+  json["hits"] = counts.hits, json["misses"] = counts.misses;
+  json["false_alarms"] = counts.false_alarms, json["correct_rejections"] = counts.correct_rejections;
+}
+
 Json confusion_json(const analysis::Confusion& confusion, const SessionData& data) {
-  Json json{{"condition", confusion.condition}, {"rows", Json::array()}};
-  for (const auto& row : confusion.rows) {
-    Json entry;
-    entry["stimulus"] =
-        row.stimulus ? Json(data.choices.at(static_cast<std::size_t>(*row.stimulus))) : Json(nullptr);
-    entry["level"] = value(row.level);
-    entry["answers"] = row.answers;  // the number of each answer, in the order of "choices"
-    entry["trials"] = row.trials;
-    entry["correct"] = proportion_json(row.right);
-    json["rows"].push_back(std::move(entry));
-  }
-  json["correct"] = proportion_json(confusion.right);
-  return json;
+  const auto rows = list_of(confusion.rows, [&](const auto& row) -> Json {
+    return {{"stimulus",
+             row.stimulus ? Json(data.choices.at(static_cast<std::size_t>(*row.stimulus))) : Json(nullptr)},
+            {"level", value(row.level)},
+            {"answers", row.answers},  // the number of each answer, in the order of "choices"
+            {"trials", row.trials},
+            {"correct", proportion_json(row.right)}};
+  });
+  return {{"condition", confusion.condition}, {"rows", rows}, {"correct", proportion_json(confusion.right)}};
 }
 
 Json rating_fit_json(const std::optional<analysis::RatingFit>& fit) {
   if (!fit) return nullptr;
-  Json json{{"sensitivity", value(std::optional(fit->sensitivity))},  // d' or d_a
-            {"mean", value(fit->mean)},
-            {"sd", value(std::optional(fit->sd))},
-            {"area", value(std::optional(fit->area))},
-            {"log_likelihood", value(fit->log_likelihood)}};
-  json["criteria"] = Json::array();
-  for (const double criterion : fit->criteria) json["criteria"].push_back(value(criterion));
-  return json;
+  return {{"sensitivity", value(fit->sensitivity)},  // d' or d_a
+          {"mean", value(fit->mean)},
+          {"sd", value(fit->sd)},
+          {"area", value(fit->area)},
+          {"log_likelihood", value(fit->log_likelihood)},
+          {"criteria", list_of(fit->criteria, [](double criterion) { return value(criterion); })}};
 }
 
 Json roc_json(const analysis::RatedDetection& entry) {
-  Json json{{"condition", entry.condition}, {"level", value(entry.level)}};
-  json["noise"] = entry.noise;  // numbers of trials, from the surest no to the surest yes
-  json["signal"] = entry.signal;
-  json["points"] = Json::array();
-  for (const auto& point : entry.roc.points)
-    json["points"].push_back({{"false_alarms", value(point.false_alarms)}, {"hits", value(point.hits)}});
-  json["area"] = value(std::optional(entry.roc.area));
-  json["equal_variances"] = rating_fit_json(entry.equal);
-  json["unequal_variances"] = rating_fit_json(entry.unequal);
-  return json;
+  const auto points = list_of(entry.roc.points, [](const auto& point) -> Json {
+    return {{"false_alarms", value(point.false_alarms)}, {"hits", value(point.hits)}};
+  });
+  return {{"condition", entry.condition},
+          {"level", value(entry.level)},
+          {"noise", entry.noise},  // numbers of trials, from the surest no to the surest yes
+          {"signal", entry.signal},
+          {"points", points},
+          {"area", value(entry.roc.area)},
+          {"equal_variances", rating_fit_json(entry.equal)},
+          {"unequal_variances", rating_fit_json(entry.unequal)}};
 }
 
 Json discrimination_json(const analysis::Discrimination& entry) {
-  Json json{{"condition", entry.condition}, {"level", value(entry.level)}};
-  json["correct"] = proportion_json(entry.right);
-  json["d_prime"] = Json::array();
-  for (const auto& [model, estimate] : entry.d_primes)
-    json["d_prime"].push_back({{"model", analysis::name(model)},
-                               {"value", value(estimate.value)},
-                               {"interval", value(estimate.interval)}});
-  return json;
+  const auto d_primes = list_of(entry.d_primes, [](const auto& one) {
+    Json json{{"model", analysis::name(one.first)}};
+    json.update(value(one.second));
+    return json;
+  });
+  return {{"condition", entry.condition},
+          {"level", value(entry.level)},
+          {"correct", proportion_json(entry.right)},
+          {"d_prime", d_primes}};
+}
+
+Json signal_json(const analysis::SpeedAccuracyCurve& curve) {
+  Json lags = Json::array();
+  for (const auto& point : curve.points) {
+    Json json{{"after_s", value(point.lag_s)}, {"response_time_s", value(point.time_s)}};
+    add_counts(point.counts, json);
+    json["d_prime"] = value(point.d_prime);
+    json["levels"] = Json::array();
+    if (!curve.by_level.empty())
+      json["levels"] = list_of(curve.by_level[lags.size()], [](const auto& level) -> Json {
+        return {{"level", value(level.level)}, {"d_prime", value(level.d_prime)}};
+      });
+    lags.push_back(std::move(json));
+  }
+  return {{"condition", curve.condition},
+          {"asymptote", value(curve.asymptote)},
+          {"rate_per_s", value(curve.rate_per_s)},
+          {"intercept_s", value(curve.intercept_s)},
+          {"lags", lags}};
+}
+
+Json threshold_curve_json(const ThresholdCurve& curve) {
+  const auto points = list_of(curve.points, [](const auto& point) -> Json {
+    return {{"second", value(point.second)},
+            {"threshold", value(point.threshold)},
+            {"interval", value(point.interval)}};
+  });
+  return {{"procedure", curve.procedure},
+          {"block", curve.block},
+          {"second", core::say(curve.label, "en")},
+          {"points", points}};
 }
 
 Json trend_json(const std::optional<analysis::Trend>& trend) {
@@ -259,9 +249,59 @@ Json side_json(const analysis::SideSettings& side) {
   return {{"settings", side.settings}, {"mean", value(side.mean)}, {"sd", value(side.sd)}};
 }
 
+Json settings_json(const analysis::Settings& settings) {
+  return {{"procedure", settings.procedure},
+          {"condition", settings.condition},
+          {"settings", settings.values.size()},
+          {"mean", value(settings.mean)},
+          {"sd", value(settings.sd)},
+          {"start_slope", value(settings.start_slope)},
+          {"from_below", side_json(settings.from_below)},
+          {"from_above", side_json(settings.from_above)},
+          {"side_difference", value(settings.side_difference)},
+          {"statements", value(settings.statements)}};
+}
+
+const char* model_name(analysis::Answers answers) {
+  switch (answers) {
+    case analysis::Answers::sides:
+      return "sides";
+    case analysis::Answers::choices:
+      return "choices";
+    case analysis::Answers::values:
+      return "ratings";
+    case analysis::Answers::settings:
+      return "settings";
+    case analysis::Answers::logarithms:
+      return "logarithms";
+  }
+  return "";
+}
+
+Json dependence_json(const analysis::Dependence& entry) {
+  Json json{{"condition", entry.condition},
+            {"analysis", entry.analysis},
+            {"model", model_name(entry.how.answers)},
+            {"answer", entry.answer.empty() ? Json(nullptr) : Json(entry.answer)},
+            {"level_unit", entry.unit},
+            {"ratios", entry.how.decibel},
+            {"pairs", entry.pairs}};
+  for (const auto& row : kBefore) {
+    const auto& found = entry.*row.value;
+    json[row.key] = value(found);
+    if (found) json[row.key]["p"] = value(found->p);
+  }
+  json["statements"] = value(entry.statements);
+  return json;
+}
+
+std::string in_english(const std::string& text) { return text; }
+std::string in_english(const core::Phrase& phrase) { return core::say(phrase, "en"); }
+
+template <class Fact>
 Json facts_json(const std::vector<Fact>& facts) {
   Json json = Json::object();
-  for (const auto& [name, text] : facts) json[name] = text;
+  for (const auto& [name, text] : facts) json[in_english(name)] = in_english(text);
   return json;
 }
 
@@ -269,122 +309,81 @@ Json facts_json(const std::vector<Fact>& facts) {
 
 std::string to_json(const Summary& summary) {
   const auto& data = summary.data;
-  Json json{{"session_id", data.session_id}, {"participant", data.participant}, {"title", data.title},
-            {"run_mode", data.run_mode},     {"status", data.status},           {"level", data.level_label},
+  Json json{{"session_id", data.session_id}, {"participant", data.participant},
+            {"title", data.title},           {"run_mode", data.run_mode},
+            {"status", data.status},         {"level", core::say(data.level_label, "en")},
             {"level_unit", data.level_unit}, {"choices", data.choices}};
   json["measures"] = meanings_json(data);
   json["facts"] = facts_json(data.facts);
-  json["station"] = facts_json(in_english(data.health));
+  json["station"] = facts_json(data.health);
   const auto& n = summary.outcomes;
-  json["trials"] = {{"presented", n.presented},         {"answered", n.answered}, {"timeouts", n.timeouts},
-                    {"anticipations", n.anticipations}, {"aborted", n.aborted},   {"faults", n.faults}};
-  json["fits"] = Json::array();
-  for (const auto& named : summary.fits) json["fits"].push_back(fit_json(named, data));
-  for (const auto& settings : summary.settings)
-    json["settings"].push_back({{"procedure", settings.procedure},
-                                {"condition", settings.condition},
-                                {"settings", settings.values.size()},
-                                {"mean", value(settings.mean)},
-                                {"sd", value(settings.sd)},
-                                {"start_slope", value(settings.start_slope)},
-                                {"from_below", side_json(settings.from_below)},
-                                {"from_above", side_json(settings.from_above)},
-                                {"side_difference", value(settings.side_difference)},
-                                {"statements", value(settings.statements)}});
-  for (const auto& judged : summary.judgements) json["judgements"].push_back(judgements_json(judged));
-  json["confusion"] = Json::array();
-  for (const auto& confusion : summary.confusions)
-    json["confusion"].push_back(confusion_json(confusion, data));
-  json["instructions"] = Json::array();
-  for (const auto& entry : summary.trade.instructions)
-    json["instructions"].push_back(instruction_json(entry));
+  json["trials"] = {{"presented", n.presented}, {"answered", n.answered},           {"unsure", n.unsure},
+                    {"timeouts", n.timeouts},   {"anticipations", n.anticipations}, {"aborted", n.aborted},
+                    {"faults", n.faults}};
+  json["fits"] = list_of(summary.fits, [&](const auto& named) { return fit_json(named, data); });
+  if (!summary.settings.empty()) json["settings"] = list_of(summary.settings, settings_json);
+  if (!summary.judgements.empty()) json["judgements"] = list_of(summary.judgements, judgements_json);
+  json["confusion"] =
+      list_of(summary.confusions, [&](const auto& confusion) { return confusion_json(confusion, data); });
+  json["instructions"] = list_of(summary.trade.instructions, instruction_json);
   json["model_p"] = value(summary.trade.model_p);
-  json["differences"] = Json::array();
-  for (const auto& difference : summary.trade.differences)
-    json["differences"].push_back({{"first", difference.first},
-                                   {"second", difference.second},
-                                   {"measure", difference.measure},
-                                   {"unit", difference.unit},
-                                   {"estimate", value(difference.estimate)},
-                                   {"p", difference.estimate ? value(difference.estimate->p) : Json(nullptr)},
-                                   {"corrected_p", value(difference.corrected_p)}});
-  json["detection"] = Json::array();
-  for (const auto& entry : summary.detections)
-    json["detection"].push_back({{"condition", entry.condition},
-                                 {"level", value(entry.level)},
-                                 {"hits", entry.counts.hits},
-                                 {"misses", entry.counts.misses},
-                                 {"false_alarms", entry.counts.false_alarms},
-                                 {"correct_rejections", entry.counts.correct_rejections},
-                                 {"d_prime", value(entry.d_prime)},
-                                 {"criterion", value(entry.criterion)}});
-  json["roc"] = Json::array();
-  for (const auto& entry : summary.rocs) json["roc"].push_back(roc_json(entry));
-  json["response_signal"] = Json::array();
-  for (const auto& curve : summary.curves) {
-    auto lags = Json::array();
-    for (const auto& point : curve.points) {
-      auto levels = Json::array();
-      if (!curve.by_level.empty())
-        for (const auto& level : curve.by_level[lags.size()])
-          levels.push_back({{"level", value(level.level)}, {"d_prime", value(level.d_prime)}});
-      lags.push_back({{"after_s", value(point.lag_s)},
-                      {"response_time_s", value(point.time_s)},
-                      {"hits", point.counts.hits},
-                      {"misses", point.counts.misses},
-                      {"false_alarms", point.counts.false_alarms},
-                      {"correct_rejections", point.counts.correct_rejections},
-                      {"d_prime", value(point.d_prime)},
-                      {"levels", levels}});
-    }
-    json["response_signal"].push_back({{"condition", curve.condition},
-                                       {"asymptote", value(curve.asymptote)},
-                                       {"rate_per_s", value(curve.rate_per_s)},
-                                       {"intercept_s", value(curve.intercept_s)},
-                                       {"lags", lags}});
-  }
-  json["response_signal_differences"] = Json::array();
-  for (const auto& pair : summary.curve_differences)
-    json["response_signal_differences"].push_back({{"first", pair.first},
-                                                   {"second", pair.second},
-                                                   {"asymptote", value(pair.asymptote)},
-                                                   {"asymptote_p", value(pair.p[0])},
-                                                   {"rate_p", value(pair.p[1])},
-                                                   {"intercept_p", value(pair.p[2])},
-                                                   {"asymptote_corrected_p", value(pair.corrected_p[0])},
-                                                   {"rate_corrected_p", value(pair.corrected_p[1])},
-                                                   {"intercept_corrected_p", value(pair.corrected_p[2])},
-                                                   {"rate_ratio", value(pair.rate_ratio)},
-                                                   {"intercept_s", value(pair.intercept_s)}});
-  json["discrimination"] = Json::array();
-  for (const auto& entry : summary.discriminations)
-    json["discrimination"].push_back(discrimination_json(entry));
-  json["estimates"] = Json::array();
-  for (const auto& estimate : data.estimates) json["estimates"].push_back(value(estimate));
-  json["early_ends"] = Json::array();
-  for (const auto& end : data.early_ends) json["early_ends"].push_back(value(end));
-  json["threshold_curves"] = threshold_curves_json(data.threshold_curves);
+  json["differences"] = list_of(summary.trade.differences, [](const auto& difference) -> Json {
+    return {{"first", difference.first},
+            {"second", difference.second},
+            {"measure", difference.measure},
+            {"unit", difference.unit},
+            {"estimate", value(difference.estimate)},
+            {"p", difference.estimate ? value(difference.estimate->p) : Json(nullptr)},
+            {"corrected_p", value(difference.corrected_p)}};
+  });
+  json["trial_before"] = list_of(summary.dependences, dependence_json);
+  json["detection"] = list_of(summary.detections, [](const auto& entry) {
+    Json detection{{"condition", entry.condition}, {"level", value(entry.level)}};
+    add_counts(entry.counts, detection);
+    detection["d_prime"] = value(entry.d_prime), detection["criterion"] = value(entry.criterion);
+    return detection;
+  });
+  json["roc"] = list_of(summary.rocs, roc_json);
+  json["response_signal"] = list_of(summary.curves, signal_json);
+  json["response_signal_differences"] = list_of(summary.curve_differences, [](const auto& pair) -> Json {
+    return {{"first", pair.first},
+            {"second", pair.second},
+            {"asymptote", value(pair.asymptote)},
+            {"asymptote_p", value(pair.p[0])},
+            {"rate_p", value(pair.p[1])},
+            {"intercept_p", value(pair.p[2])},
+            {"asymptote_corrected_p", value(pair.corrected_p[0])},
+            {"rate_corrected_p", value(pair.corrected_p[1])},
+            {"intercept_corrected_p", value(pair.corrected_p[2])},
+            {"rate_ratio", value(pair.rate_ratio)},
+            {"intercept_s", value(pair.intercept_s)}};
+  });
+  json["discrimination"] = list_of(summary.discriminations, discrimination_json);
+  json["estimates"] = list_of(data.estimates, [](const auto& one) { return value(one); });
+  json["early_ends"] = list_of(data.early_ends, [](const auto& end) { return value(end); });
+  json["threshold_curves"] = list_of(data.threshold_curves, threshold_curve_json);
   json["bias"] = nullptr;
   if (summary.bias)
     json["bias"] = {{"share_second", value(summary.bias->share_second)},
                     {"interval", value(summary.bias->interval)},
                     {"criterion", value(summary.bias->criterion)},
                     {"statements", value(summary.bias->statements)}};
-  json["confidence"] = Json::array();
-  for (const auto& [degree, right] : summary.confidence)
-    json["confidence"].push_back({{"degree", degree},
-                                  {"right", right.right},
-                                  {"trials", right.trials},
-                                  {"proportion", value(right.value)},
-                                  {"interval", value(right.interval)}});
-  json["catch"] = nullptr;
-  if (summary.catch_trials)
-    json["catch"] = {{"right", summary.catch_trials->right},
-                     {"trials", summary.catch_trials->trials},
-                     {"interval", value(summary.catch_trials->interval)}};
+  json["confidence"] = list_of(summary.confidence, [](const auto& one) {
+    Json confidence{{"degree", one.first}};
+    confidence.update(proportion_json(one.second));
+    return confidence;
+  });
+  json["catch"] = proportion_json(summary.catch_trials);
   json["finger"] = finger_json(summary.finger);
-  json["friction_along_strip"] = strip_json(summary.data.strip);
-  json["repeated_trials"] = repeats_json(summary.data.repeats);
+  json["friction_along_strip"] = list_of(data.strip, [](const auto& curve) -> Json {
+    return {{"direction", curve.direction},
+            {"from_boundary_mm", curve.from_boundary_mm},
+            {"friction", curve.friction},
+            {"se", curve.se}};
+  });
+  json["repeated_trials"] = list_of(data.repeats, [](const auto& at) -> Json {
+    return {{"level", value(at.level)}, {"presented", at.presented}, {"repeated", at.repeated}};
+  });
   json["trend_response_time_s"] = trend_json(summary.fatigue.response_time_s);
   json["trend_proportion_correct"] = trend_json(summary.fatigue.proportion_correct);
   auto statements = summary.trade.statements;

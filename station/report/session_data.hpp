@@ -57,7 +57,7 @@ struct ThresholdCurve {
     bool one = false;  ///< the answer was right, or the tracked answer
   };
   std::string block, procedure;
-  std::string label;    ///< name and unit of the second dimension, for an axis: "Boundary (mm)"
+  core::Phrase label;   ///< name and unit of the second dimension, for an axis: "Boundary (mm)"
   bool ratios = false;  ///< true if thresholds are compared by their ratio (the procedure's scale)
   std::vector<Point> points;
   std::vector<Trial> trials;
@@ -67,12 +67,6 @@ struct ThresholdCurve {
 using Fact = std::pair<std::string, std::string>;
 /// A fact in a language that is chosen later.
 using SpokenFact = std::pair<core::Phrase, core::Phrase>;
-/// The facts as a file says them.
-inline std::vector<Fact> in_english(const std::vector<SpokenFact>& facts) {
-  std::vector<Fact> said;
-  for (const auto& [name, text] : facts) said.emplace_back(core::say(name, "en"), core::say(text, "en"));
-  return said;
-}
 
 /// The measured vibration of a trial's stimuli, compared with the plan.
 struct MeasuredTrial {
@@ -88,8 +82,8 @@ struct LevelAnalysis {
   Design design = Design::forced_choice;
   core::Function function = core::Function::weibull;
   analysis::Scale scale = analysis::Scale::linear;
-  std::string level_label;  ///< name and unit, for an axis: "Contrast (dB)"
-  std::string level_unit;   ///< unit of the level; "" if it has none
+  core::Phrase level_label;  ///< name and unit, for an axis: "Contrast (dB)"
+  std::string level_unit;    ///< unit of the level; "" if it has none
   /// If has_noise(): the choice that means "yes". For two sides: the choice that belongs to high levels.
   int positive = 1;
   /// for two sides in 2ifc: the two scenes, of which a trial's interval with one of them is chosen
@@ -123,6 +117,8 @@ struct SessionData : LevelAnalysis {
   /// false for a single-interval task without right answers, such as ratings; the report then leaves out
   /// accuracy
   bool scored = true;
+  bool unsure = false;     ///< true if the participant may be unsure instead of guessing
+  bool payoff = false;     ///< true if the protocol gives points for answers
   bool signalled = false;  ///< true if a response signal asks for the answers, and so decides when they come
   /// parts of the report that the protocol chooses; if empty, the report has all parts that suit the design
   std::optional<std::vector<std::string>> show;
@@ -141,7 +137,7 @@ struct SessionData : LevelAnalysis {
   std::vector<MeasuredTrial> measured;
   analysis::TimeExclusion exclusion;
   protocol::Holm holm = protocol::Holm::none;  ///< which comparisons are corrected together
-  std::uint64_t seed = 1;  ///< seed of the bootstraps' random numbers
+  std::uint64_t seed = 1;                      ///< seed of the bootstraps' random numbers
   int replicates = 1000;
 };
 
@@ -150,9 +146,10 @@ struct SessionData : LevelAnalysis {
 SessionData part_of(const SessionData& data, std::size_t part);
 
 /// True if the report contains this part: "psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime",
-/// "response-signal" or "trace". If the protocol does not choose the parts, the report contains all of them,
-/// with two exceptions: d' only for yes/no tasks and where `deciding` has a model, and the diffusion model
-/// only for two answers that come without a response signal.
+/// "response-signal" or "trace", which the protocol may choose, or "points", which a payoff decides. If the
+/// protocol does not choose the parts, the report contains all of them, with two exceptions: d' only for
+/// yes/no tasks and where `deciding` has a model, and the diffusion model only for two answers that come
+/// without a response signal.
 bool shows(const SessionData& data, const std::string& part);
 
 /// Corrects the p values of comparisons, each with its measure, as the protocol asks for. All are empty if it

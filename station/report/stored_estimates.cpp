@@ -9,9 +9,11 @@
 
 #include "station/procedure/continuation.hpp"
 #include "station/procedure/description.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/report/stored_trials.hpp"
+#include "station/report/words.hpp"
 
 namespace turnpoint::report {
 
@@ -49,9 +51,9 @@ std::optional<std::vector<Learned>> replay(const std::vector<core::TrialRow>& tr
       replayed.record(procedure::Answer::none);
       continue;
     }
-    const bool one = spec.tracks.empty() ? row.correct.value_or(false) : row.response == spec.tracks;
-    replayed.record(one ? procedure::Answer::one : procedure::Answer::zero);
-    learned.push_back({&row, one});
+    const auto answer = protocol::learned_from(spec, row.response.value_or(""), row.correct);
+    replayed.record(answer);
+    learned.push_back({&row, answer == procedure::Answer::one});
   }
   return learned;
 }
@@ -159,9 +161,9 @@ void add_estimator(const std::string& program, const std::map<std::string, proce
                               {}});
 }
 
-std::string axis_label(std::string name, const std::string& unit) {
+core::Phrase axis_label(std::string name, const std::string& unit) {
   if (name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
-  return name + " (" + (unit.empty() ? "no unit" : unit) + ")";
+  return in_unit(core::plain(std::move(name)), core::plain(unit));
 }
 
 std::string unit_of(const std::string& parameter, const procedure::Spec& spec) {

@@ -11,9 +11,9 @@
 
 namespace turnpoint::report {
 
-/// Recomputes the final estimates of adaptive procedures, and which of them ended early, from the stored answers of a session, from the last
-/// attempt at each block, and adds them to `data`. `seed` is that of the session, and `earlier` are the
-/// trials of the participant's earlier sessions, for procedures that continue.
+/// Recomputes the final estimates of adaptive procedures, and which of them ended early, from the stored
+/// answers of a session, from the last attempt at each block, and adds them to `data`. `seed` is that of the
+/// session, and `earlier` are the trials of the participant's earlier sessions, for procedures that continue.
 void add_estimates(const std::vector<core::BlockRecord>& blocks, const protocol::Protocol& protocol,
                    std::uint64_t seed, const procedure::EarlierTrials& earlier, SessionData& data);
 
@@ -27,7 +27,7 @@ void add_estimator(const std::string& program, const std::map<std::string, proce
                    const protocol::Protocol& protocol, SessionData& data);
 
 /// An axis label: "Contrast (dB)" for the name "contrast" and the unit "dB".
-std::string axis_label(std::string name, const std::string& unit);
+core::Phrase axis_label(std::string name, const std::string& unit);
 
 /// Unit of a procedure's parameter, made from the units of its level and of its second dimension: "dB/mm" for
 /// a gradient; "" if it has none.

@@ -15,6 +15,7 @@
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/report/stored_estimates.hpp"
+#include "station/report/words.hpp"
 
 namespace turnpoint::report {
 
@@ -52,6 +53,7 @@ analysis::TrialRecord record_of(const core::TrialRow& row, const core::BlockStar
   analysis::TrialRecord record;
   record.trial_index = row.trial_index;
   record.block_index = block.block_index;
+  record.segment_index = row.segment_index;
   record.block = block.name;
   record.type = block.practice ? core::TrialType::practice : row.type;
   record.procedure = row.procedure;
@@ -59,6 +61,7 @@ analysis::TrialRecord record_of(const core::TrialRow& row, const core::BlockStar
   record.right_choice = index_of(row.correct_response, protocol);
   record.response = index_of(row.response, protocol);
   record.correct = row.correct;
+  record.unsure = row.response == protocol::kUnsure && !protocol.task.unsure.empty();
   if (protocol.task.present) record.present = protocol::holds(*protocol.task.present, factors_of(row));
   if (row.response &&
       (protocol.task.kind == protocol::TaskKind::adjustment || protocol::judges(protocol.task)))
@@ -67,6 +70,8 @@ analysis::TrialRecord record_of(const core::TrialRow& row, const core::BlockStar
   record.confidence = row.confidence;
   record.outcome = row.outcome;
   record.response_time_s = row.response_time_s;
+  record.duration_s = row.duration_s;
+  record.points = row.points;
   record.deadline_s = row.deadline_s;
   const auto factors = factors_of(row);
   record.anticipation_s = protocol::evaluate(protocol.timing.anticipation_s, factors);
@@ -210,7 +215,7 @@ void set_analyses(const protocol::Protocol& protocol, SessionData& data) {
   data.name.clear(), data.meaning.clear(), data.conditions.clear();
   for (const auto& part : parts) {
     data.conditions.insert(data.conditions.end(), part.conditions.begin(), part.conditions.end());
-    if (part.level_label != data.level_label) data.level_label = axis_label("level", "");
+    if (part.level_label != data.level_label) data.level_label = in_unit(core::phrase("figure.level"), {});
     if (part.level_unit != parts.front().level_unit) data.level_unit.clear();
   }
   data.parts = std::move(parts);
@@ -268,6 +273,8 @@ void add_trials(const std::vector<core::BlockRecord>& blocks, const protocol::Pr
   data.scored = protocol::scored(protocol.task);
   data.alternatives = std::max(2, static_cast<int>(protocol.task.choices.size()));
   data.deciding = deciding_in(protocol.task.kind);
+  data.unsure = !protocol.task.unsure.empty();
+  data.payoff = protocol.payoff.has_value();
   data.signalled = protocol.timing.signal.has_value();
   for (const auto& choice : protocol.task.choices) data.choices.push_back(choice.id);
   data.show = protocol.analysis.show;

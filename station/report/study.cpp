@@ -7,6 +7,7 @@
 #include "station/core/number.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/meaning.hpp"
+#include "station/report/measures.hpp"
 
 namespace turnpoint::report {
 
@@ -128,19 +129,13 @@ void add_measures(const Summary& summary, StudyPerson& person) {
                    std::optional<double>(named.fit.parameters->slope));
   }
   for (const auto& entry : summary.trade.instructions) {
-    if (data.scored) measures.add(entry.instruction, kCorrect, "", entry.proportion_correct);
-    measures.add(entry.instruction, kMedianTime, "s", entry.median_s);
+    for (const auto& row : kSpeedAndAccuracy) {
+      const bool in_detections = row.value == &Result::d_prime && !summary.detections.empty();
+      if (*row.name != '\0' && !in_detections && (data.scored || row.value == &Result::median_s))
+        measures.add(entry.instruction, row.name, row.unit, entry.*row.value);
+    }
     if (data.scored && entry.correct_times)
       measures.add(entry.instruction, kMeanCorrect, "s", std::optional<double>(entry.correct_times->mean_s));
-    measures.add(entry.instruction, "boundary", "s = 0.1", entry.boundary);
-    measures.add(entry.instruction, "time outside the decision", "s", entry.nondecision_s);
-    measures.add(entry.instruction, "drift", "s = 0.1", entry.drift);
-    measures.add(entry.instruction, "LISAS", "s", entry.lisas_s);
-    measures.add(entry.instruction, "inverse efficiency", "s", entry.inverse_efficiency_s);
-    if (data.scored) measures.add(entry.instruction, "post-error slowing", "s", entry.post_error_s);
-    if (data.scored) measures.add(entry.instruction, "repetition of answers", "", entry.repetition);
-    measures.add(entry.instruction, "boundary, late minus early in a block", "s = 0.1", entry.late_boundary);
-    if (summary.detections.empty()) measures.add(entry.instruction, kSensitivity, "", entry.d_prime);
     for (std::size_t i = 0; i < entry.caf.size(); ++i) {
       const auto& bin = entry.caf[i];
       const auto of = std::to_string(i + 1) + " of " + std::to_string(entry.caf.size());
@@ -151,7 +146,7 @@ void add_measures(const Summary& summary, StudyPerson& person) {
   }
   for (const auto& detection : summary.detections)
     if (!detection.level) {
-      measures.add(detection.condition, kSensitivity, "", detection.d_prime);
+      measures.add(detection.condition, analysis::kSensitivity, "", detection.d_prime);
       measures.add(detection.condition, "criterion c", "", detection.criterion);
     }
   for (const auto& entry : summary.rocs) {
@@ -204,13 +199,17 @@ double known_guess(const NamedFit& named) {
   if (named.fit.options.guess == analysis::Guess::fixed) return named.fit.options.guess_value;
   if (named.fit.options.guess == analysis::Guess::tied_to_lapse) return 0;
   for (const auto& point : named.fit.data)
-    if (point.level == analysis::kNoise) return (point.positive + 0.5) / (point.trials + 1.0);
+    if (point.level == analysis::kNoise) return (point.sum() + 0.5) / (point.trials + 1.0);
   return named.fit.parameters ? named.fit.parameters->guess : 0;
 }
 
-/// The same answers, counted by the other of two choices.
+/// The same answers, counted by the other of two choices. A guess that was not made would have chosen either
+/// in half of the cases.
 std::vector<analysis::LevelCount> turned(std::vector<analysis::LevelCount> counts) {
-  for (auto& point : counts) point.positive = point.trials - point.positive;
+  for (auto& point : counts) {
+    const int unsure = static_cast<int>(std::lround(2 * point.admitted));
+    point.positive = point.trials - unsure - point.positive;
+  }
   return counts;
 }
 
@@ -230,7 +229,7 @@ GroupFit group_fit(const Study& study, const std::string& condition) {
       }
       people.push_back({person.person,
                         named.positive == group.positive ? named.fit.data : turned(named.fit.data),
-                        known_guess(named)});
+                        known_guess(named), named.fit.weight});
     }
   group.result = analysis::fit_mixed(people, options);
   return group;
@@ -305,7 +304,7 @@ void add_balanced(Study& study) {
     if (!person.excluded.empty()) continue;
     for (const auto& proportion : person.measures)
       for (const auto& time : person.measures)
-        if (proportion.measure == kCorrect && time.measure == kMeanCorrect &&
+        if (proportion.measure == analysis::kCorrect && time.measure == kMeanCorrect &&
             proportion.condition == time.condition) {
           proportions.push_back(proportion.value), times_s.push_back(time.value);
           cells.push_back({&person, time.condition});
@@ -342,10 +341,12 @@ void finish_study(Study& study) {
   std::stable_sort(measures.begin(), measures.end(),
                    [&place](const PersonMeasure& a, const PersonMeasure& b) { return place(a) < place(b); });
   study.means = analysis::group_means(measures);
+  if (study.means.empty()) study.statements.push_back({"no-measures", core::phrase("statement.no_measures")});
   const auto& groups = study.groups_of_conditions;
-  std::erase_if(measures, [](const PersonMeasure& one) {  // where figures put their points; nothing to compare
-    return one.measure.starts_with(kBinTime) || one.measure.starts_with(kLagTime);
-  });
+  std::erase_if(measures,
+                [](const PersonMeasure& one) {  // where figures put their points; nothing to compare
+                  return one.measure.starts_with(kBinTime) || one.measure.starts_with(kLagTime);
+                });
   study.effects = analysis::effects(measures, [&groups](const std::string& first, const std::string& second) {
     return group_of(first, groups) != group_of(second, groups);
   });

@@ -73,10 +73,9 @@ struct Study {
   std::vector<analysis::Statement> statements;
 };
 
-/// Names of measures that figures of a study look for. The last four, and analysis::kBinMeasure, are followed
+/// Names of measures that figures of a study look for beside those of analysis/trade.hpp. They are followed
 /// by the bin ("1 of 5") or the lag ("0.35 s").
-inline constexpr const char *kCorrect = "proportion correct", *kMedianTime = "median response time",
-                            *kSensitivity = "d'", *kBinTime = "mean time in time bin ",
+inline constexpr const char *kBinTime = "mean time in time bin ",
                             *kLagSensitivity = "d' at the signal after ",
                             *kLagTime = "response time at the signal after ";
 
@@ -102,8 +101,7 @@ std::vector<std::string> rules_in_words(const protocol::Exclusion& rules);
 /// excluded.
 void finish_study(Study& study);
 
-/// Returns the report as one self-contained page, or as one JSON document without NaN.
-std::string to_html(const Study& study);
+/// Returns the report as one JSON document without NaN.
 std::string to_json(const Study& study);
 
 std::optional<Figure> group_curve_figure(const Study& study);
@@ -115,17 +113,18 @@ std::optional<Figure> group_trade_figure(const Study& study);
 std::optional<Figure> group_course_figure(const Study& study);
 
 /// A table that becomes a CSV file with one header row.
-struct Table {
+struct CsvTable {
   std::string name;  ///< name of the CSV file
   std::string csv;
 };
-/// A text, and a number, as a field of a CSV file. A number that is not finite, or does not exist, is an empty field.
+/// A text, and a number, as a field of a CSV file. A number that is not finite, or does not exist, is an
+/// empty field.
 std::string csv_field(const std::string& text);
 std::string csv_number(double value);
 std::string csv_number(const std::optional<double>& value);
 /// Tidy tables for other programs: answers.csv (one row for each participant, condition and level),
 /// measures.csv, effects.csv, estimates.csv (the procedures' own estimates), participants.csv and groups.csv.
-std::vector<Table> study_tables(const Study& study);
+std::vector<CsvTable> study_tables(const Study& study);
 /// The header and the rows of trials.csv: one row for each experimental trial of a participant.
 std::string trial_table_header();
 std::string trial_table_rows(const StudyPerson& person, const SessionData& data);

@@ -33,7 +33,8 @@ analysis::Psychometric group_parameters(const analysis::MixedFit& fit) {
   return {fit.threshold->value, fit.slope->value, guess, fit.lapse};
 }
 
-/// The mean of the participants' proportions, with its interval, at each level that at least three of them had.
+/// The mean of the participants' proportions, with its interval, at each level that at least three of them
+/// had.
 Points answers_of(const Study& study, const GroupFit& group, int series) {
   struct Level {
     int trials = 0;
@@ -47,7 +48,7 @@ Points answers_of(const Study& study, const GroupFit& group, int series) {
         if (point.level == analysis::kNoise || point.trials == 0) continue;
         auto& level = levels[point.level];
         level.trials += point.trials;
-        level.shares.push_back(static_cast<double>(point.positive) / point.trials);
+        level.shares.push_back(point.sum() / point.trials);
       }
     }
   Points points;
@@ -56,10 +57,8 @@ Points answers_of(const Study& study, const GroupFit& group, int series) {
   for (const auto& [at, level] : levels) {
     const auto mean = level.shares.size() < 3 ? std::nullopt : analysis::student_mean(level.shares);
     if (!mean) continue;
-    points.x.push_back(at), points.y.push_back(mean->value);
+    points.add(at, mean->value, std::max(0.0, mean->interval.low), std::min(1.0, mean->interval.high));
     points.weight.push_back(level.trials);
-    points.low.push_back(std::max(0.0, mean->interval.low));
-    points.high.push_back(std::min(1.0, mean->interval.high));
   }
   return points;
 }
@@ -101,10 +100,10 @@ std::optional<Figure> group_curve_figure(const Study& study) {
     if (!group.result.fit || !group.result.fit->threshold) continue;
     const auto& fit = *group.result.fit;
     Chart chart;
-    chart.title = group.condition.empty() ? "all trials" : group.condition;
+    chart.title = core::say(name_of(group.condition), "en");
     const auto& part = analysis_of(group, study.settings);
     chart.x =
-        report::fitted(part.level_label, levels_of(study, group.part), 0.05,
+        report::fitted(core::say(part.level_label, "en"), levels_of(study, group.part), 0.05,
                        fit.options.scale == analysis::Scale::log10 ? AxisScale::log10 : AxisScale::linear);
     chart.y = {"Proportion " + group.positive + " (0 to 1)", -0.03, 1.03};
     if (part.design == Design::forced_choice) chart.y.low = 0.3;
@@ -146,10 +145,9 @@ std::optional<Figure> shrinkage_figure(const Study& study) {
       ++number;
       codes.push_back(person.person);
       if (person.threshold) {
-        pooled.x.push_back(number), pooled.y.push_back(person.threshold->value);
-        pooled.low.push_back(person.threshold->interval.low);
-        pooled.high.push_back(person.threshold->interval.high);
-        all.insert(all.end(), {pooled.y.back(), pooled.low.back(), pooled.high.back()});
+        const auto& [low, high, confidence] = person.threshold->interval;
+        pooled.add(number, person.threshold->value, low, high);
+        all.insert(all.end(), {person.threshold->value, low, high});
       }
       for (const auto& single : study.persons)
         for (const auto& named : single.fits)
@@ -160,9 +158,9 @@ std::optional<Figure> shrinkage_figure(const Study& study) {
     }
     if (all.empty()) continue;
     Chart chart;
-    chart.title = group.condition.empty() ? "all trials" : group.condition;
+    chart.title = core::say(name_of(group.condition), "en");
     chart.x = {"Participant", 0.4, number + 0.6, AxisScale::linear, true, codes};
-    chart.y = report::fitted(analysis_of(group, study.settings).level_label, all, 0.08);
+    chart.y = report::fitted(core::say(analysis_of(group, study.settings).level_label, "en"), all, 0.08);
     chart.layers.push_back(Rule{Rule::Direction::horizontal, group.result.fit->threshold->value, "group"});
     chart.layers.push_back(alone);
     chart.layers.push_back(pooled);
@@ -178,7 +176,7 @@ std::optional<Figure> group_trade_figure(const Study& study) {
   std::vector<double> times, accuracies;
   std::vector<std::string> conditions;
   for (const auto& mean : study.means)
-    if (mean.measure == kCorrect) conditions.push_back(mean.condition);
+    if (mean.measure == analysis::kCorrect) conditions.push_back(mean.condition);
   int series = 0;
   for (const auto& condition : conditions) {
     Points points;
@@ -188,8 +186,8 @@ std::optional<Figure> group_trade_figure(const Study& study) {
       std::optional<double> time, accuracy;
       for (const auto& measure : person.measures) {
         if (measure.condition != condition) continue;
-        if (measure.measure == kMedianTime) time = measure.value;
-        if (measure.measure == kCorrect) accuracy = measure.value;
+        if (measure.measure == analysis::kMedianTime) time = measure.value;
+        if (measure.measure == analysis::kCorrect) accuracy = measure.value;
       }
       if (!time || !accuracy || !person.excluded.empty()) continue;
       points.x.push_back(*time), points.y.push_back(*accuracy);
@@ -230,15 +228,14 @@ std::optional<Chart> course_chart(const Study& study, const std::string& heights
     Points points;
     Line line;
     points.series = line.series = series++;
-    points.name = condition.empty() ? "all trials" : condition;
+    points.name = core::say(name_of(condition), "en");
     for (const auto& height : study.means) {
       if (!height.measure.starts_with(heights) || height.condition != condition || !height.mean) continue;
       const auto wanted = times + height.measure.substr(heights.size());
       for (const auto& time : study.means) {
         if (time.measure != wanted || time.condition != condition || !time.mean) continue;
         const auto &x = *time.mean, &y = *height.mean;
-        points.x.push_back(x.value), points.y.push_back(y.value);
-        points.low.push_back(y.interval.low), points.high.push_back(y.interval.high);
+        points.add(x.value, y.value, y.interval.low, y.interval.high);
         Line reach;
         reach.series = points.series;
         reach.x = {x.interval.low, x.interval.high}, reach.y = {y.value, y.value};
@@ -280,7 +277,8 @@ std::optional<Figure> group_course_figure(const Study& study) {
   add("Conditional accuracy", "Proportion correct (0 to 1)", analysis::kBinMeasure, kBinTime, false);
   add("Sensitivity at the signal", "Sensitivity d\u2032", kLagSensitivity, kLagTime, false);
   if (!study.settings.signalled)
-    add("Sensitivity over the conditions", "Sensitivity d\u2032", kSensitivity, kMedianTime, true);
+    add("Sensitivity over the conditions", "Sensitivity d\u2032", analysis::kSensitivity,
+        analysis::kMedianTime, true);
   if (figure.charts.empty()) return std::nullopt;
   figure.title = "Accuracy over time, means of the participants";
   figure.columns = figure.charts.size() > 1 ? 2 : 1;

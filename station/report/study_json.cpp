@@ -21,35 +21,30 @@ Json person_json(const StudyPerson& person) {
             {"median_time_s", value(person.median_time_s)},
             {"incomplete", person.incomplete},
             {"excluded", person.excluded}};
-  json["fits"] = Json::array();
-  for (const auto& named : person.fits) {
+  json["fits"] = list_of(person.fits, [](const auto& named) -> Json {
     const auto& p = named.fit.parameters;
-    json["fits"].push_back({{"condition", named.name},
-                            {"threshold", p ? value(p->threshold) : Json(nullptr)},
-                            {"threshold_interval", value(named.intervals.threshold)},
-                            {"slope", p && slope_estimated(named) ? value(p->slope) : Json(nullptr)},
-                            {"slope_interval", value(named.intervals.slope)},
-                            {"lapse", p ? value(p->lapse) : Json(nullptr)},
-                            {"statements", value(named.fit.statements)}});
-  }
-  json["estimates"] = Json::array();
-  for (const auto& [session, estimate] : person.estimates) {
+    return {{"condition", named.name},
+            {"threshold", p ? value(p->threshold) : Json(nullptr)},
+            {"threshold_interval", value(named.intervals.threshold)},
+            {"slope", p && slope_estimated(named) ? value(p->slope) : Json(nullptr)},
+            {"slope_interval", value(named.intervals.slope)},
+            {"lapse", p ? value(p->lapse) : Json(nullptr)},
+            {"statements", value(named.fit.statements)}};
+  });
+  const auto of_session = [](const auto& one) {
+    const auto& [session, said] = one;
     Json own{{"session", session}};
-    own.update(value(estimate));
-    json["estimates"].push_back(std::move(own));
-  }
-  json["early_ends"] = Json::array();
-  for (const auto& [session, end] : person.early_ends) {
-    Json own{{"session", session}};
-    own.update(value(end));
-    json["early_ends"].push_back(std::move(own));
-  }
-  json["measures"] = Json::array();
-  for (const auto& measure : person.measures)
-    json["measures"].push_back({{"condition", measure.condition},
-                                {"measure", measure.measure},
-                                {"unit", measure.unit},
-                                {"value", value(measure.value)}});
+    own.update(value(said));
+    return own;
+  };
+  json["estimates"] = list_of(person.estimates, of_session);
+  json["early_ends"] = list_of(person.early_ends, of_session);
+  json["measures"] = list_of(person.measures, [](const auto& measure) -> Json {
+    return {{"condition", measure.condition},
+            {"measure", measure.measure},
+            {"unit", measure.unit},
+            {"value", value(measure.value)}};
+  });
   return json;
 }
 
@@ -58,14 +53,19 @@ Json group_json(const GroupFit& group) {
   auto statements = group.result.statements;
   if (const auto& fit = group.result.fit) {
     statements.insert(statements.end(), fit->statements.begin(), fit->statements.end());
-    Json persons = Json::array();
+    const auto persons = list_of(fit->persons, [](const auto& person) -> Json {
+      return {{"participant", person.person},
+              {"trials", person.trials},
+              {"threshold", value(person.threshold)},
+              {"slope", person.threshold ? value(person.parameters.slope) : Json(nullptr)},
+              {"shrinkage", value(person.shrinkage)}};
+    });
+    double guess = 0;
     for (const auto& person : fit->persons)
-      persons.push_back({{"participant", person.person},
-                         {"trials", person.trials},
-                         {"threshold", value(person.threshold)},
-                         {"slope", person.threshold ? value(person.parameters.slope) : Json(nullptr)},
-                         {"shrinkage", value(person.shrinkage)}});
-    json["fit"] = {{"threshold", value(fit->threshold)},
+      guess += person.parameters.guess / static_cast<double>(fit->persons.size());
+    json["fit"] = {{"function", core::name(fit->options.function)},
+                   {"guess", value(guess)},
+                   {"threshold", value(fit->threshold)},
                    {"slope", value(fit->slope)},
                    {"threshold_sd", value(fit->threshold_sd)},
                    {"lapse", value(fit->lapse)},
@@ -85,7 +85,7 @@ Json group_json(const GroupFit& group) {
 
 }  // namespace
 
-std::string to_json(const Study& study) {
+Json json_of(const Study& study) {
   Json json{{"title", study.settings.title}, {"run_mode", study.settings.run_mode}};
   for (const auto& [name, text] : study.facts) json["facts"][name] = text;
   json["measures"] = meanings_json(study.settings);
@@ -96,32 +96,30 @@ std::string to_json(const Study& study) {
                       {"incomplete", sessions.incomplete},
                       {"incomplete_count", sessions.incomplete_count}};
   json["rules"] = study.rules;
-  json["participants"] = Json::array();
-  for (const auto& person : study.persons) json["participants"].push_back(person_json(person));
-  json["groups"] = Json::array();
-  for (const auto& group : study.groups) json["groups"].push_back(group_json(group));
-  json["means"] = Json::array();
-  for (const auto& mean : study.means)
-    json["means"].push_back({{"measure", mean.measure},
-                             {"unit", mean.unit},
-                             {"condition", mean.condition},
-                             {"participants", mean.persons},
-                             {"mean", value(mean.mean)},
-                             {"sd", value(mean.sd)}});
-  json["effects"] = Json::array();
-  for (const auto& effect : study.effects)
-    json["effects"].push_back({{"measure", effect.measure},
-                               {"unit", effect.unit},
-                               {"first", effect.first},
-                               {"second", effect.second},
-                               {"participants", effect.persons},
-                               {"difference", value(effect.difference)},
-                               {"standardised", value(effect.standardised)},
-                               {"p", effect.difference ? value(effect.difference->p) : Json(nullptr)},
-                               {"corrected_p", value(effect.corrected_p)},
-                               {"between_groups", effect.between_groups}});
+  json["participants"] = list_of(study.persons, person_json);
+  json["groups"] = list_of(study.groups, group_json);
+  json["means"] = list_of(study.means, [](const auto& mean) -> Json {
+    return {{"measure", mean.measure},      {"unit", mean.unit},        {"condition", mean.condition},
+            {"participants", mean.persons}, {"mean", value(mean.mean)}, {"sd", value(mean.sd)}};
+  });
+  json["effects"] = list_of(study.effects, [](const auto& effect) -> Json {
+    return {{"measure", effect.measure},
+            {"unit", effect.unit},
+            {"first", effect.first},
+            {"second", effect.second},
+            {"participants", effect.persons},
+            {"difference", value(effect.difference)},
+            {"standardised", value(effect.standardised)},
+            {"p", effect.difference ? value(effect.difference->p) : Json(nullptr)},
+            {"corrected_p", value(effect.corrected_p)},
+            {"between_groups", effect.between_groups}};
+  });
   json["statements"] = value(study.statements);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+  return json;
+}
+
+std::string to_json(const Study& study) {
+  return json_of(study).dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace turnpoint::report

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "station/core/number.hpp"
+#include "station/report/json_parts.hpp"
 #include "station/report/study.hpp"
 
 namespace turnpoint::report {
@@ -22,20 +23,8 @@ namespace {
 
 const char* yes_or_no(bool value) { return value ? "yes" : "no"; }
 
-const char* function_name(core::Function function) {
-  switch (function) {
-    case core::Function::weibull:
-      return "weibull";
-    case core::Function::normal:
-      return "normal";
-    case core::Function::logistic:
-      break;
-  }
-  return "logistic";
-}
-
 std::string answers_table(const Study& study) {
-  std::string csv = "participant,excluded,condition,level,axis,trials,positive\n";
+  std::string csv = "participant,excluded,condition,level,axis,trials,positive,weight\n";
   for (const auto& person : study.persons)
     for (const auto& named : person.fits)
       for (const auto& point : named.fit.data) {
@@ -44,116 +33,108 @@ std::string answers_table(const Study& study) {
         csv += csv_field(person.person) + "," + yes_or_no(!person.excluded.empty()) + "," +
                csv_field(named.name) + "," + csv_number(point.level) + "," +
                csv_number(analysis::axis_position(options.function, options.scale, point.level)) + "," +
-               std::to_string(point.trials) + "," + std::to_string(point.positive) + "\n";
+               std::to_string(point.trials) + "," + csv_number(point.sum()) + "," +
+               csv_number(named.fit.weight) + "\n";
       }
   return csv;
 }
 
-/// The rows are in the order of the conditions, so that a reader of the table can subtract them in the same
-/// direction as the report.
-std::string measures_table(const Study& study) {
-  struct Row {
-    const StudyPerson* person;
-    const analysis::PersonMeasure* measure;
-  };
-  std::vector<Row> rows;
-  for (const auto& person : study.persons)
-    for (const auto& measure : person.measures) rows.push_back({&person, &measure});
-  const auto place = [&order = study.settings.conditions](const Row& row) {
-    return std::find(order.begin(), order.end(), row.measure->condition) - order.begin();
-  };
-  std::stable_sort(rows.begin(), rows.end(), [&](const Row& a, const Row& b) { return place(a) < place(b); });
-  std::string csv = "participant,excluded,condition,measure,unit,value\n";
-  for (const auto& [person, measure] : rows)
-    csv += csv_field(person->person) + "," + yes_or_no(!person->excluded.empty()) + "," +
-           csv_field(measure->condition) + "," + csv_field(measure->measure) + "," +
-           csv_field(measure->unit) + "," + csv_number(measure->value) + "\n";
-  return csv;
+std::string csv_value(const Json& value) {
+  if (value.is_boolean()) return yes_or_no(value.get<bool>());
+  if (value.is_number_float()) return csv_number(value.get<double>());
+  if (value.is_string()) return csv_field(value.get<std::string>());
+  return value.is_null() ? "" : value.dump();
 }
 
-std::string effects_table(const Study& study) {
-  std::string csv =
-      "measure,unit,first,second,participants,difference,low_95,high_95,standardised,between_groups,p,"
-      "corrected_p\n";
-  for (const auto& effect : study.effects) {
-    const auto& gap = effect.difference;
-    csv += csv_field(effect.measure) + "," + csv_field(effect.unit) + "," + csv_field(effect.first) + "," +
-           csv_field(effect.second) + "," + std::to_string(effect.persons) + "," +
-           (gap ? csv_number(gap->value) + "," + csv_number(gap->interval.low) + "," +
-                      csv_number(gap->interval.high)
-                : ",,") +
-           "," + csv_number(effect.standardised) + "," + yes_or_no(effect.between_groups) + "," +
-           (gap ? csv_number(gap->p) : "") + "," + csv_number(effect.corrected_p) + "\n";
+/// A table of records of the JSON report. A column has the name of its value, or name=PLACE where that stands
+/// deeper.
+std::string csv_of(const Json& records, const std::vector<std::string>& columns) {
+  std::string csv;
+  std::vector<Json::json_pointer> places;
+  for (const auto& column : columns) {
+    const auto name = column.substr(0, column.find('='));
+    csv += (places.empty() ? "" : ",") + name;
+    places.emplace_back("/" + (name == column ? name : column.substr(name.size() + 1)));
   }
-  return csv;
-}
-
-std::string estimates_table(const Study& study) {
-  std::string csv =
-      "participant,excluded,session,procedure,block,parameter,mean,sd,low_95,high_95,unit,basis\n";
-  for (const auto& person : study.persons)
-    for (const auto& [session, own] : person.estimates) {
-      const auto ends =
-          own.interval ? csv_number(own.interval->low) + "," + csv_number(own.interval->high) : ",";
-      csv += csv_field(person.person) + "," + yes_or_no(!person.excluded.empty()) + "," + csv_field(session) +
-             "," + csv_field(own.procedure) + "," + csv_field(own.block) + "," + csv_field(own.parameter) +
-             "," + csv_number(own.mean) + "," + csv_number(own.sd) + "," + ends + "," + csv_field(own.unit) +
-             "," + csv_field(own.basis) + "\n";
+  for (const auto& record : records) {
+    const char* separator = "\n";
+    for (const auto& place : places) {
+      csv += separator + csv_value(record.contains(place) ? record.at(place) : Json(nullptr));
+      separator = ",";
     }
-  return csv;
+  }
+  return csv + "\n";
 }
 
-std::string participants_table(const Study& study) {
-  std::string csv =
-      "participant,group,sessions,presented,answered,accuracy,catch_accuracy,timeouts,anticipations,median_"
-      "time_s,"
-      "incomplete,excluded,reasons,early_ends\n";
-  for (const auto& person : study.persons) {
-    std::string reasons;
-    for (const auto& reason : person.excluded) reasons += (reasons.empty() ? "" : "; ") + reason;
-    std::string ends;
-    for (const auto& [session, end] : person.early_ends)
-      ends += (ends.empty() ? "" : "; ") + session + ", " + end.block + ", " + core::say(end.why, "en");
-    csv += csv_field(person.person) + "," + csv_field(person.group) + "," +
-           std::to_string(person.sessions.size()) + "," + std::to_string(person.presented) + "," +
-           std::to_string(person.answered) + "," + csv_number(person.accuracy) + "," +
-           csv_number(person.catch_accuracy) + "," + csv_number(person.timeouts) + "," +
-           csv_number(person.anticipations) + "," + csv_number(person.median_time_s) + "," +
-           yes_or_no(person.incomplete) + "," + yes_or_no(!person.excluded.empty()) + "," +
-           csv_field(reasons) + "," + csv_field(ends) + "\n";
-  }
-  return csv;
+/// What all participants have in this list, with the participant's name before it.
+Json of_all(const Json& persons, const char* list) {
+  Json all = Json::array();
+  for (const auto& person : persons)
+    for (const auto& one : person[list]) {
+      Json record{{"participant", person["participant"]}, {"excluded", !person["excluded"].empty()}};
+      record.update(one);
+      all.push_back(std::move(record));
+    }
+  return all;
 }
 
-std::string groups_table(const Study& study) {
-  std::string csv =
-      "condition,function,guess,lapse,intercept,rate,intercept_se,rate_se,intercept_sd,rate_sd,correlation,"
-      "log_likelihood,threshold\n";
-  for (const auto& group : study.groups) {
-    const auto& fit = group.result.fit;
-    if (!fit) continue;
-    double guess = 0;
-    for (const auto& person : fit->persons)
-      guess += person.parameters.guess / static_cast<double>(fit->persons.size());
-    csv += csv_field(group.condition) + "," + function_name(fit->options.function) + "," + csv_number(guess) +
-           "," + csv_number(fit->lapse) + "," + csv_number(fit->intercept) + "," + csv_number(fit->rate) +
-           "," + csv_number(fit->intercept_se) + "," + csv_number(fit->rate_se) + "," +
-           csv_number(fit->intercept_sd) + "," + csv_number(fit->rate_sd) + "," +
-           csv_number(fit->correlation) + "," + csv_number(fit->log_likelihood) + "," +
-           (fit->threshold ? csv_number(fit->threshold->value) : "") + "\n";
+/// In the order of the conditions, so that a reader of the table can subtract them in the same direction as
+/// the report.
+Json in_order(Json measures, const std::vector<std::string>& conditions) {
+  const auto place = [&](const Json& row) {
+    return std::ranges::find(conditions, row["condition"].get<std::string>());
+  };
+  std::stable_sort(measures.begin(), measures.end(),
+                   [&](const Json& a, const Json& b) { return place(a) < place(b); });
+  return measures;
+}
+
+/// The participants with one text for each list that they have.
+Json in_words(Json persons) {
+  for (auto& person : persons) {
+    std::string reasons, ends;
+    for (const auto& reason : person["excluded"])
+      reasons += (reasons.empty() ? "" : "; ") + reason.get<std::string>();
+    for (const auto& end : person["early_ends"])
+      ends += (ends.empty() ? "" : "; ") + end["session"].get<std::string>() + ", " +
+              end["block"].get<std::string>() + ", " + end["reason"].get<std::string>();
+    person["sessions"] = person["sessions"].size();
+    person["excluded"] = !person["excluded"].empty();
+    person["reasons"] = reasons, person["early_ends"] = ends;
   }
-  return csv;
+  return persons;
 }
 
 }  // namespace
 
-std::vector<Table> study_tables(const Study& study) {
+std::vector<CsvTable> study_tables(const Study& study) {
+  const auto json = json_of(study);
+  const auto& persons = json["participants"];
+  Json fitted = Json::array();
+  for (const auto& group : json["groups"])
+    if (!group["fit"].is_null()) fitted.push_back(group);
   return {{"answers.csv", answers_table(study)},
-          {"measures.csv", measures_table(study)},
-          {"effects.csv", effects_table(study)},
-          {"estimates.csv", estimates_table(study)},
-          {"participants.csv", participants_table(study)},
-          {"groups.csv", groups_table(study)}};
+          {"measures.csv", csv_of(in_order(of_all(persons, "measures"), study.settings.conditions),
+                                  {"participant", "excluded", "condition", "measure", "unit", "value"})},
+          {"effects.csv",
+           csv_of(json["effects"],
+                  {"measure", "unit", "first", "second", "participants", "difference=difference/value",
+                   "low_95=difference/interval/low", "high_95=difference/interval/high", "standardised",
+                   "between_groups", "p", "corrected_p"})},
+          {"estimates.csv",
+           csv_of(of_all(persons, "estimates"),
+                  {"participant", "excluded", "session", "procedure", "block", "parameter", "mean", "sd",
+                   "low_95=interval/low", "high_95=interval/high", "unit", "basis"})},
+          {"participants.csv",
+           csv_of(in_words(persons), {"participant", "group", "sessions", "presented", "answered", "accuracy",
+                                      "catch_accuracy", "timeouts", "anticipations", "median_time_s",
+                                      "incomplete", "excluded", "reasons", "early_ends"})},
+          {"groups.csv",
+           csv_of(fitted, {"condition", "function=fit/function", "guess=fit/guess", "lapse=fit/lapse",
+                           "intercept=fit/intercept", "rate=fit/rate", "intercept_se=fit/intercept_se",
+                           "rate_se=fit/rate_se", "intercept_sd=fit/intercept_sd", "rate_sd=fit/rate_sd",
+                           "correlation=fit/correlation", "log_likelihood=fit/log_likelihood",
+                           "threshold=fit/threshold/value"})}};
 }
 
 std::string trial_table_header() {

@@ -7,6 +7,7 @@
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/psychometric_posterior.hpp"
 #include "station/core/number.hpp"
+#include "station/report/measures.hpp"
 
 namespace turnpoint::report {
 
@@ -61,7 +62,7 @@ NamedFit fit_of(const SessionData& data, const std::string& name, const std::vec
   result.name = name;
   std::vector<analysis::LevelCount> counts;
   if (data.design == Design::forced_choice) {
-    counts = analysis::count_correct(trials);
+    counts = analysis::count_correct(trials, data.alternatives);
     result.positive = "correct";
   } else {
     const bool noise = has_noise(data.design);
@@ -93,6 +94,7 @@ void hide(const SessionData& data, analysis::Trade& trade) {
   for (auto& entry : trade.instructions) {
     if (!shows(data, "ez")) {
       entry.boundary.reset(), entry.nondecision_s.reset(), entry.contaminants.reset(), entry.drift.reset();
+      entry.effective_draws.reset();
       entry.check.reset();
       for (auto& cell : entry.cells) cell.drift.reset();
       std::erase_if(entry.statements, [](const auto& said) { return said.code.starts_with("diffusion-"); });
@@ -110,11 +112,10 @@ void hide(const SessionData& data, analysis::Trade& trade) {
   }
   std::erase_if(trade.differences, [&data](const auto& difference) {
     const auto& name = difference.measure;
-    return ((name == "boundary" || name == "time outside the decision" || name == "drift") &&
-            !shows(data, "ez")) ||
-           (name.starts_with(analysis::kBinMeasure) && !shows(data, "caf")) ||
-           (name == "LISAS" && !shows(data, "lisas")) ||
-           (name == "inverse efficiency" && !shows(data, "ies"));
+    if (name.starts_with(analysis::kBinMeasure)) return !shows(data, "caf");
+    return std::any_of(std::begin(kSpeedAndAccuracy), std::end(kSpeedAndAccuracy), [&](const auto& row) {
+      return name == row.name && *row.part != '\0' && !shows(data, row.part);
+    });
   });
 }
 
@@ -233,9 +234,9 @@ std::vector<NamedFit> fits_of(const SessionData& data) {
       data.design == Design::forced_choice || data.design == Design::two_sided || has_noise(data.design);
   if (!data.parts.empty() || !fitted || data.thresholds_differ) return fits;
   const auto instructions = analysis::conditions_of(data.trials, data.conditions);
-  if (instructions.size() < 2)
-    return {
-        fit_of(data, instructions.empty() || data.name.empty() ? "" : instructions.front(), data.trials, 0)};
+  // A participant of a group has one of several conditions, which keeps its name.
+  const bool one = data.name.empty() && data.conditions.size() < 2 && instructions.size() < 2;
+  if (one || instructions.empty()) return {fit_of(data, "", data.trials, 0)};
   for (const auto& instruction : instructions) {
     std::vector<TrialRecord> part;
     std::copy_if(data.trials.begin(), data.trials.end(), std::back_inserter(part),
@@ -298,9 +299,10 @@ core::Phrase describe_intervals(const NamedFit& named, const SessionData& data) 
 }
 
 bool shows(const SessionData& data, const std::string& part) {
+  if (part == "points") return data.payoff;
   if (data.show) return std::find(data.show->begin(), data.show->end(), part) != data.show->end();
   if (part == "response-signal") return true;
-  if (part == "ez") return data.choices.size() <= 2 && !data.signalled;
+  if (part == "ez") return data.choices.size() <= 2 && !data.signalled && !data.unsure;
   return part != "dprime" || data.design == Design::yes_no || data.design == Design::ratings ||
          !data.deciding.empty();
 }
@@ -321,8 +323,62 @@ void append(std::vector<Entry> more, std::vector<Entry>& all) {
   all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
+/// How the regression of the effects of the trial before sees the answers; empty for three or more answers.
+std::optional<analysis::DependenceOptions> dependence_options(const SessionData& data) {
+  using analysis::Answers;
+  analysis::DependenceOptions options;
+  options.positive = data.positive;
+  options.after_error = data.scored && !data.prior;
+  switch (data.design) {
+    case Design::ratings:
+      options.answers = Answers::values;
+      return options;
+    case Design::numbers:
+      options.answers = Answers::logarithms;
+      options.decibel = data.level_unit == "dB";
+      return options;
+    case Design::adjustment:
+      options.answers = Answers::settings;
+      return options;
+    case Design::categories:
+      return std::nullopt;
+    case Design::forced_choice:
+      options.answers = Answers::sides;
+      options.positive = 1;
+      options.decibel = data.level_unit == "dB";
+      break;
+    case Design::two_sided:
+      options.answers = data.scenes.empty() ? Answers::choices : Answers::sides;
+      if (!data.scenes.empty()) options.positive = 1;
+      options.cut = data.cut;
+      break;
+    case Design::yes_no:
+    case Design::same_different:
+      options.answers = Answers::choices;
+      options.noise = true;
+      options.decibel = data.level_unit == "dB";
+      break;
+  }
+  return data.choices.size() == 2 ? std::optional(options) : std::nullopt;
+}
+
+/// The effects of the trial before in one analysis.
+std::vector<analysis::Dependence> dependences_of(const SessionData& data) {
+  using analysis::Answers;
+  const auto options = dependence_options(data);
+  if (!options) return {};
+  const bool logistic = options->answers == Answers::sides || options->answers == Answers::choices;
+  auto all = analysis::serial_dependence(data.trials, data.conditions, *options);
+  for (auto& one : all) {
+    one.analysis = data.name, one.unit = data.level_unit;
+    if (logistic) one.answer = data.choices.at(static_cast<std::size_t>(options->positive));
+  }
+  return all;
+}
+
 /// Adds what the answers at the levels of one analysis say, except for the psychometric functions.
 void add_levels(const SessionData& data, Summary& summary) {
+  append(dependences_of(data), summary.dependences);
   if (data.design == Design::adjustment) {
     append(analysis::settings(data.trials, data.conditions), summary.settings);
     return;

@@ -6,6 +6,7 @@
 
 #include "station/analysis/confusion.hpp"
 #include "station/analysis/course.hpp"
+#include "station/analysis/dependence.hpp"
 #include "station/analysis/judgements.hpp"
 #include "station/analysis/response_signal.hpp"
 #include "station/analysis/settings.hpp"
@@ -39,8 +40,8 @@ struct Summary {
   analysis::Fatigue fatigue;
   analysis::Trade trade;
   std::vector<analysis::CurveDifference> curve_differences;  ///< one for each pair of `curves`
-  std::vector<analysis::Detection> detections;  ///< d' and criterion, if the report shows them
-  std::vector<analysis::RatedDetection> rocs;   ///< only for yes/no with confidence, if the report shows d'
+  std::vector<analysis::Detection> detections;               ///< d' and criterion, if the report shows them
+  std::vector<analysis::RatedDetection> rocs;  ///< only for yes/no with confidence, if the report shows d'
   std::vector<analysis::Discrimination> discriminations;  ///< d' computed with each model in data.deciding
   /// one for each condition; only with a response signal
   std::vector<analysis::SpeedAccuracyCurve> curves;
@@ -48,6 +49,8 @@ struct Summary {
   std::vector<analysis::Settings> settings;
   /// for ratings and numbers: one entry for each condition
   std::vector<analysis::Judgements> judgements;
+  /// effects of the trial before, one entry for each condition; empty for three or more answers
+  std::vector<analysis::Dependence> dependences;
   /// force and friction of the finger; empty if no force cells recorded data
   std::optional<analysis::Finger> finger;
 };
@@ -88,5 +91,8 @@ std::vector<analysis::CurveDifference> curve_differences_of(
 /// Analyses one session and computes the parts that the protocol chooses. The result depends only on `data`,
 /// seed included. Takes about 0.3 s with 1000 replicates.
 Summary summarise(const SessionData& data);
+
+/// Returns the content of the report as one JSON document. Missing values are null.
+std::string to_json(const Summary& summary);
 
 }  // namespace turnpoint::report

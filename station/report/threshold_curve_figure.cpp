@@ -28,7 +28,7 @@ Points trials_of(const ThresholdCurve& curve, bool logarithmic) {
   return points;
 }
 
-Chart panel_of(const ThresholdCurve& curve, const std::string& level_label) {
+Chart panel_of(const ThresholdCurve& curve, const core::Phrase& level_label, const Words& words) {
   Band band;
   Line line;
   for (const auto& point : curve.points) {
@@ -42,8 +42,9 @@ Chart panel_of(const ThresholdCurve& curve, const std::string& level_label) {
   levels.insert(levels.end(), band.high.begin(), band.high.end());
   Chart panel;
   panel.title = curve.procedure;
-  panel.x = report::fitted(curve.label, seconds, 0.06);
-  panel.y = report::fitted(level_label, levels, 0.08, curve.ratios ? AxisScale::log10 : AxisScale::linear);
+  panel.x = report::fitted(words(curve.label), seconds, 0.06);
+  panel.y =
+      report::fitted(words(level_label), levels, 0.08, curve.ratios ? AxisScale::log10 : AxisScale::linear);
   panel.layers = {band, points, line};
   return panel;
 }
@@ -51,17 +52,17 @@ Chart panel_of(const ThresholdCurve& curve, const std::string& level_label) {
 }  // namespace
 
 std::optional<Figure> threshold_curve_figure(const Summary& summary) {
+  const Words words(summary.data.language);
   Figure figure;
   figure.title = "Threshold along the second dimension";
   figure.chart_width_px = 620;
   figure.chart_height_px = 340;
   std::size_t trials = 0;
   for (const auto& curve : summary.data.threshold_curves) {
-    figure.charts.push_back(panel_of(curve, summary.data.level_label));
+    figure.charts.push_back(panel_of(curve, summary.data.level_label, words));
     trials += curve.trials.size();
   }
   if (figure.charts.empty()) return std::nullopt;
-  const Words words(summary.data.language);
   figure.caption = words("figure.caption_trials", {summary.data.participant, std::to_string(trials)}) + " " +
                    words.together({"figure.areas", "figure.caption_posterior"});
   return figure;

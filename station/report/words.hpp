@@ -9,13 +9,32 @@
 
 namespace turnpoint::report {
 
-/// Formats an estimate with the digits that its interval justifies, as tables show it, and with a typographic minus
-/// sign. Without an interval it has three digits.
+/// The name of a condition, or "all trials" if there is only one condition.
+inline core::Phrase name_of(const std::string& condition) {
+  return condition.empty() ? core::phrase("figure.all_trials") : core::plain(condition);
+}
+
+inline core::Phrase second_minus_first(const std::string& first, const std::string& second) {
+  return {"", "", {name_of(second), core::plain(" \u2212 "), name_of(first)}};
+}
+
+/// A name with its unit, or with "no unit" if that is empty.
+inline core::Phrase in_unit(core::Phrase name, core::Phrase unit) {
+  if (unit.empty()) unit = core::phrase("report.no_unit");
+  return {"", "", {std::move(name), core::plain(" ("), std::move(unit), core::plain(")")}};
+}
+
+/// With a typographic minus sign.
+inline std::string with_minus(std::string number) {
+  return number.starts_with('-') ? "\u2212" + number.substr(1) : number;
+}
+
+/// Formats an estimate with the digits that its interval justifies, as tables show it, and with a typographic
+/// minus sign. Without an interval it has three digits.
 inline std::string in_digits(double value, const analysis::Interval* interval) {
-  auto text = interval == nullptr
-                  ? core::number(value, 3)
-                  : core::estimated(value, core::uncertainty(value, interval->low, interval->high));
-  return text.starts_with('-') ? "\u2212" + text.substr(1) : text;
+  return with_minus(interval == nullptr
+                        ? core::number(value, 3)
+                        : core::estimated(value, core::uncertainty(value, interval->low, interval->high)));
 }
 
 /// Says the words of figures and tables in one language.

@@ -62,7 +62,11 @@ Rig applied(const Calibration& calibration, Rig rig) {
   for (const auto& pick_up : calibration.pick_ups) apply(pick_up.response, rig);
   if (calibration.forces) apply(*calibration.forces, rig);
   rig.mixer = calibration.mixer;
-  if (calibration.quality_factor) rig.surface.quality_factor = *calibration.quality_factor;
+  if (calibration.quality_factor) {
+    // resonances differ as much as the stated value was expected to, in proportion
+    rig.surface.quality_factor_sd *= *calibration.quality_factor / rig.surface.quality_factor;
+    rig.surface.quality_factor = *calibration.quality_factor;
+  }
   if (calibration.boundary) rig.surface.fit = calibration.boundary->surface;
   if (!calibration.friction) return rig;
   rig.friction.stated = rig.friction.measured = true;

@@ -9,8 +9,9 @@ namespace turnpoint::rig {
 
 /// Returns the rig with the values of the calibration: each transducer's response, and its usable band as far
 /// as it lies within the rig's band; loss; the surface that measured boundaries determine; the responses of
-/// the pick-ups; the levels of the mixer; and friction, which then counts as measured. Throws core::UsageError for a transducer or a
-/// pick-up that the rig does not have, or a transducer that would be left without a band.
+/// the pick-ups; the levels of the mixer; and friction, which then counts as measured. Throws
+/// core::UsageError for a transducer or a pick-up that the rig does not have, or a transducer that would be
+/// left without a band.
 Rig applied(const Calibration& calibration, Rig rig);
 
 /// newest_for() returns the newest file named `RIG.calibration-YYYY-MM-DD.toml` beside the rig file; "" if

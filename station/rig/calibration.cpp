@@ -93,7 +93,8 @@ std::vector<core::Phrase> problems(const Calibration& calibration, const std::st
   if (left < 0) found.push_back(phrase("refusal.expired", {plain(calibration.made_on), plain(-left)}));
   if (left > calibration.valid_days) found.push_back(phrase("refusal.future", {plain(calibration.made_on)}));
   if (calibration.transducers.empty() && !calibration.panel && !calibration.boundary &&
-      calibration.pick_ups.empty() && !calibration.forces)
+      !calibration.friction && calibration.sound.empty() && calibration.pick_ups.empty() &&
+      !calibration.forces)
     found.push_back(phrase("refusal.empty"));
   return found;
 }

@@ -227,7 +227,8 @@ std::string boundary_toml(const BoundaryFit& fit) {
   for (const auto& p : fit.surface.parameters) {
     out += fmt::format("\n[[boundary.parameter]]\nname = {}\nchange = {}\nsd = {}\nstated_sd = {}\n",
                        quoted(p.name), exact(p.change), exact(p.sd), exact(p.stated_sd));
-    if (!p.correlations.empty()) out += numbers_line("correlations", p.correlations, [](double r) { return r; });
+    if (!p.correlations.empty())
+      out += numbers_line("correlations", p.correlations, [](double r) { return r; });
   }
   return out;
 }
@@ -239,7 +240,8 @@ std::string transducer_toml(const Calibration::Transducer& transducer) {
                   quoted(transducer.name), exact(fit.low_Hz * 1e-3), exact(fit.high_Hz * 1e-3),
                   exact(fit.residual_dB), exact(fit.residual_rad / kDegree_rad));
   out += numbers_line("frequency_Hz", fit.points, [](const auto& p) { return p.frequency_Hz; });
-  out += numbers_line("um_per_full_scale", fit.points, [](const auto& p) { return p.m_per_full_scale * 1e6; });
+  out +=
+      numbers_line("um_per_full_scale", fit.points, [](const auto& p) { return p.m_per_full_scale * 1e6; });
   return out + numbers_line("phase_deg", fit.points, [](const auto& p) { return p.phase_rad / kDegree_rad; });
 }
 
@@ -303,8 +305,7 @@ Calibration::Transducer read_transducer(const core::Value& table, core::Findings
   return transducer;
 }
 
-SurfaceFit::Parameter read_parameter(const core::Value& table, std::size_t before,
-                                          core::Findings& findings) {
+SurfaceFit::Parameter read_parameter(const core::Value& table, std::size_t before, core::Findings& findings) {
   core::TableReader reader(table, core::titled("boundary.parameter", table), findings);
   SurfaceFit::Parameter parameter;
   parameter.name = reader.string("name", phrase("write the name of a parameter of the surface"));
@@ -400,9 +401,9 @@ std::string to_toml(const Calibration& c) {
   if (c.boundary) out += boundary_toml(*c.boundary);
   if (c.friction) {
     out += "\n[friction]\n" + numbers_line("displacement_um", c.friction->points,
-                                      [](const auto& p) { return p.displacement_m * 1e6; });
-    out +=
-        numbers_line("relative_friction", c.friction->points, [](const auto& p) { return p.relative_friction; });
+                                           [](const auto& p) { return p.displacement_m * 1e6; });
+    out += numbers_line("relative_friction", c.friction->points,
+                        [](const auto& p) { return p.relative_friction; });
     out += fmt::format("residual = {}\n", exact(c.friction->residual));
   }
   if (!c.sound.empty()) {
@@ -414,12 +415,16 @@ std::string to_toml(const Calibration& c) {
   for (const auto& transducer : c.transducers) out += transducer_toml(transducer);
   if (c.forces) out += forces_toml(*c.forces);
   for (const auto& pick_up : c.pick_ups) out += pick_up_toml(pick_up);
-  if (!c.mixer.empty()) out += "\n[mixer]                       # levels of the sound card during the measurements\n";
-  for (const auto& [control, values] : c.mixer) out += fmt::format("{} = {}\n", quoted(control), quoted(values));
+  if (!c.mixer.empty())
+    out += "\n[mixer]                       # levels of the sound card during the measurements\n";
+  for (const auto& [control, values] : c.mixer)
+    out += fmt::format("{} = {}\n", quoted(control), quoted(values));
   return out;
 }
 
-Calibration load_calibration(const std::string& path) { return parse_calibration(core::read_text_file(path), path); }
+Calibration load_calibration(const std::string& path) {
+  return parse_calibration(core::read_text_file(path), path);
+}
 
 Calibration parse_calibration(const std::string& source, const std::string& path) {
   const core::Value document = core::parse_toml(source, path);

@@ -10,6 +10,7 @@
 #include "physics/boundary_budget.hpp"
 #include "physics/boundary_fit.hpp"
 #include "station/core/least_squares.hpp"
+#include "station/core/median.hpp"
 #include "station/core/number.hpp"
 #include "station/core/texts.hpp"
 #include "station/core/usage_error.hpp"
@@ -33,17 +34,24 @@ SurfaceFit surface_fit(const physics::BoundaryFit& fit) {
 /// Throws if boundaries contradict each other or the rig, and the fit could not leave out the wrong ones.
 void require_agreement(const physics::BoundaryFit& fit, const std::vector<BoundaryPoint>& points) {
   if (fit.left_out) return;
+  constexpr std::ptrdiff_t most = 10;
+  const auto all = std::count(fit.outliers.begin(), fit.outliers.end(), true);
   std::string named;
+  std::ptrdiff_t count = 0;
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (fit.outliers[i])
+    if (fit.outliers[i] && ++count <= most)
       named += fmt::format("{}{} mm at {} Hz", named.empty() ? "" : ", ",
                            core::number(1e3 * points[i].boundary_m), core::number(points[i].frequency_Hz));
+  if (all > most) named += fmt::format(", ... ({} in all)", all);
   if (!named.empty()) throw core::Refusal(core::phrase("series.contradict", {core::plain(named)}));
 }
 
 }  // namespace
 
 BoundaryFit fit_boundaries(const Rig& rig, const std::string& edge, std::vector<BoundaryPoint> points) {
+  if (points.size() > kMostBoundaries)
+    throw core::Refusal(
+        core::phrase("series.too_many", {core::plain(points.size()), core::plain(kMostBoundaries)}));
   try {
     physics::MapOptions options;
     options.edge = physics::parse_edge(edge);
@@ -183,9 +191,7 @@ std::optional<double> quality_of(const std::vector<Resonance>& resonances) {
   if (resonances.empty()) return std::nullopt;
   std::vector<double> values;
   for (const Resonance& resonance : resonances) values.push_back(resonance.quality_factor);
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+  return core::median(values);
 }
 
 namespace {

@@ -31,9 +31,13 @@ struct BoundaryFit {
   SurfaceFit surface;
 };
 
+/// A person reads a few dozen; with more than this, the fit would run for minutes.
+inline constexpr std::size_t kMostBoundaries = 1000;
+
 /// Fits all parameters of the surface for which the rig file states a standard deviation (see
-/// physics::fit_boundaries()). Throws core::UsageError for points that cannot be used, and for points that
-/// contradict the others or the rig so that no fit can say which of them are wrong; it names them.
+/// physics::fit_boundaries()). Throws core::UsageError for too many points, for points that cannot be used,
+/// and for points that contradict the others or the rig so that no fit can say which of them are wrong; it
+/// names them.
 BoundaryFit fit_boundaries(const Rig& rig, const std::string& edge, std::vector<BoundaryPoint> points);
 
 /// One frequency of a sweep: the drive edge's displacement at full scale and its phase.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "station/core/median.hpp"
+
 namespace turnpoint::rig {
 
 namespace {
@@ -37,9 +39,7 @@ std::optional<Delay> pair_delays(std::vector<std::int64_t> touches_ns, std::vect
   }
   delay.pairs = static_cast<int>(lags_s.size());
   if (delay.pairs < 2) return std::nullopt;
-  std::sort(lags_s.begin(), lags_s.end());
-  const auto half = lags_s.size() / 2;
-  delay.median_s = lags_s.size() % 2 == 1 ? lags_s[half] : 0.5 * (lags_s[half - 1] + lags_s[half]);
+  delay.median_s = core::median(lags_s);
   double mean_s = 0, squares = 0;
   for (const double lag : lags_s) mean_s += lag / delay.pairs;
   for (const double lag : lags_s) squares += (lag - mean_s) * (lag - mean_s);

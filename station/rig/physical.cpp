@@ -94,11 +94,19 @@ physics::Surface surface_of(const Rig& rig) {
   surface.sd.decay_length_m = s.decay_length_sd_m;
   surface.sd.clamp_line_m = s.clamp_line_sd_m;
   surface.sd.temperature_K = s.temperature_sd_K;
+  surface.sd.quality_factor = s.quality_factor_sd;
   surface.expansion_per_K = s.expansion_per_K;
   surface.modulus_per_K = s.modulus_per_K;
   if (!s.fit.parameters.empty()) surface = fitted(std::move(surface), s.fit);
   physics::validate(surface);
   return surface;
+}
+
+Outline outline_of(const Rig& rig) {
+  const auto shape = surface_of(rig);
+  const double length_m = rig.surface.length_m;
+  return {1e3 * length_m, 1e3 * physics::half_width_m(shape, 0), 1e3 * physics::half_width_m(shape, length_m),
+          rig.surface.wide_end == WideEnd::left};
 }
 
 physics::FrictionMap friction_of(const Rig& rig) {

@@ -59,7 +59,8 @@ struct Surface {
   Taper taper;
   /// Standard uncertainties of measured values, from the optional keys `*_sd`; 0 if not given.
   double tension_sd_Pa = 0, thickness_sd_m = 0, half_width_sd_m = 0, slope_sd = 0, density_sd_kg_m3 = 0,
-         modulus_sd_Pa = 0, decay_length_sd_m = 0, clamp_line_sd_m = 0, temperature_sd_K = 0;
+         modulus_sd_Pa = 0, decay_length_sd_m = 0, clamp_line_sd_m = 0, temperature_sd_K = 0,
+         quality_factor_sd = 0;
   /// Relative change of every length, and of Young's modulus, per kelvin; 0 if not known.
   double expansion_per_K = 0, modulus_per_K = 0;
   SurfaceFit fit;  ///< fitted parameters; empty if no calibration has measured boundaries

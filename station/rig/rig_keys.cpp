@@ -74,6 +74,7 @@ Keys surface() {
       number("modulus_sd_GPa", {0, 2000, Ends::closed, "GPa"},
              "standard deviation of `modulus_GPa`, with the uncertainty of Poisson's ratio")
           .by_default("0"),
+      number("quality_factor_sd", {0, 1e6}, "standard deviation of `quality_factor`; in proportion, of a measured one too").by_default("0"),
       number("temperature_sd_K", {0, 100, Ends::closed, "K"},
              "standard deviation of the temperature, around the one for which the other values hold")
           .by_default("0"),

@@ -132,6 +132,10 @@ void read_deviations(core::TableReader& reader, Surface& surface) {
   surface.density_sd_kg_m3 = number("density_sd_kg_m3");
   surface.modulus_sd_Pa = 1e9 * number("modulus_sd_GPa");
   surface.temperature_sd_K = number("temperature_sd_K");
+  surface.quality_factor_sd = number("quality_factor_sd");
+  if (surface.quality_factor_sd > 0 && !std::isfinite(surface.quality_factor))
+    reader.problem("quality_factor_sd", phrase("\"quality_factor\" is inf: the surface is lossless"),
+                   phrase("leave the standard deviation out"));
   const auto* filled = find_material(surface.material);
   surface.expansion_per_K =
       reader.maybe_number("expansion_per_K").value_or(filled ? filled->expansion_per_K : 0);

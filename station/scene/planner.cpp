@@ -36,6 +36,7 @@ namespace {
 constexpr double kMostDrive_m = 1e-3;
 
 constexpr std::size_t kRemembered = 512, kSolutions = 128;
+constexpr double kLevelStep = 0.005;  // ratio of frequencies for which levels are equally uncertain, less 1
 
 /// Returns a text that contains everything in a scene that affects its plan. It is the key of the cache.
 std::string key_of(const Scene& scene) {
@@ -79,6 +80,9 @@ struct Planner::State : ToneDesigner {
   std::map<std::string, Solution> solutions;
   /// one planner per plate theory, used if the rig file leaves the choice of the theory open
   std::map<physics::PlateTheory, Planner> by_theory;
+  /// uncertainty of the level at a tone's last maximum, by the number of steps of the tone's frequency from 1
+  /// Hz
+  std::map<int, std::optional<double>> level_sd_dB;
 
   using ToneDesigner::ToneDesigner;
 
@@ -375,6 +379,22 @@ std::optional<double> Planner::nearest_resonance_Hz(const DrivePlan& plan, doubl
   if (state_->rig.surface.plate_theory == rig::PlateTheory::automatic)
     return by_theory(plan.theory).nearest_resonance_Hz(plan, frequency_Hz);
   return physics::nearest_resonance_Hz(state_->surface, frequency_Hz);
+}
+
+void Planner::add_level_uncertainty(DrivePlan& plan) {
+  if (state_->rig.surface.plate_theory == rig::PlateTheory::automatic)
+    return by_theory(plan.theory).add_level_uncertainty(plan);
+  for (auto& tone : plan.tones) {
+    const int step = static_cast<int>(std::lround(std::log(tone.frequency_Hz) / std::log1p(kLevelStep)));
+    const auto [found, is_new] = state_->level_sd_dB.try_emplace(step);
+    if (is_new) {
+      const double frequency_Hz = std::exp(step * std::log1p(kLevelStep));
+      const auto at_m = physics::tone_info(surface(), frequency_Hz).last_peak_m;
+      const auto level = at_m ? level_of(surface(), frequency_Hz, *at_m, Parts::left_out) : std::nullopt;
+      if (level) found->second = level->total_dB;
+    }
+    tone.level_sd_dB = found->second;
+  }
 }
 
 UnderFinger Planner::under_finger(const DrivePlan& plan) {

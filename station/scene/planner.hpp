@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "physics/boundary_budget.hpp"
 #include "physics/boundary_map.hpp"
 #include "physics/crest.hpp"
 #include "physics/friction.hpp"
@@ -41,6 +42,8 @@ struct DrivenTone {
   /// peak displacement at the tone's last maximum, or the largest peak displacement if there is no maximum
   double displacement_m = 0;
   double gain = 0;
+  /// standard deviation of the level at the last maximum; see level_of(), set by add_level_uncertainty()
+  std::optional<double> level_sd_dB;
 };
 
 /// How this rig presents a scene: the tones, the chosen model with the reason and its error bounds, and the
@@ -91,6 +94,10 @@ struct UnderFinger {
   /// relative friction at `finger_m`: from the vibration without a finger, and from the vibration under the
   /// finger
   double free_friction = 1, friction = 1;
+  /// What the rig's uncertain parameters do to the highest tone's level at `finger_m`, and the 95 % interval
+  /// of the friction under the finger there if the levels of all tones move with it; see level_of().
+  std::optional<physics::LevelBudget> level;
+  double friction_low = 1, friction_high = 1;
   double lowest_friction = 1;  ///< lowest relative friction that the finger meets at any position
   /// for a finger in the zone: mean friction, and rms deviation from this mean
   std::optional<double> zone_friction, residual;
@@ -125,6 +132,10 @@ class Planner {
   /// The resonance that is nearest to one of the plan's frequencies, by the plan's theory. Takes some 20 ms
   /// on a thick plate.
   std::optional<double> nearest_resonance_Hz(const DrivePlan& plan, double frequency_Hz);
+
+  /// Sets `level_sd_dB` of all tones. It is computed at frequencies that are 0.5 % apart, once for each: some
+  /// 15 ms, on a thick plate 30 ms.
+  void add_level_uncertainty(DrivePlan& plan);
 
   /// Computes the plan's scene under a finger. Takes some 100 ms; on a thick plate 1 s per tone.
   UnderFinger under_finger(const DrivePlan& plan);

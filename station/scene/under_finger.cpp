@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <stdexcept>
 
 #include "physics/field.hpp"
 
@@ -39,10 +40,11 @@ Loaded solve(const physics::Surface& surface, const physics::Finger& finger, phy
   return all;
 }
 
-/// Returns the friction under a finger at each position along the surface, averaged over the fingertip. For
-/// each tone, the finger reduces the displacement by the same factor everywhere under its contact.
+/// Returns the friction under a finger at each position along the surface, averaged over the fingertip, if
+/// all displacements are `times` the planned ones. For each tone, the finger reduces the displacement by the
+/// same factor everywhere under its contact.
 std::vector<double> felt(const Loaded& loaded, const physics::FrictionMap& friction, double fingertip_m,
-                         const physics::Finger& finger) {
+                         const physics::Finger& finger, double times = 1) {
   std::vector<double> all;
   for (std::size_t at = 0; at < loaded.x_m.size(); ++at) {
     const double from_m = loaded.x_m[at] - fingertip_m, to_m = loaded.x_m[at] + fingertip_m;
@@ -56,7 +58,7 @@ std::vector<double> felt(const Loaded& loaded, const physics::FrictionMap& frict
       for (std::size_t t = 0; t < loaded.fields.size(); ++t)
         squares += std::norm(loaded.fields[t].v[i] * loaded.loads[t][at].share(finger));
       x_m.push_back(loaded.x_m[i]);
-      values.push_back(friction.relative_friction(std::sqrt(squares)));
+      values.push_back(friction.relative_friction(times * std::sqrt(squares)));
     }
     all.push_back(physics::fingertip_average(x_m, values, fingertip_m)[middle]);
   }
@@ -127,6 +129,17 @@ std::optional<FingerShift> finger_shift(const rig::Rig& rig, double frequency_Hz
   return shift;
 }
 
+std::optional<physics::LevelBudget> level_of(const physics::Surface& surface, double frequency_Hz,
+                                             double at_m, Parts parts) {
+  try {
+    auto level = parts == Parts::wanted ? physics::level_budget(surface, frequency_Hz, at_m)
+                                        : physics::level_uncertainty(surface, frequency_Hz, at_m);
+    if (level.total_dB > 0) return level;
+  } catch (const std::invalid_argument&) {  // a surface that is so far from the planned one cannot exist
+  }
+  return std::nullopt;
+}
+
 UnderFinger finger_figures(const physics::Surface& surface, const physics::FrictionMap& friction,
                            const rig::Rig& rig, physics::Model field_model, const DrivePlan& plan) {
   UnderFinger under;
@@ -153,6 +166,19 @@ UnderFinger finger_figures(const physics::Surface& surface, const physics::Frict
   under.free_friction = nearest(loaded.x_m, free, under.finger_m);
   under.friction = nearest(loaded.x_m, pressed, under.finger_m);
   under.lowest_friction = *std::min_element(pressed.begin(), pressed.end());
+  under.friction_low = under.friction_high = under.friction;
+  if (!plan.tones.empty()) {
+    const auto friction_at = [&](double level_dB) {
+      const auto moved =
+          felt(loaded, friction, rig.friction.fingertip_m, finger, std::pow(10.0, level_dB / 20));
+      return nearest(loaded.x_m, moved, under.finger_m);
+    };
+    under.level = level_of(surface, plan.tones.front().frequency_Hz, under.finger_m, Parts::wanted);
+    if (under.level) {
+      under.friction_low = friction_at(under.level->high_dB);
+      under.friction_high = friction_at(under.level->low_dB);
+    }
+  }
   under.profile_x_m = loaded.x_m, under.profile_friction = pressed;
   if (const auto zone = zone_of(plan.scene, loaded.x_m, pressed)) {
     under.zone_friction = zone->mean;
@@ -174,6 +200,8 @@ std::optional<FingerShares> finger_shares(const rig::Rig& rig, const std::vector
     if (!peak_m) continue;
     const double share = physics::finger_load(surface, frequency_Hz, {*peak_m}, finger)[0].share(finger);
     if (!shares) shares = FingerShares{};
+    if (const auto level = level_of(surface, frequency_Hz, *peak_m, Parts::left_out))
+      shares->level_sd_dB = std::max(shares->level_sd_dB.value_or(0), level->total_dB);
     shares->least = std::min(shares->least, share), shares->most = std::max(shares->most, share);
   }
   return shares;

@@ -27,6 +27,13 @@ struct FingerShift {
 /// peak or a percentage, or if there is no such edge under a finger.
 std::optional<FingerShift> finger_shift(const rig::Rig& rig, double frequency_Hz, const physics::Edge& edge);
 
+/// What the surface's uncertain parameters do to a tone's level at a position of the free surface, with the
+/// part of each of them or without. Empty if no parameter has a standard deviation, or if one is so large
+/// that some surface could not exist.
+enum class Parts { left_out, wanted };
+std::optional<physics::LevelBudget> level_of(const physics::Surface& surface, double frequency_Hz,
+                                             double at_m, Parts parts);
+
 /// Computes the result of Planner::under_finger() for a surface whose plate theory is already chosen.
 UnderFinger finger_figures(const physics::Surface& surface, const physics::FrictionMap& friction,
                            const rig::Rig& rig, physics::Model field_model, const DrivePlan& plan);
@@ -35,6 +42,8 @@ UnderFinger finger_figures(const physics::Surface& surface, const physics::Frict
 /// tone's last maximum along the surface. The two values are the smallest and the largest over the tones.
 struct FingerShares {
   double least = 1, most = 0;
+  /// the larger standard deviation of the level there, from the rig's uncertain parameters; see level_of()
+  std::optional<double> level_sd_dB = {};
 };
 
 /// Returns the fractions of the displacement that remain under a finger, for tones of these frequencies;

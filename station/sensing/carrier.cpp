@@ -140,6 +140,16 @@ constexpr double reference_tolerance = 0.03, quadrature_share = 0.05;
 /// A bridge whose samples are equal for this long is silent. Its carrier is never exactly balanced, and even
 /// the noise of a converter with 16 bits changes the last digit more often.
 constexpr double silent_s = 0.002;
+/// The longest block that a stuck driver is expected to repeat.
+constexpr std::int64_t longest_block_frames = 4096;
+
+/// The longest block whose repetition is looked for. The carrier alone, without any noise, repeats as well,
+/// and must not count. If that leaves no block (0 or less), repetitions are not looked for.
+std::int64_t longest_block(double carrier_Hz, std::int64_t rate_Hz) {
+  const auto rate_mHz = 1000 * rate_Hz;
+  const std::int64_t period = rate_mHz / std::gcd(rate_mHz, std::llround(1000 * carrier_Hz));
+  return std::min(longest_block_frames, period - static_cast<std::int64_t>(silent_s * rate_Hz) - 1);
+}
 
 double pass_Hz(Band band) { return band == Band::force ? 400 : 1000; }
 double stop_Hz(Band band) { return band == Band::force ? 600 : 2000; }
@@ -161,11 +171,6 @@ const BridgeOptions& checked(const BridgeOptions& options) {
 
 }  // namespace
 
-double bridge_rotation_rad(const BridgePoint& without, const BridgePoint& with, std::size_t bridge) {
-  return std::atan2(with.quadrature[bridge] - without.quadrature[bridge],
-                    with.ratio[bridge] - without.ratio[bridge]);
-}
-
 BridgeDemodulator::BridgeDemodulator(const BridgeOptions& options)
     : options_(checked(options)),
       // The first stage may let signals alias, but only to frequencies that the second stage stops.
@@ -180,13 +185,32 @@ BridgeDemodulator::BridgeDemodulator(const BridgeOptions& options)
     cos_[i] = std::cos(options_.rotation_rad[i]);
     sin_[i] = std::sin(options_.rotation_rad[i]);
   }
+  longest_block_ = longest_block(options_.carrier_Hz, options_.rate_Hz);
   silent_until_.fill(std::numeric_limits<std::int64_t>::min());
+  repeated_.assign(bridge_count,
+                   Repeated(static_cast<std::size_t>(silent_s * options_.rate_Hz), longest_block_));
 }
 
 void BridgeDemodulator::check(const CaptureBlock& block) const {
   if (block.rate_Hz != options_.rate_Hz || block.channels != options_.channels)
     throw std::logic_error(fmt::format("captured block of {} channels at {} Hz, expected {} at {} Hz",
                                        block.channels, block.rate_Hz, options_.channels, options_.rate_Hz));
+}
+
+bool Repeated::add(std::int32_t value) noexcept {
+  if (filled_ < kept_.size()) {
+    kept_[filled_++] = value;
+    age_ = 0, equal_ = 0;
+    return false;
+  }
+  if (++age_ > longest_ + static_cast<std::int64_t>(kept_.size())) {
+    reset();
+    return false;
+  }
+  equal_ = value == kept_[equal_] ? equal_ + 1 : value == kept_[0] ? 1 : 0;
+  if (equal_ < kept_.size()) return false;
+  age_ = 0, equal_ = 0;
+  return true;
 }
 
 bool BridgeDemodulator::add(const std::int32_t* frames, std::int64_t count) noexcept {
@@ -208,10 +232,13 @@ bool BridgeDemodulator::add(const std::int32_t* frames, std::int64_t count) noex
 void BridgeDemodulator::watch(const std::int32_t* frames, std::int64_t count) noexcept {
   const auto enough = static_cast<std::int64_t>(silent_s * options_.rate_Hz);
   for (std::size_t i = 0; i < bridge_count; ++i) {
-    if (frames == nullptr) unchanged_[i].reset();
-    for (std::int64_t n = 0; frames != nullptr && n < count; ++n)
-      if (unchanged_[i].add(frames[n * options_.channels + options_.bridges[i]]) >= enough)
-        silent_until_[i] = next_frame_ + n;
+    if (frames == nullptr) unchanged_[i].reset(), repeated_[i].reset();
+    for (std::int64_t n = 0; frames != nullptr && n < count; ++n) {
+      const auto value = frames[n * options_.channels + options_.bridges[i]];
+      if (unchanged_[i].add(value) >= enough) silent_until_[i] = next_frame_ + n;
+      // The next row that comes again ends at most one block later.
+      if (longest_block_ > 0 && repeated_[i].add(value)) silent_until_[i] = next_frame_ + n + longest_block_;
+    }
   }
 }
 

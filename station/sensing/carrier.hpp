@@ -109,7 +109,7 @@ struct BridgeOptions {
   double reference_amplitude = 0.5;  ///< amplitude of the reference signal at calibration; full scale is 1
   /// Ratio of bridge signal to reference signal at the rated load of each cell.
   std::array<double, bridge_count> full_scale{0.4, 0.4, 0.4};
-  /// Phase of each bridge's resistive part against the reference, from bridge_rotation_rad().
+  /// Phase of each bridge's resistive part against the reference.
   std::array<double, bridge_count> rotation_rad{};
 };
 
@@ -122,8 +122,8 @@ enum class WireFault {
   reference,   ///< amplitude of the reference more than 3 % off; the ratios are then NaN
   quadrature,  ///< quadrature of a bridge above 5 % of full scale: a wire or a shield is off
   overload,    ///< a bridge above 1.5 times full scale: a wire is off, or the cell is overloaded
-  silent,      ///< samples of a bridge do not change at all, not even by noise: its amplifier or converter is
-               ///< dead
+  silent,      ///< samples of a bridge have no noise: they do not change at all, or the same ones come again
+               ///< and again; its amplifier or converter is dead, or its driver is stuck
 };
 
 /// Counts how often a value has been the same in a row.
@@ -142,6 +142,23 @@ class Unchanged {
   std::int64_t count_ = 0;
 };
 
+/// Finds samples that come again: a converter or driver that is stuck repeats the last block that it has
+/// read. With noise in them, so many samples in a row are never the same twice.
+class Repeated {
+ public:
+  /// `enough` samples in a row that are equal to earlier ones count as a repetition, if they come again
+  /// within `longest` samples.
+  Repeated(std::size_t enough, std::int64_t longest) : kept_(enough), longest_(longest) {}
+  /// Returns true if this sample is the last of a row that came before.
+  bool add(std::int32_t value) noexcept;
+  void reset() noexcept { filled_ = 0; }
+
+ private:
+  std::vector<std::int32_t> kept_;  ///< the samples that are expected again
+  std::int64_t longest_, age_ = 0;
+  std::size_t filled_ = 0, equal_ = 0;
+};
+
 /// The signals of the three bridges, divided by the reference signal, at one point in time.
 struct BridgePoint {
   std::int64_t index = 0;  ///< point k is exactly at playback frame k * rate / points_per_second()
@@ -152,10 +169,6 @@ struct BridgePoint {
   WireFault fault = WireFault::none;
   std::size_t bridge = 0;  ///< the bridge with the fault `quadrature`, `overload` or `silent`
 };
-
-/// Computes the phase between the resistive part of a bridge and the reference from two points: one with a
-/// load and one without. A constant capacitive part cancels.
-double bridge_rotation_rad(const BridgePoint& without, const BridgePoint& with, std::size_t bridge);
 
 /// Demodulates the bridges with the phase of the played carrier, divides them by the reference, and reduces
 /// the result to points_per_second(). The division cancels gain and drift of converters, buffer and
@@ -201,6 +214,8 @@ class BridgeDemodulator {
   std::int64_t next_frame_ = 0;
   bool started_ = false;
   std::array<Unchanged, bridge_count> unchanged_;
+  std::int64_t longest_block_ = 0;  ///< longest block whose repetition is looked for, in frames
+  std::vector<Repeated> repeated_;
   std::array<std::int64_t, bridge_count> silent_until_;  ///< last frame at which the bridge was silent
   BridgePoint point_;
 };

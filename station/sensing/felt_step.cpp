@@ -20,10 +20,13 @@ constexpr double certain_rise = 2;
 // The final fit uses only the bins within `reach_widths` widths of the step, or within `least_reach_mm` if
 // that is farther. Still farther away, friction changes again, because the vibration has nodes.
 constexpr double least_reach_mm = 20, reach_widths = 2.5;
+// A bin whose error the fit follows by more than this counts as if it were this much.
+constexpr double most_followed = 0.9;
 constexpr double narrowest_mm = 0.5, widest_mm = 17;
 
 struct Bin {
   double position_mm, friction;
+  double se = 0;  ///< standard error of the friction, from the scatter of the strokes
 };
 
 /// The model: friction = below + rise * Phi((x - place) / width), where x is the position and Phi is the
@@ -35,6 +38,11 @@ struct Step {
   double z(double x) const { return (x - place_mm) / width_mm; }
   double share(double x) const { return 0.5 * std::erfc(-z(x) / std::numbers::sqrt2); }
   double miss(const Bin& bin) const { return bin.friction - below - rise * share(bin.position_mm); }
+  double slope(double x) const {
+    return rise * std::exp(-0.5 * z(x) * z(x)) / (width_mm * std::sqrt(2 * std::numbers::pi));
+  }
+  /// derivatives with respect to place, logarithm of width, `below` and `rise`
+  Eigen::Vector4d derivatives(double x) const { return {-slope(x), -slope(x) * (x - place_mm), 1, share(x)}; }
 };
 
 double square_sum(const Step& step, const std::vector<Bin>& bins) {
@@ -83,6 +91,11 @@ double soft_l1(const Step& step, const std::vector<Bin>& bins, double scale) {
   return sum;
 }
 
+/// The weight of a bin in the soft-L1 loss.
+double weight_of(const Step& step, const Bin& bin, double scale) {
+  return 1 / std::sqrt(1 + std::pow(step.miss(bin) / scale, 2));
+}
+
 /// Minimises the soft-L1 loss by Gauss-Newton steps with reweighting and Levenberg damping.
 Step refine(Step step, const std::vector<Bin>& bins, double scale) {
   double loss = soft_l1(step, bins, scale), damping = 1e-3;
@@ -90,15 +103,10 @@ Step refine(Step step, const std::vector<Bin>& bins, double scale) {
     Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
     Eigen::Vector4d right = Eigen::Vector4d::Zero();
     for (const Bin& bin : bins) {
-      const double share = step.share(bin.position_mm), miss = step.miss(bin);
-      const double z = step.z(bin.position_mm);
-      const double slope =
-          step.rise * std::exp(-0.5 * z * z) / (step.width_mm * std::sqrt(2 * std::numbers::pi));
-      // derivatives with respect to place, logarithm of width, `below` and `rise`
-      const Eigen::Vector4d by(-slope, -slope * (bin.position_mm - step.place_mm), 1, share);
-      const double weight = 1 / std::sqrt(1 + std::pow(miss / scale, 2));
+      const auto by = step.derivatives(bin.position_mm);
+      const double weight = weight_of(step, bin, scale);
       normal += weight * by * by.transpose();
-      right += weight * miss * by;
+      right += weight * step.miss(bin) * by;
     }
     normal.diagonal() *= 1 + damping;
     normal.diagonal().array() += 1e-12;
@@ -139,11 +147,41 @@ double crossing_mm(const Step& step, std::optional<double> level) {
 }
 
 std::vector<Bin> usable(const FrictionProfile& profile, int direction) {
-  const auto mean = profile.mean(direction).friction;
+  const auto mean = profile.mean(direction);
   std::vector<Bin> bins;
-  for (std::size_t i = 0; i < mean.size(); ++i)
-    if (!std::isnan(mean[i])) bins.push_back({profile.bins.centre_mm(i), mean[i]});
+  for (std::size_t i = 0; i < mean.friction.size(); ++i)
+    if (!std::isnan(mean.friction[i]))
+      bins.push_back({profile.bins.centre_mm(i), mean.friction[i], std::isnan(mean.se[i]) ? 0 : mean.se[i]});
   return bins;
+}
+
+/// Returns the variance of the boundary that comes from the shape of the step, which all strokes share: the
+/// variance by what the fit misses in each bin (the sandwich formula HC2 of MacKinnon and White 1985), less
+/// the part that the scatter of the strokes explains. It may be negative by chance.
+double shape_variance(const Step& step, const std::vector<Bin>& bins, double felt_mm, double scale,
+                      std::optional<double> level) {
+  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+  for (const Bin& bin : bins) {
+    const auto by = step.derivatives(bin.position_mm);
+    normal += weight_of(step, bin, scale) * by * by.transpose();
+  }
+  normal.diagonal().array() += 1e-12;
+  const Eigen::LDLT<Eigen::Matrix4d> solver(normal);
+  // How far the boundary moves with each parameter, so that the fit's friction there keeps its level. The
+  // logarithm of the width does not move a boundary that is half-way up.
+  const double slope = step.slope(felt_mm);
+  Eigen::Vector4d moves(1, 0, 0, 0);
+  if (level) moves = (Eigen::Vector4d(0, 0, *level, *level) - step.derivatives(felt_mm)) / slope;
+  const Eigen::Vector4d by_parameters = solver.solve(moves);
+  double variance = 0;
+  for (const Bin& bin : bins) {
+    const auto by = step.derivatives(bin.position_mm);
+    const double w = weight_of(step, bin, scale), moved_by = w * by.dot(by_parameters);
+    // the part of the bin's error that the fit follows, so that it is not in what the fit misses
+    const double followed = std::min(most_followed, w * by.dot(solver.solve(by)));
+    variance += moved_by * moved_by * (std::pow(step.miss(bin), 2) / (1 - followed) - bin.se * bin.se);
+  }
+  return variance;
 }
 
 /// The step fitted to the strokes in one direction, with the sum of squared deviations of its jackknife
@@ -151,7 +189,7 @@ std::vector<Bin> usable(const FrictionProfile& profile, int direction) {
 struct OneWay {
   Step step;
   double felt_mm = 0;
-  double place_squares = 0, rise_squares = 0;
+  double place_squares = 0, rise_squares = 0, shape_variance = 0;
   int strokes = 0;
 };
 
@@ -167,6 +205,7 @@ std::optional<OneWay> one_way(const FrictionProfile& profile, int direction, std
   result.felt_mm = crossing_mm(result.step, level);
   if (!(result.felt_mm > close.front().position_mm && result.felt_mm < close.back().position_mm))
     return std::nullopt;
+  result.shape_variance = shape_variance(result.step, close, result.felt_mm, scale, level);
   std::vector<double> places, rises;
   for (std::size_t i = 0; i < profile.strokes.size(); ++i) {
     if (profile.strokes[i].direction != direction) continue;
@@ -204,7 +243,8 @@ std::optional<FeltStep> felt_step(const FrictionProfile& profile, std::optional<
   FeltStep felt;
   felt.boundary_mm = (up->felt_mm + down->felt_mm) / 2;
   felt.lag_mm = (up->felt_mm - down->felt_mm) / 2;
-  felt.se_mm = se(up->place_squares + down->place_squares);
+  const double by_shape = std::max(0.0, (up->shape_variance + down->shape_variance) / 2);
+  felt.se_mm = std::hypot(se(up->place_squares + down->place_squares), std::sqrt(by_shape));
   felt.half_interval_mm = t * felt.se_mm;
   felt.friction_below = (up->step.below + down->step.below) / 2;
   felt.friction_above = felt.friction_below + rise;

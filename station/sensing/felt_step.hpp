@@ -27,10 +27,15 @@ struct FeltStep {
 /// plates, a boundary at a level from 0.3 to 0.65 is within 0.15 mm of the place where the true mean friction
 /// crosses that level, and at 0.8 within 0.3 mm.
 ///
-/// The standard error comes from leaving out one stroke at a time (jackknife), and assumes the same variance
-/// in both directions. The result is empty with fewer than three strokes, without strokes in both directions,
-/// if a boundary is not inside the bins, if friction does not rise through the level, or if the height of the
-/// step is not clearly larger than its uncertainty.
+/// The standard error has two parts. What differs between strokes comes from leaving out one stroke at a time
+/// (jackknife), and assumes the same variance in both directions. What all strokes share is the shape of the
+/// step, which is not quite that of the fit: what the fit misses in the bins, as far as the strokes do not
+/// explain it by their scatter, counts as an error of each bin. Errors of the calibration of the force cells
+/// are in neither part. deploy/rigs/README.md says how often the interval holds.
+///
+/// The result is empty with fewer than three strokes, without strokes in both directions, if a boundary is
+/// not inside the bins, if friction does not rise through the level, or if the height of the step is not
+/// clearly larger than its uncertainty.
 std::optional<FeltStep> felt_step(const FrictionProfile& profile, std::optional<double> level = {});
 
 }  // namespace turnpoint::sensing

@@ -27,9 +27,9 @@ struct IntervalPlan {
 /// the envelope of a lock-in, and so does the offset (the ramp at the end). The capture may arrive in blocks
 /// of any size. For an ordinary thread; not thread-safe.
 ///
-/// Not measured: the ramps, the residual in a glide, masking noise and markers. Tones of equal frequency on
-/// several output channels are measured as one. If tones are less than about 10 Hz apart, the interval stays
-/// unproven.
+/// Not measured: the ramps and the 5 ms after each, in which the plate settles; the residual in a glide,
+/// masking noise and markers. Tones of equal frequency on several output channels are measured as one. If
+/// tones are less than about 10 Hz apart, the interval stays unproven.
 class IntervalProof {
  public:
   /// Throws std::logic_error if there is no pick-up, or if a pick-up's channel is not captured.

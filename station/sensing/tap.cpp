@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "station/core/median.hpp"
 #include "station/sensing/products.hpp"
 
 namespace turnpoint::sensing {
@@ -16,12 +17,6 @@ namespace {
 constexpr double kAfterTap_s = 0.01, kRings_s = 0.2, kTapStandsOut = 20;
 constexpr double kLowestRinging_Hz = 10, kHighestRinging = 0.4, kRingingStep_Hz = 0.25;
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 std::optional<double> ringing_Hz(std::span<const double> signal, double rate_Hz) {
@@ -29,10 +24,10 @@ std::optional<double> ringing_Hz(std::span<const double> signal, double rate_Hz)
     return static_cast<std::size_t>(std::lround(seconds * rate_Hz));
   };
   if (signal.size() < points(kAfterTap_s + kRings_s)) return std::nullopt;
-  const double rest = median_of({signal.begin(), signal.end()});
+  const double rest = core::median({signal.begin(), signal.end()});
   std::vector<double> deflections;
   for (const double value : signal) deflections.push_back(std::abs(value - rest));
-  const double noise = median_of(deflections);
+  const double noise = core::median(deflections);
   const auto peak = static_cast<std::size_t>(std::max_element(deflections.begin(), deflections.end()) -
                                              deflections.begin());
   const auto first = peak + points(kAfterTap_s);

@@ -13,43 +13,27 @@ static_assert(2e9 * rig::longest_period_s <= static_cast<double>(io::Guard::Conf
               "the guard must wait for at least two of the longest periods that a rig may have");
 
 io::ButtonsHandlers handlers_for(Inputs& inputs) {
-  const auto stamped = [](std::int64_t time_ns, InputKind kind) {
-    Input input;
-    input.time_ns = time_ns;
-    input.kind = kind;
-    input.quality = TimeQuality::kernel;
-    return input;
-  };
+  constexpr auto kernel = TimeQuality::kernel;
   io::ButtonsHandlers handlers;
-  handlers.press = [&inputs, stamped](const io::Press& press) {
-    Input input = stamped(press.time_ns, InputKind::button);
-    input.value = press.button;
-    inputs.push(std::move(input));
+  handlers.press = [&inputs](const io::Press& press) {
+    inputs.push({press.time_ns, input::Button{press.button}, kernel});
   };
-  handlers.contact = [&inputs, stamped](const io::Contact& contact) {
-    Input input = stamped(contact.time_ns, InputKind::contact);
-    input.value = contact.on ? 1 : 0;
-    input.number = contact.position.value_or(-1);
-    inputs.push(std::move(input));
+  handlers.contact = [&inputs](const io::Contact& contact) {
+    inputs.push({contact.time_ns, input::Contact{contact.on, contact.position}, kernel});
   };
-  handlers.glitch = [&inputs, stamped](const io::Glitch& glitch) {
-    Input input = stamped(glitch.time_ns, InputKind::glitch);
-    input.text = fmt::format("{}: {} edges within {:.3f} ms", glitch.line, glitch.edges,
-                             1e-6 * static_cast<double>(glitch.length_ns));
-    if (glitch.untold > 0)
-      input.text += fmt::format("; {} earlier glitches were not reported", glitch.untold);
-    inputs.push(std::move(input));
+  handlers.glitch = [&inputs](const io::Glitch& glitch) {
+    auto what = fmt::format("{}: {} edges within {:.3f} ms", glitch.line, glitch.edges,
+                            1e-6 * static_cast<double>(glitch.length_ns));
+    if (glitch.untold > 0) what += fmt::format("; {} earlier glitches were not reported", glitch.untold);
+    inputs.push({glitch.time_ns, input::Glitch{std::move(what)}, kernel});
   };
-  handlers.fault = [&inputs, stamped](const io::ButtonsFault& fault) {
-    Input input = stamped(fault.time_ns, InputKind::fault);
-    if (fault.kind == io::ButtonsFault::Kind::gone) input.fault = FaultKind::lines_gone;
-    input.text = "panel: " + fault.what;
-    inputs.push(std::move(input));
+  handlers.fault = [&inputs](const io::ButtonsFault& fault) {
+    const bool gone = fault.kind == io::ButtonsFault::Kind::gone;
+    inputs.push({fault.time_ns,
+                 Fault{gone ? FaultKind::lines_gone : FaultKind::other, "panel: " + fault.what}, kernel});
   };
-  handlers.back = [&inputs, stamped](std::int64_t time_ns) {
-    Input input = stamped(time_ns, InputKind::notice);
-    input.text = "panel: the lost device is connected again";
-    inputs.push(std::move(input));
+  handlers.back = [&inputs](std::int64_t time_ns) {
+    inputs.push({time_ns, input::Notice{"panel: the lost device is connected again"}, kernel});
   };
   return handlers;
 }
@@ -60,11 +44,7 @@ Devices open_devices(const rig::Rig& rig, Inputs& inputs) {
   if (rig.trigger_lines_uri) devices.triggers = io::open_trigger_lines(*rig.trigger_lines_uri);
   if (rig.sync && !rig.sync->channel) {
     const auto pulse = [&inputs](std::int64_t time_ns) {
-      Input input;
-      input.time_ns = time_ns;
-      input.kind = InputKind::sync;
-      input.quality = TimeQuality::kernel;
-      inputs.push(std::move(input));
+      inputs.push({time_ns, input::Sync{}, TimeQuality::kernel});
     };
     devices.sync = io::open_sync_line(rig.sync->uri, pulse, handlers_for(inputs));
   }

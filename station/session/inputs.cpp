@@ -18,46 +18,41 @@ const char* name(TimeQuality quality) {
   return "";
 }
 
-std::optional<trial::Event> event_of(const Input& input) {
-  using trial::EventKind;
-  switch (input.kind) {
-    case InputKind::answer:
-      return trial::Event{input.time_ns, EventKind::answer, input.value};
-    case InputKind::touch_down:
-      return trial::Event{input.time_ns, EventKind::touch, 0};
-    case InputKind::contact:
-      return trial::Event{input.time_ns, EventKind::contact, input.value};
-    case InputKind::xrun:
-      return trial::Event{input.time_ns, EventKind::xrun, input.value};
-    case InputKind::heard:
-      return trial::Event{input.time_ns, EventKind::heard, input.value};
-    case InputKind::measured:
-      if (!input.measured || input.measured->verdict < core::Proof::refused) break;
-      return trial::Event{input.time_ns, EventKind::refuted, input.value};
-    case InputKind::fault:
-      return trial::Event{input.time_ns, EventKind::fault, 0};
-    case InputKind::stop:
-    case InputKind::pause:
-    case InputKind::failure:
-    case InputKind::repeat:
-      return trial::Event{input.time_ns, EventKind::abort, 0};
-    case InputKind::disarm:
-      return trial::Event{input.time_ns, EventKind::fault, 0};
-    case InputKind::next:
-    case InputKind::back:
-    case InputKind::value:
-    case InputKind::slider:
-    case InputKind::button:
-    case InputKind::glitch:
-    case InputKind::sync:
-    case InputKind::notice:
-    case InputKind::arm:
-    case InputKind::note:
-    case InputKind::frames_lost:
-    case InputKind::signal_shown:
-      break;
+namespace {
+
+/// Finds the event of the trial machine that an input is.
+struct ToEvent {
+  using Event = std::optional<trial::Event>;
+  using Kind = trial::EventKind;
+  std::int64_t time_ns;
+
+  Event event(Kind kind, int value = 0) const { return trial::Event{time_ns, kind, value}; }
+
+  Event operator()(const input::Answer& answer) const { return event(Kind::answer, answer.index); }
+  Event operator()(const input::Touch&) const { return event(Kind::touch); }
+  Event operator()(const input::Contact& contact) const { return event(Kind::contact, contact.on ? 1 : 0); }
+  Event operator()(const input::Xrun& xrun) const { return event(Kind::xrun, xrun.in_stimulus ? 1 : 0); }
+  Event operator()(const input::Heard& heard) const { return event(Kind::heard, heard.interval); }
+  Event operator()(const input::Measured& measured) const {
+    if (measured.result->verdict < core::Proof::refused) return std::nullopt;
+    return event(Kind::refuted, measured.interval);
   }
-  return std::nullopt;
+  Event operator()(const input::Fault&) const { return event(Kind::fault); }
+  Event operator()(const input::Disarm&) const { return event(Kind::fault); }
+  Event operator()(const input::Stop&) const { return event(Kind::abort); }
+  Event operator()(const input::Pause&) const { return event(Kind::abort); }
+  Event operator()(const input::Failure&) const { return event(Kind::abort); }
+  Event operator()(const input::Repeat&) const { return event(Kind::abort); }
+  template <class Other>
+  Event operator()(const Other&) const {
+    return std::nullopt;
+  }
+};
+
+}  // namespace
+
+std::optional<trial::Event> event_of(const Input& input) {
+  return std::visit(ToEvent{input.time_ns}, input.content);
 }
 
 void Inputs::push(Input input) {
@@ -68,24 +63,6 @@ void Inputs::push(Input input) {
     queue_.insert(later, std::move(input));
   }
   arrived_.notify_one();
-}
-
-void Inputs::push(InputKind kind, std::int64_t time_ns, std::string text, int value) {
-  Input input;
-  input.time_ns = time_ns;
-  input.kind = kind;
-  input.value = value;
-  input.text = std::move(text);
-  push(std::move(input));
-}
-
-void Inputs::push_fault(std::int64_t time_ns, FaultKind kind, std::string detail) {
-  Input input;
-  input.time_ns = time_ns;
-  input.kind = InputKind::fault;
-  input.fault = kind;
-  input.text = std::move(detail);
-  push(std::move(input));
 }
 
 std::optional<Input> Inputs::wait_until(std::int64_t deadline_ns) {

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "station/core/fault.hpp"
 #include "station/sensing/interval_result.hpp"
@@ -18,42 +19,87 @@ namespace turnpoint::session {
 using core::Fault;
 using core::FaultKind;
 
-enum class InputKind {
-  answer,      ///< value = index of the chosen answer
-  value,       ///< number = the number that was typed, or marked on a line, as the answer
-  next,        ///< Continue or Done on a page
-  back,        ///< Back on a question or an explanation
-  slider,      ///< number = the slider's value
-  touch_down,  ///< any touch on the panel, on an answer or beside it; only logged
-  button,      ///< value = index of the response button, in the order of the rig's URI
-  /// value 1: a finger came onto the surface, 0: it was lifted; number: position of the finger along the
-  /// surface, 0 to 1, or below 0 if unknown
-  contact,
-  /// the participant, the operator, or the program named in `text` wants to stop the session; completed
-  /// trials are kept
-  stop,
-  pause,  ///< the participant or the operator wants a pause
-  xrun,   ///< the drive lost frames; value 1: during the last stimulus, 0: in silence
-  heard,  ///< value = index of an interval that has been played completely; never logged
-  /// the pick-ups have measured the interval with the index `value`; the result is in `measured`. Comes
-  /// before `heard` of this interval. With the last interval, `forces` says what the force cells measured in
-  /// the trial. Either may be null.
-  measured,
-  /// drive, amplifier or panel has a fault: `fault` is its kind, `text` the detail; the trial is void
-  fault,
-  failure,      ///< the session cannot continue; `text` says what happened
-  glitch,       ///< interference on the button or contact line named in `text`; only logged
-  sync,         ///< a pulse from another device; `text` gives its frame; only logged
-  notice,       ///< `text` says what happened; only logged
-  arm,          ///< the operator clears a latched fault of the amplifier and arms it
-  disarm,       ///< the operator switches the amplifier off; it stays off until it is armed again
-  repeat,       ///< the operator declares the current trial void; it is presented again
-  note,         ///< the operator writes an annotation of the session; `text` is stored
-  frames_lost,  ///< value = how many frames the screen was late in the previous trial
-  /// the frame with a flash (a response signal) was handed to the screen at time_ns; number = how many
-  /// seconds after the time at which the flash was due
-  signal_shown,
+/// What can happen to a session. Where `by`, `what`, `result` or `detail` may be empty, the log says 0.
+namespace input {
+
+struct Answer {
+  int index = 0;  ///< index of the chosen answer, or of the example of an explanation
 };
+struct Value {
+  double number = 0;  ///< the number that was typed, or marked on a line, as the answer
+};
+struct Next {};  ///< Continue or Done on a page
+struct Back {};  ///< Back on a question or an explanation
+struct Slider {
+  double value = 0;
+};
+struct Touch {};  ///< any touch on the panel, on an answer or beside it; only logged
+struct Button {
+  int index = 0;  ///< index of the response button, in the order of the rig's URI
+};
+struct Contact {
+  bool on = false;                 ///< true: a finger came onto the surface; false: it was lifted
+  std::optional<double> position;  ///< position of the finger along the surface, 0 to 1, if it is known
+};
+/// The participant, the operator (`by` is ""), or the program named in `by` wants to stop the session;
+/// completed trials are kept.
+struct Stop {
+  std::string by = {};
+};
+struct Pause {};  ///< the participant or the operator wants a pause
+/// The drive lost frames.
+struct Xrun {
+  bool in_stimulus = false;  ///< during the last stimulus; otherwise in silence
+  std::string what;
+};
+struct Heard {
+  int interval = 0;  ///< index of an interval that has been played completely; never logged
+};
+/// The pick-ups have measured an interval. Comes before `Heard` of this interval.
+struct Measured {
+  int interval = 0;
+  std::shared_ptr<const sensing::IntervalResult> result;  ///< never null
+  /// with the last interval: what the force cells measured in the trial; null without force cells
+  std::shared_ptr<const sensing::TrialForces> forces;
+};
+using core::Fault;  ///< drive, amplifier or panel has a fault; the trial is void
+struct Failure {
+  std::string what;  ///< why the session cannot continue
+};
+struct Glitch {
+  std::string what;  ///< interference on the button or contact line; only logged
+};
+struct Sync {
+  std::optional<std::int64_t> frame;  ///< playback frame of another device's pulse; only logged
+};
+struct Notice {
+  std::string what;  ///< what happened; only logged
+};
+/// The operator clears a latched fault of the amplifier and arms it.
+struct Arm {
+  std::string result = {};  ///< set when the command has been carried out
+};
+/// The operator switches the amplifier off; it stays off until it is armed again.
+struct Disarm {
+  std::string result = {};  ///< set when the command has been carried out
+};
+struct Repeat {};  ///< the operator declares the current trial void; it is presented again
+struct Note {
+  std::string text;  ///< the operator's annotation of the session, which is stored
+};
+struct FramesLost {
+  int frames = 0;  ///< how many frames the screen was late in the previous trial
+};
+/// The frame with a flash (a response signal) was handed to the screen.
+struct SignalShown {
+  double late_s = 0;  ///< time since the flash was due
+};
+
+using Any = std::variant<Next, Answer, Value, Back, Slider, Touch, Button, Contact, Stop, Pause, Xrun, Heard,
+                         Measured, Fault, Failure, Glitch, Sync, Notice, Arm, Disarm, Repeat, Note,
+                         FramesLost, SignalShown>;
+
+}  // namespace input
 
 /// Where the time stamp comes from: the kernel, a toolkit, or a simulated observer.
 enum class TimeQuality { kernel, toolkit, simulated };
@@ -61,14 +107,18 @@ const char* name(TimeQuality quality);
 
 struct Input {
   std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC in ns (virtual in a simulated session)
-  InputKind kind = InputKind::next;
-  int value = 0;
-  double number = 0;
-  std::string text;
-  FaultKind fault = FaultKind::other;
+  input::Any content;
   TimeQuality quality = TimeQuality::toolkit;
-  std::shared_ptr<const sensing::IntervalResult> measured;
-  std::shared_ptr<const sensing::TrialForces> forces;
+
+  template <class Content>
+  bool is() const {
+    return std::holds_alternative<Content>(content);
+  }
+  /// The content if it is of this type; otherwise null.
+  template <class Content>
+  const Content* as() const {
+    return std::get_if<Content>(&content);
+  }
 };
 
 /// Converts the input to an event of the trial machine; empty if the machine does not need it.
@@ -79,8 +129,6 @@ std::optional<trial::Event> event_of(const Input& input);
 class Inputs {
  public:
   void push(Input input);
-  void push(InputKind kind, std::int64_t time_ns, std::string text, int value = 0);
-  void push_fault(std::int64_t time_ns, FaultKind kind, std::string detail);
   /// Waits for an input and returns the one with the oldest time stamp. Returns nothing once `deadline_ns`
   /// (CLOCK_MONOTONIC) has passed.
   std::optional<Input> wait_until(std::int64_t deadline_ns);

@@ -16,26 +16,31 @@ constexpr std::int64_t kReads_ns = 1'500'000'000;
 
 /// Returns the answer to store for an item when this input was given.
 std::string answer_of(const protocol::Item& item, const Input& input) {
-  if (input.kind == InputKind::value) return core::exact(input.number);
-  return item.choices.at(static_cast<std::size_t>(input.value)).id;
+  if (const auto* value = input.as<input::Value>()) return core::exact(value->number);
+  return item.choices.at(static_cast<std::size_t>(input.as<input::Answer>()->index)).id;
+}
+
+/// True if the input chooses one of `count` answers or examples.
+bool chooses(const Input& input, std::size_t count) {
+  const auto* answer = input.as<input::Answer>();
+  return answer && answer->index >= 0 && answer->index < static_cast<int>(count);
 }
 
 bool answers_item(const protocol::Item& item, const Input& input) {
-  if (item.value)
-    return input.kind == InputKind::value && input.number >= item.value->low &&
-           input.number <= item.value->high;
-  return input.kind == InputKind::answer && input.value >= 0 &&
-         input.value < static_cast<int>(item.choices.size());
+  const auto* value = input.as<input::Value>();
+  if (item.value) return value && value->number >= item.value->low && value->number <= item.value->high;
+  return chooses(input, item.choices.size());
 }
 
 }  // namespace
 
 Interludes::Interludes(const Setup& setup, const Pages& pages, const trial::Director& director,
-                       OperatorGate& gate, Stage& stage, SimulatedParticipant* participant,
-                       store::SessionLog& log, Player player)
+                       const Scores& scores, OperatorGate& gate, Stage& stage,
+                       SimulatedParticipant* participant, store::SessionLog& log, Player player)
     : setup_(setup),
       pages_(pages),
       director_(director),
+      scores_(scores),
       gate_(gate),
       stage_(stage),
       participant_(participant),
@@ -49,22 +54,6 @@ void Interludes::restore(const Earlier& earlier) {
     standing_.insert(standing_.end(), event->answers.begin(), event->answers.end());
   for (const auto& event : earlier.events)
     if (event.kind == core::kDoneEvent) done_.insert(event.value);
-  for (const auto& block : earlier.blocks)
-    for (const auto& trial : block.trials)
-      score(block.start.block_index, block.start.attempt, block.start.name, trial);
-}
-
-void Interludes::score(int block_index, int attempt, const std::string& block, const core::TrialRow& trial) {
-  const bool missed = trial.outcome == core::Outcome::timeout || trial.outcome == core::Outcome::anticipation;
-  if (trial.type == core::TrialType::warmup ||
-      !(missed ? trial.correct_response.has_value() : trial.correct.has_value()))
-    return;
-  auto& score = scores_[block_index];
-  if (score.attempt != attempt) score = {};
-  score.block = block;
-  score.attempt = attempt;
-  ++score.trials;
-  score.right += !missed && *trial.correct ? 1 : 0;
 }
 
 protocol::Answers Interludes::answers() const {
@@ -74,13 +63,7 @@ protocol::Answers Interludes::answers() const {
       for (const auto& item : interlude.items)
         if (interlude.name == row.questionnaire && item.id == row.item)
           all[interlude.name + "." + item.id] = protocol::answer_value(item, row.answer);
-  std::map<std::string, std::pair<int, int>> sums;
-  for (const auto& [index, score] : scores_) {
-    auto& [right, trials] = sums[score.block];
-    right += score.right, trials += score.trials;
-  }
-  for (const auto& [block, sum] : sums)
-    all[block + ".accuracy"] = static_cast<double>(sum.first) / sum.second;
+  for (const auto& [block, accuracy] : scores_.accuracies()) all[block + ".accuracy"] = accuracy;
   return all;
 }
 
@@ -119,7 +102,7 @@ Interludes::Reply Interludes::reply(const Page& page, const std::function<bool(c
     auto waited = stage_.wait_until(kForever);
     if (!waited) continue;
     // ignore the rig's response buttons, because they answer trials, not questions
-    const bool button = waited->kind == InputKind::button;
+    const bool button = waited->is<input::Button>();
     const auto input = gate_.received(std::move(*waited));
     if (gate_.handle_on_page(page, input) == Flow::stop) return std::nullopt;
     // ignore a press that was made before this page appeared: it was meant for the previous page
@@ -128,13 +111,8 @@ Interludes::Reply Interludes::reply(const Page& page, const std::function<bool(c
   return std::nullopt;
 }
 
-void Interludes::simulate(InputKind kind, int value, double number) {
-  Input input;
-  input.time_ns = stage_.now_ns() + kReads_ns;
-  input.kind = kind;
-  input.value = value;
-  input.number = number;
-  participant_->will(std::move(input), stage_.now_ns());
+void Interludes::simulate(input::Any content) {
+  participant_->will({stage_.now_ns() + kReads_ns, std::move(content)}, stage_.now_ns());
 }
 
 /// Gives the answer that the protocol states for a simulated participant, or a random answer if it states
@@ -149,12 +127,12 @@ void Interludes::simulate_answer(const protocol::Interlude& interlude, std::size
     const auto low = std::ceil(item.value->low * steps - 1e-9),
                high = std::floor(item.value->high * steps + 1e-9);
     const auto drawn = low + static_cast<double>(draws.below(static_cast<std::uint64_t>(high - low) + 1));
-    return simulate(InputKind::value, 0, item.simulated ? std::get<double>(*item.simulated) : drawn / steps);
+    return simulate(input::Value{item.simulated ? std::get<double>(*item.simulated) : drawn / steps});
   }
   auto chosen = static_cast<int>(draws.below(item.choices.size()));
   for (std::size_t i = 0; item.simulated && i < item.choices.size(); ++i)
     if (protocol::answer_value(item, item.choices[i].id) == *item.simulated) chosen = static_cast<int>(i);
-  simulate(InputKind::answer, chosen);
+  simulate(input::Answer{chosen});
 }
 
 void Interludes::keep_answer(const protocol::Interlude& interlude, const std::string& item,
@@ -183,11 +161,10 @@ std::optional<Interludes::Reply> Interludes::ask(const protocol::Interlude& inte
   page.back = back;
   if (participant_) simulate_answer(interlude, index);
   const auto shown_ns = stage_.now_ns();
-  const auto input = reply(page, [&](const Input& one) {
-    return answers_item(item, one) || (back && one.kind == InputKind::back);
-  });
+  const auto input = reply(
+      page, [&](const Input& one) { return answers_item(item, one) || (back && one.is<input::Back>()); });
   if (!input) return std::nullopt;
-  if (input->kind == InputKind::back) return Reply{};
+  if (input->is<input::Back>()) return Reply{};
   keep_answer(interlude, item.id, answer_of(item, *input),
               1e-9 * static_cast<double>(input->time_ns - shown_ns));
   return input;
@@ -232,15 +209,14 @@ Flow Interludes::explain(const protocol::Interlude& interlude) {
     page.back = at > 0;
     // a simulated participant feels each example once
     if (participant_ && played < explanation.examples.size())
-      simulate(InputKind::answer, static_cast<int>(played++));
+      simulate(input::Answer{static_cast<int>(played++)});
     const auto input = reply(page, [&](const Input& one) {
-      return one.kind == InputKind::next || (page.back && one.kind == InputKind::back) ||
-             (one.kind == InputKind::answer && one.value >= 0 &&
-              one.value < static_cast<int>(explanation.examples.size()));
+      return one.is<input::Next>() || (page.back && one.is<input::Back>()) ||
+             chooses(one, explanation.examples.size());
     });
     if (!input) return Flow::stop;
-    if (input->kind == InputKind::answer) {
-      const auto& example = explanation.examples[static_cast<std::size_t>(input->value)];
+    if (const auto* chosen = input->as<input::Answer>()) {
+      const auto& example = explanation.examples[static_cast<std::size_t>(chosen->index)];
       log_.event({stage_.now_ns(), "example",
                   interlude.name + " page " + std::to_string(at + 1) + ": " + example.scene, std::nullopt});
       gate_.keep([&] { log_.keep_events(); });
@@ -248,7 +224,7 @@ Flow Interludes::explain(const protocol::Interlude& interlude) {
       if (player_(example, page) == Flow::stop) return Flow::stop;
       continue;
     }
-    at = input->kind == InputKind::next ? at + 1 : at - 1;
+    at = input->is<input::Next>() ? at + 1 : at - 1;
     played = 0;
   }
   return Flow::go_on;

@@ -10,6 +10,7 @@
 #include "station/protocol/interludes.hpp"
 #include "station/session/operator_gate.hpp"
 #include "station/session/pages.hpp"
+#include "station/session/scores.hpp"
 #include "station/session/stage.hpp"
 #include "station/store/session_log.hpp"
 
@@ -30,28 +31,21 @@ class Interludes {
   using Player = std::function<Flow(const protocol::Example&, Page page)>;
 
   /// All references must outlive this object. `participant` is null if a person takes part.
-  Interludes(const Setup& setup, const Pages& pages, const trial::Director& director, OperatorGate& gate,
-             Stage& stage, SimulatedParticipant* participant, store::SessionLog& log, Player player);
+  Interludes(const Setup& setup, const Pages& pages, const trial::Director& director, const Scores& scores,
+             OperatorGate& gate, Stage& stage, SimulatedParticipant* participant, store::SessionLog& log,
+             Player player);
 
-  /// Restores what was answered and scored before the session was resumed.
+  /// Restores what was answered before the session was resumed.
   void restore(const Earlier& earlier);
 
   /// Runs the interludes before this block, or those after the last block if there is no such block.
   /// Interludes that are already done are skipped.
   Flow before(int block_index);
 
-  /// Adds a trial to the score of its block, as the pass mark of practice counts it: a trial that was not
-  /// answered in time is wrong. Void, warm-up and unscored trials are left out.
-  void score(int block_index, int attempt, const std::string& block, const core::TrialRow& trial);
-
   /// Why the session ends before its blocks are done; "" if it does not.
   const std::string& ended_because() const { return ended_because_; }
 
  private:
-  struct Score {
-    std::string block;
-    int attempt = 0, right = 0, trials = 0;
-  };
   /// What the participant or the operator did on a page; empty if the session stops.
   using Reply = std::optional<Input>;
 
@@ -64,7 +58,7 @@ class Interludes {
   Reply reply(const Page& page, const std::function<bool(const Input&)>& accepts);
   std::optional<Reply> ask(const protocol::Interlude& interlude, std::size_t index, bool back);
   void simulate_answer(const protocol::Interlude& interlude, std::size_t index);
-  void simulate(InputKind kind, int value, double number = 0);
+  void simulate(input::Any content);
   void keep_answer(const protocol::Interlude& interlude, const std::string& item, const std::string& answer,
                    double response_time_s);
   /// The items of this questionnaire that have been answered since the last block, in the order of the
@@ -75,6 +69,7 @@ class Interludes {
   const Setup& setup_;
   const Pages& pages_;
   const trial::Director& director_;
+  const Scores& scores_;
   OperatorGate& gate_;
   Stage& stage_;
   SimulatedParticipant* participant_;
@@ -83,8 +78,7 @@ class Interludes {
   const protocol::Visit visit_;
   const std::vector<protocol::Block> blocks_;
   std::vector<core::AnswerRow> standing_;
-  std::map<int, Score> scores_;  ///< scores of the newest attempt at each block, by the block's index
-  std::set<std::string> done_;   ///< the interludes that are done, named by core::place_name()
+  std::set<std::string> done_;  ///< the interludes that are done, named by core::place_name()
   int occasion_ = 0;
   std::string ended_because_;
 };

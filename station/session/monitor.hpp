@@ -25,8 +25,8 @@ class Monitor {
 
   /// A trial is about to begin, and all its stimuli are decided. For each interval, `plans` holds the plans
   /// of the interval's scenes, exactly as they will be played. The plans are valid only during the call.
-  virtual void trial_begins(const trial::TrialSpec& spec, const protocol::Block& block,
-                            const PlanAhead::Plans& plans) = 0;
+  virtual void trial_begins(const trial::TrialSpec& /*spec*/, const protocol::Block& /*block*/,
+                            const PlanAhead::Plans& /*plans*/) {}
 
   /// In an adjustment, the slider was moved, and the surface now glides to `plan`. `spec` has the slider's
   /// setting among its factors. Called at most once every kGlideEvery_s.
@@ -40,7 +40,7 @@ class Monitor {
   virtual void finger_moved(const std::optional<FingerSeen>& /*finger*/) {}
 
   /// A trial has ended and is stored.
-  virtual void trial_ended(const trial::TrialSpec& spec, const core::TrialRow& row) = 0;
+  virtual void trial_ended(const trial::TrialSpec& /*spec*/, const core::TrialRow& /*row*/) {}
 };
 
 }  // namespace turnpoint::session

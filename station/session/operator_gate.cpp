@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "station/protocol/answers.hpp"
 #include "station/session/rows.hpp"
 #include "station/store/error.hpp"
 
@@ -21,11 +22,9 @@ constexpr std::int64_t kReading_ns = 500'000'000;
 /// answer. Otherwise the left button chooses the first answer, the right button the second, and the third
 /// button the third.
 std::optional<int> answer_of(const std::string& button, const protocol::Task& task) {
-  const auto& choices = task.choices;
-  for (std::size_t i = 0; i < choices.size(); ++i)
-    if (choices[i].id == button) return static_cast<int>(i);
+  if (const auto named = protocol::answer_index(task, button)) return named;
   const int place = button == "left" ? 0 : button == "right" ? 1 : button == "third" ? 2 : -1;
-  return place >= 0 && place < static_cast<int>(choices.size()) ? std::optional(place) : std::nullopt;
+  return place >= 0 && place < protocol::answer_count(task) ? std::optional(place) : std::nullopt;
 }
 
 }  // namespace
@@ -35,51 +34,41 @@ OperatorGate::OperatorGate(const Setup& setup, const Pages& pages, const trial::
     : setup_(setup), pages_(pages), director_(director), stage_(stage), log_(log), display_(display) {}
 
 Input OperatorGate::received(Input input) {
-  if (input.kind == InputKind::arm) {
+  if (auto* arm = std::get_if<input::Arm>(&input.content)) {
     auto refusal = stage_.clear();
     if (!refusal) refusal = stage_.arm();
-    input.text = refusal ? "refused: " + core::describe(*refusal) : "armed";
+    arm->result = refusal ? "refused: " + core::describe(*refusal) : "armed";
   }
-  if (input.kind == InputKind::disarm) {
+  if (auto* disarm = std::get_if<input::Disarm>(&input.content)) {
     stage_.disarm();
-    input.text = "disarmed";
+    disarm->result = "disarmed";
   }
   log(input);
-  if (input.kind == InputKind::note && !input.text.empty()) keep([&] { log_.annotate(input.text); });
-  if (input.kind != InputKind::button) return input;
+  if (const auto* note = input.as<input::Note>(); note && !note->text.empty())
+    keep([&] { log_.annotate(note->text); });
+  const auto* button = input.as<input::Button>();
+  if (!button) return input;
   const auto& names = stage_.buttons();
-  const auto index = static_cast<std::size_t>(input.value);
+  const auto index = static_cast<std::size_t>(button->index);
   const auto answer = setup_.protocol.task.device != protocol::Device::touch && index < names.size()
                           ? answer_of(names[index], setup_.protocol.task)
                           : std::nullopt;
-  input.kind = answer ? InputKind::answer : InputKind::touch_down;
-  input.value = answer.value_or(0);
+  if (answer)
+    input.content = input::Answer{*answer};
+  else
+    input.content = input::Touch{};
   return input;
 }
 
 void OperatorGate::note(const Input& input) {
-  switch (input.kind) {
-    case InputKind::stop:
-      stop_asked_ = true;
-      quitting_ = quitting_ || !input.text.empty();
-      stop_reason_ = input.text.empty() ? core::kStoppedReason : input.text;
-      break;
-    case InputKind::failure:
-      stop_asked_ = true;
-      stop_reason_ = input.text;
-      break;
-    case InputKind::pause:
-      pause_asked_ = true;
-      break;
-    case InputKind::fault:
-      fault_ = Fault{input.fault, input.text};
-      break;
-    case InputKind::disarm:
-      fault_ = Fault{FaultKind::disarmed, ""};
-      break;
-    default:
-      break;
+  if (const auto* stopped = input.as<input::Stop>()) {
+    quitting_ = quitting_ || !stopped->by.empty();
+    stop(stopped->by.empty() ? core::kStoppedReason : stopped->by);
   }
+  if (const auto* failure = input.as<input::Failure>()) stop(failure->what);
+  if (input.is<input::Pause>()) pause_asked_ = true;
+  if (const auto* fault = input.as<Fault>()) fault_ = *fault;
+  if (input.is<input::Disarm>()) fault_ = Fault{FaultKind::disarmed, ""};
 }
 
 void OperatorGate::keep(const std::function<void()>& write) {
@@ -105,12 +94,12 @@ void OperatorGate::keep(const std::function<void()>& write) {
 /// session.
 bool OperatorGate::space_again(const std::string& detail) {
   stage_.close_amplifier();
-  show(pages_.fault(FaultKind::disk_full, detail, director_));
+  show(pages_.fault({FaultKind::disk_full, detail}, director_));
   while (auto input = stage_.wait_until(kForever)) {
     log(*input);
     note(*input);
-    if (input->kind == InputKind::stop || input->kind == InputKind::failure) return false;
-    if (input->kind == InputKind::next) return true;
+    if (input->is<input::Stop>() || input->is<input::Failure>()) return false;
+    if (input->is<input::Next>()) return true;
   }
   return false;
 }
@@ -121,7 +110,7 @@ bool OperatorGate::armed() const {
 }
 
 Flow OperatorGate::until_armed(const Fault& why) {
-  auto page = pages_.fault(why.kind, why.detail, director_);
+  auto page = pages_.fault(why, director_);
   while (!armed()) {
     page.amplifier = audio::name(stage_.amplifier());
     show(page);
@@ -130,8 +119,8 @@ Flow OperatorGate::until_armed(const Fault& why) {
     const auto input = received(std::move(*waited));
     note(input);
     if (stop_asked_) return Flow::stop;
-    if (input.kind == InputKind::fault) page = pages_.fault(input.fault, input.text, director_);
-    if (input.kind == InputKind::arm && !armed()) page.detail = input.text;
+    if (const auto* fault = input.as<Fault>()) page = pages_.fault(*fault, director_);
+    if (const auto* arm = input.as<input::Arm>(); arm && !armed()) page.fault.detail = arm->result;
   }
   fault_.reset();  // the page has shown all faults that occurred meanwhile, so forget them
   return Flow::go_on;
@@ -140,7 +129,7 @@ Flow OperatorGate::until_armed(const Fault& why) {
 Flow OperatorGate::recover() {
   stage_.close_amplifier();
   while (const auto what = std::exchange(fault_, std::nullopt)) {
-    auto page = pages_.fault(what->kind, what->detail, director_);
+    auto page = pages_.fault(*what, director_);
     if (!armed()) {
       if (until_armed(*what) == Flow::stop) return Flow::stop;
       page = pages_.paused(director_);
@@ -154,12 +143,12 @@ Flow OperatorGate::recover() {
 
 std::string OperatorGate::reason_to_continue(const Fault& why) {
   if (!setup_.observer.empty()) return "";
-  show(pages_.fault(why.kind, why.detail, director_));
+  show(pages_.fault(why, director_));
   while (!stop_asked_) {
     auto waited = stage_.wait_until(kForever);
     if (!waited) continue;
     const auto input = received(std::move(*waited));
-    if (input.kind == InputKind::note && !input.text.empty()) return input.text;
+    if (const auto* reason = input.as<input::Note>(); reason && !reason->text.empty()) return reason->text;
     note(input);
   }
   // Clear the request: the caller ends the session with stop() and gives the reason.
@@ -169,19 +158,13 @@ std::string OperatorGate::reason_to_continue(const Fault& why) {
 
 Flow OperatorGate::end_at_limit(const std::string& what) {
   stage_.close_amplifier();
-  Input fault;
-  fault.time_ns = stage_.now_ns();
-  fault.kind = InputKind::fault;
-  fault.fault = FaultKind::limits;
-  fault.text = what;
-  log(fault);
-  show(pages_.fault(FaultKind::limits, what, director_));
+  log({stage_.now_ns(), Fault{FaultKind::limits, what}});
+  show(pages_.fault({FaultKind::limits, what}, director_));
   for (auto over = false; !over;) {
     const auto input = stage_.wait_until(kForever);
     if (!input) continue;
     log(*input);
-    over =
-        input->kind == InputKind::next || input->kind == InputKind::stop || input->kind == InputKind::failure;
+    over = input->is<input::Next>() || input->is<input::Stop>() || input->is<input::Failure>();
   }
   stop(what);
   return Flow::stop;
@@ -225,8 +208,8 @@ Flow OperatorGate::show_and_wait(Page page, double at_least_s) {
       continue;
     }
     // Ignore a press that was made before this page appeared: it was meant for the previous page.
-    if (input.kind == InputKind::next && input.time_ns >= shown_ns) return Flow::go_on;
-    if (buttons_turn && input.kind == InputKind::answer && input.time_ns >= shown_ns + kReading_ns)
+    if (input.is<input::Next>() && input.time_ns >= shown_ns) return Flow::go_on;
+    if (buttons_turn && input.is<input::Answer>() && input.time_ns >= shown_ns + kReading_ns)
       return Flow::go_on;
   }
   return Flow::go_on;
@@ -271,7 +254,7 @@ Flow OperatorGate::pause_if_asked() {
 }
 
 void OperatorGate::log(const Input& input) {
-  if (input.kind != InputKind::heard) log_.event(event_row(input, log_.session().trials));
+  if (!input.is<input::Heard>()) log_.event(event_row(input, log_.session().trials));
 }
 
 }  // namespace turnpoint::session

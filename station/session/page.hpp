@@ -6,6 +6,7 @@
 
 #include "station/core/fault.hpp"
 #include "station/core/texts.hpp"
+#include "station/rig/physical.hpp"
 
 namespace turnpoint::session {
 
@@ -24,10 +25,12 @@ using core::FaultKind;
 
 /// The content of the participant's screen. The session decides what it contains; a display only draws it.
 enum class PageKind {
-  /// the block's text or its speed or accuracy instruction, and a Continue button
+  /// the block's text or its speed or accuracy instruction, and a Continue button; or after the block what
+  /// was
+  /// achieved in it
   instructions,
   cue,  ///< get ready: shows where to slide the finger, and the mark of the question
-  /// free exploration, or interval number `interval` of `intervals`; answers are accepted if `answers_open`
+  /// free exploration, or an interval (`interval`); answers are accepted if `answers_open`
   stimulus,
   pause,     ///< the gap between two intervals, in silence
   response,  ///< the surface is silent; answers can be given
@@ -89,6 +92,18 @@ struct SummaryLine {
   std::string value;
 };
 
+/// For an adjustment: position, limits and step of the slider.
+struct SliderEntry {
+  double setting = 0, low = 0, high = 1, step = 0;
+};
+
+/// Which interval of a trial the page belongs to.
+struct IntervalPlace {
+  int number = 0, of = 0;  ///< number of the current interval, counted from 1, and total number
+  /// what the intervals are called, such as A, B, X; if empty, they are numbered
+  std::vector<std::string> names;
+};
+
 struct Page {
   PageKind kind = PageKind::interval;
   std::string title;  ///< title of the block, or headline of the page
@@ -107,18 +122,12 @@ struct Page {
   /// position of the mark on the surface to which the question refers, measured from the wide end; empty if
   /// there is none
   std::optional<double> mark_mm;
-  double length_mm = 0;  ///< length of the surface, for drawing it
-  double wide_half_width_mm = 0, narrow_half_width_mm = 0;
-  bool wide_end_left = true;
-  /// number of the current interval, counted from 1, and total number of intervals
-  int interval = 0, intervals = 0;
-  /// what the intervals are called, such as A, B, X; if empty, they are numbered
-  std::vector<std::string> interval_names;
+  rig::Outline surface;  ///< without a length on a page that does not draw it
+  IntervalPlace interval;
   /// number of trials done in the session, and in total; the total may be an estimate
   int trials_done = 0, trials_total = 0;
   double remaining_s = 0;  ///< remaining time of a break
-  /// for an adjustment: position, limits and step of the slider
-  double slider = 0, slider_min = 0, slider_max = 1, slider_step = 0;
+  SliderEntry slider;
   ValueEntry value;                  ///< settings of the rating line or the number pad
   std::optional<Guidance> guidance;  ///< bars that guide the finger, if the page has them
   std::string language;
@@ -131,9 +140,8 @@ struct Page {
   std::vector<SummaryLine> summary;  ///< on the end page: summary of the session for the operator
   /// on a page of kind `failed`: set if the session did not begin because it would be too early
   std::optional<EarlySession> early;
-  FaultKind fault = FaultKind::other;
+  core::Fault fault;        ///< on a fault page; on one of kind `failed` only the detail
   std::string safe, to_do;  ///< on a fault page: what is safe and what to do; `text` says what happened
-  std::string detail;       ///< on a fault page: the detail that is also logged; may be ""
 };
 
 /// Draws pages. show() is called on the session thread and must return without waiting for the participant.

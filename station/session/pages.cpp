@@ -1,23 +1,19 @@
 #include "station/session/pages.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <map>
+#include <set>
 
 #include "station/core/number.hpp"
 #include "station/core/texts.hpp"
+#include "station/procedure/procedure.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/interludes.hpp"
 #include "station/scene/planner.hpp"
 
 namespace turnpoint::session {
-
-core::Phrase parameter_name(const std::string& parameter) {
-  static const std::map<std::string, const char*> known{
-      {"threshold", "report.threshold"}, {"pse", "report.pse"},     {"slope", "report.slope"},
-      {"spread", "report.spread"},       {"lapse", "report.lapse"}, {"criterion", "report.criterion"},
-      {"gradient", "report.gradient"},   {"floor", "report.floor"}};
-  const auto found = known.find(parameter);
-  return found == known.end() ? core::plain(parameter) : core::Phrase{found->second, "", {}};
-}
 
 namespace {
 
@@ -66,6 +62,42 @@ std::vector<std::string> interval_names(protocol::TaskKind kind) {
   return {};
 }
 
+/// Keeps the order of a number's parts in a text that is written from right to left.
+std::string isolated(const std::string& number) { return "\u2068" + number + "\u2069"; }
+
+/// A number with the decimal sign of the language, as on the page where numbers are typed.
+std::string written(std::string number, const std::string& language) {
+  static const std::set<std::string> comma{"az", "be", "bg", "bs", "ca", "cs", "da", "de", "el", "es", "et",
+                                           "eu", "fi", "fr", "gl", "hr", "hu", "hy", "id", "is", "it", "ka",
+                                           "kk", "lt", "lv", "mk", "mn", "nb", "nl", "nn", "no", "pl", "pt",
+                                           "ro", "ru", "sk", "sl", "sq", "sr", "sv", "tr", "uk", "uz", "vi"};
+  static const std::set<std::string> point{"de-CH", "de-LI", "es-MX", "es-US"};
+  const auto code = language.substr(0, language.find('-'));
+  const std::string sign = code == "ar" || code == "fa"                        ? "\u066B"
+                           : comma.contains(code) && !point.contains(language) ? ","
+                                                                               : ".";
+  if (const auto at = number.find('.'); at != std::string::npos) number.replace(at, 1, sign);
+  return number;
+}
+
+/// What points are worth, as pages write it.
+std::string amount(double points, const protocol::Payoff& payoff, const std::string& language) {
+  const auto number = fmt::format("{:.{}f}", std::fabs(points * payoff.worth), payoff.decimals);
+  const bool negative = points < 0 && number.find_first_not_of("0.") != std::string::npos;
+  return (negative ? "\u2212" : "") + written(number, language);
+}
+
+std::string in_words(const protocol::Goal& goal, const std::string& language) {
+  std::string words;
+  const auto add = [&](const char* key, double value) {
+    words += (words.empty() ? "" : "\n") +
+             core::say(core::phrase(key, {core::plain(written(core::number(value, 4), language))}), language);
+  };
+  if (goal.accuracy_above) add("goal_right", 100 * *goal.accuracy_above);
+  if (goal.median_time_below_s) add("goal_time", *goal.median_time_below_s);
+  return words;
+}
+
 }  // namespace
 
 Pages::Pages(const Setup& setup) : setup_(setup) {}
@@ -81,12 +113,7 @@ Page Pages::blank(PageKind kind, const protocol::Block* block, const trial::Dire
   page.kind = kind;
   page.language = setup_.language;
   page.run_mode = store::name(setup_.run_mode);
-  const auto& surface = setup_.rig.surface;
-  const auto shape = rig::surface_of(setup_.rig);
-  page.length_mm = 1e3 * surface.length_m;
-  page.wide_half_width_mm = 1e3 * physics::half_width_m(shape, 0);
-  page.narrow_half_width_mm = 1e3 * physics::half_width_m(shape, surface.length_m);
-  page.wide_end_left = surface.wide_end == rig::WideEnd::left;
+  page.surface = rig::outline_of(setup_.rig);
   if (block != nullptr) page.instruction = instruction_of(*block);
   if (director != nullptr) {
     page.trials_done = director->trials_done();
@@ -106,8 +133,71 @@ Page Pages::instructions(const protocol::Block& block, const trial::Director& di
     page.text = core::text(training ? "training_text" : "measuring_text", setup_.language);
     return page;
   }
-  const auto question = text(setup_.protocol.task.question);
+  const auto question = question_in(nullptr);
   page.text += (page.text.empty() ? "" : "\n\n") + question;
+  if (const auto* goal = goal_of(block)) page.text += "\n\n" + in_words(*goal, setup_.language);
+  return page;
+}
+
+/// The question of a trial; without one, an ellipsis stands for the value that it shows.
+std::string Pages::question_in(const trial::TrialSpec* spec) const {
+  const auto& task = setup_.protocol.task;
+  auto question = text(task.question);
+  if (task.question_shows.empty()) return question;
+  std::string value = "\u2026";
+  if (const auto found = spec ? spec->factors.find(task.question_shows) : protocol::Factors::const_iterator();
+      spec && found != spec->factors.end()) {
+    const auto* number = std::get_if<double>(&found->second);
+    value = number ? written(core::number(*number), setup_.language) : std::get<std::string>(found->second);
+  }
+  for (auto at = question.find("%1"); at != std::string::npos; at = question.find("%1", at + value.size()))
+    question.replace(at, 2, value);
+  return question;
+}
+
+/// The goal of a block; null if it has none.
+const protocol::Goal* Pages::goal_of(const protocol::Block& block) const {
+  const auto found = setup_.protocol.instructions.find(instruction_of(block));
+  return found != setup_.protocol.instructions.end() && found->second.goal ? &*found->second.goal : nullptr;
+}
+
+std::string Pages::score_in_words(double points) const {
+  const auto& payoff = *setup_.protocol.payoff;
+  const auto worth = core::plain(amount(points, payoff, setup_.language));
+  if (payoff.text.empty()) return core::say(core::phrase("points", {worth}), setup_.language);
+  return core::say(core::phrase(text(payoff.text), {worth}), setup_.language);
+}
+
+void Pages::add_points(Page& page, double points, std::optional<double> score) const {
+  page.text += "  " + isolated(std::string(points > 0 ? "+" : "") +
+                               amount(points, *setup_.protocol.payoff, setup_.language));
+  if (score) page.text += "\n" + score_in_words(*score);
+}
+
+std::optional<Page> Pages::block_over(const protocol::Block& block, const BlockScore& score, double points,
+                                      const trial::Director& director) const {
+  const auto* goal = goal_of(block);
+  if (block.kind != protocol::BlockKind::trials || score.trials == 0 ||
+      (goal == nullptr && block.feedback != protocol::Feedback::block))
+    return std::nullopt;
+  auto page = blank(PageKind::instructions, &block, &director);
+  page.title = core::text("block_over", setup_.language);
+  page.instruction.clear();
+  page.surface = {};  // the page shows no surface
+  const auto accuracy = score.accuracy(), time_s = score.median_time_s();
+  const auto line = [&](const char* key, std::vector<core::Phrase> values = {}) {
+    page.text +=
+        (page.text.empty() ? "" : "\n") + core::say(core::phrase(key, std::move(values)), setup_.language);
+  };
+  line("block_right", {core::plain(core::number(std::round(100 * *accuracy)))});
+  if (time_s) line("block_time", {core::plain(written(fmt::format("{:.2f}", *time_s), setup_.language))});
+  if (goal != nullptr) {
+    const bool met = (!goal->accuracy_above || *accuracy > *goal->accuracy_above) &&
+                     (!goal->median_time_below_s || (time_s && *time_s < *goal->median_time_below_s));
+    page.text += "\n" + in_words(*goal, setup_.language);
+    line(met ? "goal_met" : "goal_missed");
+  }
+  if (setup_.protocol.payoff && !block.practice) page.text += "\n" + score_in_words(points);
   return page;
 }
 
@@ -125,19 +215,19 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
     return page;
   }
   page.mark_mm = mark_of(spec);
-  page.interval = interval + 1;
-  page.intervals = static_cast<int>(spec.intervals.size());
-  page.interval_names = interval_names(task.kind);
-  page.text = text(setup_.protocol.task.question);
+  page.interval = {interval + 1, static_cast<int>(spec.intervals.size()), interval_names(task.kind)};
+  page.text = question_in(&spec);
   page.answers_open = phase == Phase::response || (phase == Phase::stimulus && explored);
   for (const auto& choice : task.choices)
     page.answers.push_back({choice.id, task.rating ? choice.id : text(choice.label)});
+  if (!task.unsure.empty()) page.answers.push_back({protocol::kUnsure, text(task.unsure)});
   for (const auto& anchor : task.anchors)
     page.answers.at(static_cast<std::size_t>(anchor.at) - 1).caption = text(anchor.text);
   if (task.value && page.answers_open) add_value(page, *task.value);
   if (task.value && page.answers_open && task.modulus) {
     page.value.first = core::text("first_is", setup_.language);
-    page.value.first.replace(page.value.first.find("%1"), 2, turnpoint::core::number(*task.modulus));
+    page.value.first.replace(page.value.first.find("%1"), 2,
+                             written(core::number(*task.modulus), setup_.language));
   }
   if (phase == Phase::confidence) {
     page.text = text(task.confidence->question);
@@ -208,9 +298,7 @@ Page Pages::farewell(const protocol::Localised& words, const trial::Director& di
 void Pages::add_slider(Page& page, const trial::SliderSpan& span, double setting) const {
   page.kind = PageKind::adjust;
   page.answers.clear();
-  page.slider = setting;
-  page.slider_min = span.shown_low, page.slider_max = span.shown_high;
-  page.slider_step = span.step;
+  page.slider = {setting, span.shown_low, span.shown_high, span.step};
 }
 
 Page Pages::between_trials(const protocol::Block* block, const trial::Director& director) const {
@@ -231,15 +319,14 @@ Page Pages::practice_again(const protocol::Block& block, const trial::Director& 
   return page;
 }
 
-Page Pages::fault(FaultKind kind, const std::string& detail, const trial::Director& director) const {
+Page Pages::fault(const Fault& fault, const trial::Director& director) const {
   auto page = blank(PageKind::fault, nullptr, &director);
-  const auto text = core::fault_text(kind, setup_.language);
+  const auto text = core::fault_text(fault.kind, setup_.language);
   page.title = core::text("please_wait", setup_.language);
-  page.fault = kind;
+  page.fault = fault;
   page.text = text.happened;
   page.safe = text.safe;
   page.to_do = text.to_do;
-  page.detail = detail;
   return page;
 }
 
@@ -256,6 +343,10 @@ Page Pages::end(const Summary& summary, const trial::Director& director) const {
   page.resumable = summary.status == core::SessionStatus::interrupted;
   // at the end the exact total is known; with adaptive procedures it was an estimate before
   if (whole) page.trials_total = page.trials_done;
+  if (summary.points) {
+    page.text = core::text(page.resumable ? "stopped_text" : "thanks_text", setup_.language) + "\n\n" +
+                score_in_words(*summary.points);
+  }
   const auto add = [&page](const char* key, const std::string& value) {
     page.summary.push_back({{key, "", {}}, value});
   };
@@ -264,8 +355,9 @@ Page Pages::end(const Summary& summary, const trial::Director& director) const {
   add("report.too_early", std::to_string(summary.anticipations));
   add("report.void", std::to_string(summary.voided));
   if (summary.accuracy) add("report.right", core::number(100 * *summary.accuracy, 3) + " %");
+  if (summary.points) add("report.score", core::number(*summary.points, 6));
   for (const auto& e : summary.estimates)
-    page.summary.push_back({{"", e.procedure + ", ", {parameter_name(e.parameter)}}, in_words(e)});
+    page.summary.push_back({{"", e.procedure + ", ", {procedure::parameter_name(e.parameter)}}, in_words(e)});
   for (const auto& end : summary.early_ends) add("report.ended_early", core::say(end, setup_.language));
   return page;
 }

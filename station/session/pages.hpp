@@ -1,18 +1,16 @@
 #pragma once
+#include <optional>
 #include <string>
 
 #include "station/core/texts.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/session/page.hpp"
+#include "station/session/scores.hpp"
 #include "station/session/session.hpp"
 #include "station/trial/director.hpp"
 #include "station/trial/machine.hpp"
 
 namespace turnpoint::session {
-
-/// How pages call an estimated parameter, such as "threshold". A parameter of a separate program keeps the
-/// name that the program gives it.
-core::Phrase parameter_name(const std::string& parameter);
 
 /// Makes the pages of one session. They contain texts in the session's language, the size of the surface for
 /// its drawing, and the progress.
@@ -41,16 +39,24 @@ class Pages {
   /// Makes the page before a session ends early because of a refused consent or a screening.
   Page farewell(const protocol::Localised& text, const trial::Director& director) const;
   Page rest(const protocol::Block& block, double min_s, const trial::Director& director) const;
+  /// Makes the page after a block that says what the participant has achieved in it. Empty if the block tells
+  /// nothing at its end: it has neither a goal nor the feedback "block". `points` is the score so far.
+  std::optional<Page> block_over(const protocol::Block& block, const BlockScore& score, double points,
+                                 const trial::Director& director) const;
+  /// Adds what a trial was worth to its feedback and, if given, the score.
+  void add_points(Page& page, double points, std::optional<double> score) const;
   Page practice_again(const protocol::Block& block, const trial::Director& director) const;
-  /// Makes the page for a fault that stops the session until somebody has repaired it. `detail` is what the
-  /// station found.
-  Page fault(FaultKind kind, const std::string& detail, const trial::Director& director) const;
+  /// Makes the page for a fault that stops the session until somebody has repaired it.
+  Page fault(const Fault& fault, const trial::Director& director) const;
   Page paused(const trial::Director& director) const;
   Page end(const Summary& summary, const trial::Director& director) const;
 
  private:
   Page blank(PageKind kind, const protocol::Block* block, const trial::Director* director) const;
   std::string text(const protocol::Localised& localised) const;
+  std::string question_in(const trial::TrialSpec* spec) const;
+  const protocol::Goal* goal_of(const protocol::Block& block) const;
+  std::string score_in_words(double points) const;
   void add_value(Page& page, const protocol::ValueAnswer& value) const;
 
   const Setup& setup_;

@@ -1,12 +1,9 @@
 #include "station/session/plan_ahead.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <utility>
 
 #include "station/core/draws.hpp"
-#include "station/core/number.hpp"
 #include "station/protocol/resolve.hpp"
 #include "station/protocol/triggers.hpp"
 #include "station/scene/measures.hpp"
@@ -17,29 +14,6 @@
 
 namespace turnpoint::session {
 
-namespace {
-
-/// Returns a text that is the same for two trials if and only if their stimuli are the same.
-std::string key_of(const trial::TrialSpec& trial, double drift) {
-  std::string key =
-      fmt::format("{}/{}/{}/{}", trial.block_index, trial.attempt, trial.trial_in_block, core::exact(drift));
-  for (const auto& [name, value] : trial.factors) {
-    key += "|" + name + "=";
-    if (const auto* number = std::get_if<double>(&value))
-      key += core::exact(*number);
-    else
-      key += std::get<std::string>(value);
-  }
-  if (trial.strokes) key += "|strokes " + core::exact(trial.level.value_or(0));
-  for (std::size_t i = 0; i < trial.intervals.size(); ++i) {
-    key += "|" + core::exact(trial.rove_dB[i]);
-    for (const auto& scene : trial.intervals[i]) key += ":" + scene;
-  }
-  return key;
-}
-
-}  // namespace
-
 PlanAhead::PlanAhead(const rig::Rig& rig, const protocol::Protocol& protocol, std::uint64_t seed)
     : rig_(rig), protocol_(protocol), seed_(seed), planner_(rig) {
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
@@ -49,14 +23,14 @@ PlanAhead::~PlanAhead() = default;
 
 void PlanAhead::use_friction(const sensing::FrictionTable& table) {
   std::unique_lock lock(mutex_);
-  wanted_.reset();
+  waiting_ = false;
   changed_.wait(lock, [this] { return !planning_; });
   rig_.friction.measured = true;
   rig_.friction.table.clear();
   for (const auto& point : table.points())
     rig_.friction.table.emplace_back(point.displacement_m, point.relative_friction);
   planner_ = scene::Planner(rig_);
-  wanted_key_.clear(), done_key_.clear();
+  wanted_.reset(), done_for_.reset();
 }
 
 void PlanAhead::set_drift(double share) {
@@ -66,45 +40,44 @@ void PlanAhead::set_drift(double share) {
 
 void PlanAhead::begin(const trial::TrialSpec& trial) {
   const std::lock_guard lock(mutex_);
-  auto key = key_of(trial, drift_);
-  if (key == wanted_key_) return;
-  wanted_key_ = std::move(key);
-  wanted_ = trial;
+  if (wanted_ == Request{trial, drift_}) return;
+  wanted_ = Request{trial, drift_};
+  waiting_ = true;
   changed_.notify_all();
 }
 
 bool PlanAhead::ready(const trial::TrialSpec& trial) {
   const std::lock_guard lock(mutex_);
-  return done_key_ == key_of(trial, drift_);
+  return done_for_ == Request{trial, drift_};
 }
 
 const PlanAhead::Planned& PlanAhead::take(const trial::TrialSpec& trial) {
   begin(trial);
   std::unique_lock lock(mutex_);
-  const auto key = key_of(trial, drift_);
-  changed_.wait(lock, [&] { return done_key_ == key; });
+  const Request request{trial, drift_};
+  changed_.wait(lock, [&] { return done_for_ == request; });
   if (failed_) std::rethrow_exception(failed_);
   return done_;
 }
 
 void PlanAhead::run(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
-  while (changed_.wait(lock, stop, [this] { return wanted_.has_value(); })) {
-    const trial::TrialSpec trial = *std::exchange(wanted_, std::nullopt);
-    const double drift = drift_;
+  while (changed_.wait(lock, stop, [this] { return waiting_; })) {
+    const Request request = *wanted_;
+    waiting_ = false;
     planning_ = true;
     lock.unlock();
     Planned planned;
     std::exception_ptr failed;
     try {
-      planned = plan(trial, drift);
+      planned = plan(request.trial, request.drift);
     } catch (...) {
       failed = std::current_exception();
     }
     lock.lock();
     done_ = std::move(planned);
     failed_ = failed;
-    done_key_ = key_of(trial, drift);
+    done_for_ = request;
     planning_ = false;
     changed_.notify_all();
   }
@@ -129,8 +102,10 @@ PlanAhead::Planned PlanAhead::plan(const trial::TrialSpec& trial, double drift) 
       const double rove_dB = is_buzz ? 0 : trial.rove_dB[i];
       scenes.push_back(planner_.plan(protocol::resolve(protocol_, name, trial.factors, rove_dB)));
     }
-    for (auto& made : scenes)
+    for (auto& made : scenes) {
+      planner_.add_level_uncertainty(made);
       for (auto& tone : made.tones) tone.frequency_Hz *= 1 + drift;
+    }
   }
   planned.bursts = bursts_of(trial, planned.plans);
   return planned;
@@ -148,6 +123,7 @@ scene::DrivePlan PlanAhead::plan_strokes(const trial::TrialSpec& trial) {
   const double reference_m =
       scene::mean_displacement_m(planner_, plan, {1e-3 * strokes.from_mm, 1e-3 * strokes.to_mm});
   auto made = scene::scaled(planner_, plan, 1e-6 * *trial.level / reference_m);
+  planner_.add_level_uncertainty(made);
   scene::refuse_beyond_limits(rig_, made);
   return made;
 }

@@ -4,7 +4,6 @@
 #include <exception>
 #include <mutex>
 #include <optional>
-#include <string>
 #include <thread>
 #include <vector>
 
@@ -53,6 +52,13 @@ class PlanAhead {
   void set_drift(double share);
 
  private:
+  /// What a plan depends on.
+  struct Request {
+    trial::TrialSpec trial;
+    double drift = 0;
+    bool operator==(const Request&) const = default;
+  };
+
   void run(const std::stop_token& stop);
   Planned plan(const trial::TrialSpec& trial, double drift);
   scene::DrivePlan plan_strokes(const trial::TrialSpec& trial);
@@ -65,10 +71,11 @@ class PlanAhead {
   scene::Planner planner_;  // only the worker thread uses it, while it plans
   std::mutex mutex_;
   std::condition_variable_any changed_;
-  bool planning_ = false;
-  std::optional<trial::TrialSpec> wanted_;  ///< the newest requested trial, if its planning has not begun
   double drift_ = 0;
-  std::string wanted_key_, done_key_;
+  std::optional<Request> wanted_;    ///< the newest request
+  bool waiting_ = false;             ///< its planning has not begun
+  bool planning_ = false;            ///< the thread is planning
+  std::optional<Request> done_for_;  ///< the request to which `done_` and `failed_` belong
   Planned done_;
   std::exception_ptr failed_;
   // Keep this member last: its destructor then joins the thread before the objects that the thread uses are

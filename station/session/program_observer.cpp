@@ -73,6 +73,7 @@ Json message_of(const simulation::Question& question) {
                {"finding", name(question.finding)},
                {"categories", question.categories},
                {"answers", question.answers},
+               {"unsure", question.unsure},
                {"rating", question.rating},
                {"middle", name(question.middle)},
                {"value", nullptr},
@@ -137,7 +138,8 @@ simulation::Reply ProgramObserver::answer(const simulation::Question& question) 
     if (const auto& value = question.value)
       answer.value = within(reply, "value", value->low, value->high, *with_);
     else
-      answer.choice = integer_within(reply, "choice", 0, question.answers - 1, *with_);
+      answer.choice =
+          integer_within(reply, "choice", 0, question.answers - (question.unsure ? 0 : 1), *with_);
     if (question.confidence > 0) {
       answer.confidence = integer_within(reply, "confidence", 1, question.confidence, *with_);
       answer.confidence_time_s =

@@ -68,11 +68,13 @@ void ProgramProcedure::ask_for_level() const {
   const auto i = static_cast<std::size_t>(talk_->with->awaited()) + talk_->compared;
   if (i > 0) {
     const auto& trial = trials_[i - 1];
-    talk_->with->tell({{"type", "answer"},
-                       {"trial", i},
-                       {"level", trial.level},
-                       {"answer", trial.answer == Answer::none ? Json(nullptr)
-                                                               : Json(trial.answer == Answer::one ? 1 : 0)}});
+    talk_->with->tell(
+        {{"type", "answer"},
+         {"trial", i},
+         {"level", trial.level},
+         {"answer", trial.answer == Answer::none     ? Json(nullptr)
+                    : trial.answer == Answer::unsure ? Json("unsure")
+                                                     : Json(trial.answer == Answer::one ? 1 : 0)}});
   }
   talk_->with->ask({{"type", "next"}, {"trial", i + 1}});
 }

@@ -87,8 +87,7 @@ class RealStage : public Stage {
       capture_->feed().watch().expect(scheduled(intervals, presented_),
                                       stream_->frame_at(now_ns()).value_or(0));
     if (onsets.empty())
-      inputs_.push_fault(now_ns(), FaultKind::stimulus_missed,
-                         "the converter does not report which frame it is playing");
+      miss(now_ns(), "the converter does not report which frame it is playing");
     else
       quiet_ns_ = std::max(quiet_ns_, later(onsets.back(), intervals.back().length_frames));
     if (!onsets.empty()) first_onset_ = onsets.front();
@@ -112,9 +111,7 @@ class RealStage : public Stage {
     if (!presented_.empty() && presented_.back().start_frame >= from) {
       unheard_ = 0;
       // Somebody has answered at a time when the stimulus should have been playing, so the drive is stalled.
-      if (awaits_heard)
-        inputs_.push_fault(now_ns(), FaultKind::stimulus_missed,
-                           "the trial was answered before the drive had begun the stimulus");
+      if (awaits_heard) miss(now_ns(), "the trial was answered before the drive had begun the stimulus");
     }
     if (capture_) capture_->feed().watch().cut(stream_->counters().frames);
     const auto silent_ns = ramp_down(*stream_, presented_, now_ns());
@@ -162,15 +159,7 @@ class RealStage : public Stage {
   }
   std::string missing() const override { return devices_.buttons ? devices_.buttons->missing() : ""; }
   audio::Amplifier* guarded_amplifier() override { return devices_.amplifier.get(); }
-  void set_drift(double share) override {
-    if (capture_) capture_->feed().watch().set_drift(share);
-  }
-  std::optional<sensing::FingerNow> finger_now() override {
-    return capture_ ? capture_->feed().watch().finger_now() : std::nullopt;
-  }
-  std::optional<sensing::RawCapture> raw_capture() const override {
-    return capture_ ? std::optional(capture_->feed().watch().raw()) : std::nullopt;
-  }
+  VibrationWatch* watch() override { return capture_ ? &capture_->feed().watch() : nullptr; }
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::string realtime_rights() const override {
     const auto playback = describe(stream_->rights());
@@ -226,8 +215,7 @@ class RealStage : public Stage {
     look_at_samples();
     if (unheard_ > 0 && now > quiet_ns_ + kHeard_ns) {
       unheard_ = 0;
-      inputs_.push_fault(now, FaultKind::stimulus_missed,
-                         "the converter does not report whether a stimulus was played");
+      miss(now, "the converter does not report whether a stimulus was played");
     }
     if (amplifier() == audio::AmplifierState::faulted && !std::exchange(fault_told_, true))
       tell_amplifier_fault();
@@ -241,14 +229,14 @@ class RealStage : public Stage {
     triggers_->captured(news);
     for (const auto frame : news.edges) {
       const auto time_ns = stream_->time_of(frame);
-      if (time_ns) inputs_.push(InputKind::sync, *time_ns, fmt::format("frame {}", frame));
+      if (time_ns) inputs_.push({*time_ns, input::Sync{frame}});
     }
   }
 
   /// Adds the playback frame to a pulse on a GPIO line, for which only the time is known.
   Input with_frame(Input input) {
-    if (input.kind == InputKind::sync && input.text.empty())
-      if (const auto frame = stream_->frame_at(input.time_ns)) input.text = fmt::format("frame {}", *frame);
+    if (auto* sync = std::get_if<input::Sync>(&input.content); sync && !sync->frame)
+      sync->frame = stream_->frame_at(input.time_ns);
     return input;
   }
 
@@ -259,7 +247,11 @@ class RealStage : public Stage {
     if (by_edge && reaction_ns >= 0)
       fault.detail = fmt::format("the amplifier was switched off after {:.0f} us",
                                  1e-3 * static_cast<double>(reaction_ns));
-    inputs_.push_fault(fault.time_ns, fault.kind, fault.detail);
+    inputs_.push({fault.time_ns, Fault{fault.kind, fault.detail}});
+  }
+
+  void miss(std::int64_t time_ns, const char* what) {
+    inputs_.push({time_ns, Fault{FaultKind::stimulus_missed, what}});
   }
 
   /// Trips the guard if the pick-up hears a vibration while the amplifier is off: the amplifier does not
@@ -293,17 +285,15 @@ class RealStage : public Stage {
     switch (event.kind) {
       case audio::EventKind::underrun:
         if (capture_ && event.retimed) capture_->feed().misalign();
-        inputs_.push(InputKind::xrun, now,
-                     fmt::format("{} frames lost from frame {}", event.frames, event.frame),
-                     interval ? 1 : 0);
+        inputs_.push({now, input::Xrun{interval.has_value(), fmt::format("{} frames lost from frame {}",
+                                                                         event.frames, event.frame)}});
         if (underruns_.exceeded_by(now))
-          inputs_.push(
-              InputKind::failure, now,
-              "more than three underruns within a minute; run `turnpoint doctor`, then resume the session");
+          inputs_.push({now, input::Failure{"more than three underruns within a minute; run `turnpoint "
+                                            "doctor`, then resume the session"}});
         return;
       case audio::EventKind::burst_missed:
         if (triggers_->owns(event.burst)) return triggers_->missed(event.burst);
-        return inputs_.push_fault(now, FaultKind::stimulus_missed, "a stimulus came too late to be played");
+        return miss(now, "a stimulus came too late to be played");
       case audio::EventKind::device_lost:
         if (capture_) capture_->feed().misalign();
         unheard_ = 0;  // the trial is void, so do not wait for reports about its intervals
@@ -313,7 +303,7 @@ class RealStage : public Stage {
         return;  // attend() will report the fault that the amplifier has latched
       case audio::EventKind::device_back:
         wrong_rate_.reset();  // this may be another device, with the right rate
-        return inputs_.push(InputKind::notice, now, "the sound device is back");
+        return inputs_.push({now, input::Notice{"the sound device is back"}});
       case audio::EventKind::rate_wrong:
         wrong_rate_ = Fault{FaultKind::converter_rate, fmt::format("{:.1f} Hz instead of {} Hz",
                                                                    1e-3 * static_cast<double>(event.frames),
@@ -325,7 +315,7 @@ class RealStage : public Stage {
       case audio::EventKind::burst_heard:
         if (!interval) return;
         if (unheard_ > 0) --unheard_;
-        if (!capture_) return inputs_.push(InputKind::heard, now, "", *interval);
+        if (!capture_) return inputs_.push({now, input::Heard{*interval}});
         return capture_->played(*interval, now);
     }
   }
@@ -334,10 +324,10 @@ class RealStage : public Stage {
     clocks_due_ns_ = now + kClocks_ns;
     const auto news = clocks_.look(devices_.clocks());
     if (news.jump_s)
-      inputs_.push(InputKind::notice, now, fmt::format("the wall clock was set by {:+.3f} s", *news.jump_s));
+      inputs_.push({now, input::Notice{fmt::format("the wall clock was set by {:+.3f} s", *news.jump_s)}});
     if (!news.suspended_s) return;
     const auto slept = fmt::format("the computer was suspended for {:.1f} s", *news.suspended_s);
-    inputs_.push(InputKind::notice, now, slept);
+    inputs_.push({now, input::Notice{slept}});
     amplifier_().trip(FaultKind::suspended, slept);
   }
 

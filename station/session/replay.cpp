@@ -6,6 +6,7 @@
 
 #include "station/core/number.hpp"
 #include "station/core/texts.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/session/planned_session.hpp"
 #include "station/trial/question.hpp"
@@ -76,9 +77,7 @@ void replay(trial::Director& director, const core::TrialRow& trial, const protoc
   end.outcome = trial.outcome;
   end.correct = trial.correct;
   end.friction = trial.finger.mu;
-  if (trial.response)
-    for (std::size_t i = 0; i < protocol.task.choices.size(); ++i)
-      if (protocol.task.choices[i].id == *trial.response) end.response = static_cast<int>(i);
+  if (trial.response) end.response = protocol::answer_index(protocol.task, *trial.response);
   if ((spec->slider || protocol.task.value) && trial.response) {
     const auto value = core::read_number(*trial.response);
     if (!value) mismatch("resume.no_number", {plain(*trial.response)});
@@ -87,6 +86,7 @@ void replay(trial::Director& director, const core::TrialRow& trial, const protoc
   }
   director.record(end);
   if (director.state_hash() != trial.state_hash) mismatch("resume.state");
+  director.spend(trial.duration_s);
 }
 
 /// Checks that the simulated observer gives the stored answer, because a session must not mix
@@ -99,9 +99,8 @@ void check_observer(const Setup& setup, const simulation::Respondent& observer,
   if (trial.outcome != core::Outcome::answered || !trial.response_time_s || spec.slider || spec.strokes)
     return;
   const auto reply = observer.answer(trial::question_of(spec, setup.protocol, stored.session.start.seed));
-  const auto& choices = setup.protocol.task.choices;
   const auto answer = reply.value    ? std::optional(core::exact(*reply.value))
-                      : reply.choice ? std::optional(choices[static_cast<std::size_t>(*reply.choice)].id)
+                      : reply.choice ? std::optional(protocol::answer_id(setup.protocol.task, *reply.choice))
                                      : std::nullopt;
   if (answer == trial.response && reply.confidence == trial.confidence &&
       std::fabs(reply.response_time_s - *trial.response_time_s) < tolerance_s)

@@ -15,60 +15,6 @@ namespace turnpoint::session {
 
 namespace {
 
-const char* kind_of(const Input& input) {
-  switch (input.kind) {
-    case InputKind::answer:
-      return "answer";
-    case InputKind::value:
-      return "value";
-    case InputKind::next:
-      return "next";
-    case InputKind::back:
-      return "back";
-    case InputKind::slider:
-      return "slider";
-    case InputKind::touch_down:
-      return "touch";
-    case InputKind::button:
-      return "button";
-    case InputKind::contact:
-      return "contact";
-    case InputKind::stop:
-      return "stop";
-    case InputKind::pause:
-      return "pause";
-    case InputKind::frames_lost:
-      return "frames_lost";
-    case InputKind::signal_shown:
-      return input.number > core::kSignalLate_s ? core::kSignalLateEvent : core::kSignalShownEvent;
-    case InputKind::xrun:
-      return "xrun";
-    case InputKind::heard:
-      return "heard";
-    case InputKind::measured:
-      return "measured";
-    case InputKind::fault:
-      return "fault";
-    case InputKind::failure:
-      return "failure";
-    case InputKind::glitch:
-      return "glitch";
-    case InputKind::sync:
-      return "sync";
-    case InputKind::notice:
-      return "notice";
-    case InputKind::arm:
-      return "arm";
-    case InputKind::disarm:
-      return "disarm";
-    case InputKind::repeat:
-      return "repeat";
-    case InputKind::note:
-      return "note";
-  }
-  return "";
-}
-
 /// What is known of the silence before an interval.
 std::string silence_before(const sensing::IntervalResult& measured) {
   if (!measured.silence || measured.silence->verdict == core::Proof::unproven) return "";
@@ -77,19 +23,55 @@ std::string silence_before(const sensing::IntervalResult& measured) {
                      measured.silence->rms_dB);
 }
 
-std::string value_of(const Input& input) {
-  if (input.kind == InputKind::fault)
-    return input.text.empty() ? name(input.fault) : fmt::format("{}: {}", name(input.fault), input.text);
-  if (input.kind == InputKind::measured)
-    return fmt::format("{} {} {}{}", input.value, name(input.measured->verdict), name(input.measured->cause),
-                       silence_before(*input.measured));
-  if (!input.text.empty()) return input.text;
-  if (input.kind == InputKind::signal_shown) return core::number(input.number, 4);
-  if (input.kind == InputKind::slider || input.kind == InputKind::value) return core::exact(input.number);
-  if (input.kind == InputKind::contact && input.number >= 0)
-    return fmt::format("{} {}", input.value, core::number(input.number, 4));
-  return std::to_string(input.value);
-}
+/// Writes into the row what the log says of an input: its kind and its value.
+struct Log {
+  core::EventRow& row;
+
+  void say(const char* kind, std::string value) const {
+    row.kind = kind;
+    row.value = value.empty() ? "0" : std::move(value);
+  }
+
+  void operator()(const input::Answer& answer) const { say("answer", std::to_string(answer.index)); }
+  void operator()(const input::Value& value) const { say("value", core::exact(value.number)); }
+  void operator()(const input::Next&) const { say("next", ""); }
+  void operator()(const input::Back&) const { say("back", ""); }
+  void operator()(const input::Slider& slider) const { say("slider", core::exact(slider.value)); }
+  void operator()(const input::Touch&) const { say("touch", ""); }
+  void operator()(const input::Button& button) const { say("button", std::to_string(button.index)); }
+  void operator()(const input::Contact& contact) const {
+    const std::string on = contact.on ? "1" : "0";
+    say("contact", contact.position ? on + " " + core::number(*contact.position, 4) : on);
+  }
+  void operator()(const input::Stop& stop) const { say("stop", stop.by); }
+  void operator()(const input::Pause&) const { say("pause", ""); }
+  void operator()(const input::Xrun& xrun) const { say("xrun", xrun.what); }
+  void operator()(const input::Heard& heard) const { say("heard", std::to_string(heard.interval)); }
+  void operator()(const input::Measured& measured) const {
+    const auto& result = *measured.result;
+    say("measured", fmt::format("{} {} {}{}", measured.interval, name(result.verdict), name(result.cause),
+                                silence_before(result)));
+  }
+  void operator()(const input::Fault& fault) const {
+    say("fault",
+        fault.detail.empty() ? name(fault.kind) : fmt::format("{}: {}", name(fault.kind), fault.detail));
+  }
+  void operator()(const input::Failure& failure) const { say("failure", failure.what); }
+  void operator()(const input::Glitch& glitch) const { say("glitch", glitch.what); }
+  void operator()(const input::Sync& sync) const {
+    say("sync", sync.frame ? fmt::format("frame {}", *sync.frame) : "");
+  }
+  void operator()(const input::Notice& notice) const { say("notice", notice.what); }
+  void operator()(const input::Arm& arm) const { say("arm", arm.result); }
+  void operator()(const input::Disarm& disarm) const { say("disarm", disarm.result); }
+  void operator()(const input::Repeat&) const { say("repeat", ""); }
+  void operator()(const input::Note& note) const { say("note", note.text); }
+  void operator()(const input::FramesLost& lost) const { say("frames_lost", std::to_string(lost.frames)); }
+  void operator()(const input::SignalShown& shown) const {
+    say(shown.late_s > core::kSignalLate_s ? core::kSignalLateEvent : core::kSignalShownEvent,
+        core::number(shown.late_s, 4));
+  }
+};
 
 /// The interval and the scene to which a group of tones belongs, and the start and length of that scene.
 struct Placed {
@@ -113,6 +95,7 @@ void add_scene(core::TrialRow& row, const scene::DrivePlan& plan, const Placed& 
     tone.model = physics::name(plan.model);
     tone.error_bound_mm = 1e3 * plan.error_bound_m;
     tone.uncertainty_mm = 1e3 * plan.uncertainty_m;
+    tone.level_uncertainty_dB = plan.tones[t].level_sd_dB;
     tone.reason = plan.reason;
     tone.onset_frame = placed.onset_frame;
     tone.length_frames = placed.length_frames;
@@ -262,9 +245,8 @@ std::string describe_proof(const core::TrialRow& row) {
 core::EventRow event_row(const Input& input, int trial_index) {
   core::EventRow row;
   row.time_ns = input.time_ns;
-  row.kind = kind_of(input);
   row.trial_index = trial_index;
-  row.value = value_of(input);
+  std::visit(Log{row}, input.content);
   return row;
 }
 

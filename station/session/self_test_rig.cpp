@@ -256,7 +256,7 @@ class StageRig : public SelfTestRig {
     parts_.ask({Request::Kind::press_button, button, name});
     const auto end_ns = stage.now_ns() + press_ns_;
     while (const auto input = stage.wait_until(end_ns))
-      if (input->kind == InputKind::button && input->value == button) return true;
+      if (const auto* press = input->as<input::Button>(); press && press->index == button) return true;
     return false;
   }
 
@@ -272,23 +272,23 @@ class StageRig : public SelfTestRig {
     const auto end_ns = stage.now_ns() + kResult_ns;
     reading.proof = core::Proof::lost;
     while (auto input = stage.wait_until(end_ns)) {
-      if (input->kind == InputKind::fault) {
+      if (const auto* found = input->as<Fault>()) {
         stage.close_amplifier();
-        const Fault fault{input->fault, input->text};
+        const Fault fault = *found;
         pass_on(std::move(*input));
         throw PartFailed(core::phrase_of(fault));
       }
-      if (input->kind == InputKind::heard) break;
-      if (input->kind != InputKind::measured) {
+      if (input->is<input::Heard>()) break;
+      const auto* measured = input->as<input::Measured>();
+      if (!measured) {
         pass_on(std::move(*input));
         continue;
       }
-      if (input->forces) forces_ = input->forces;
-      if (!input->measured) continue;
-      reading.proof = input->measured->verdict;
-      reading.cause = input->measured->cause;
-      reading.ratio_dB = input->measured->ratio_dB;
-      reading.nonlinearity_dB = nonlinearity_dB(*input->measured);
+      if (measured->forces) forces_ = measured->forces;
+      reading.proof = measured->result->verdict;
+      reading.cause = measured->result->cause;
+      reading.ratio_dB = measured->result->ratio_dB;
+      reading.nonlinearity_dB = nonlinearity_dB(*measured->result);
     }
     stage.close_amplifier();
   }

@@ -72,6 +72,7 @@ struct Summary {
   std::uint64_t seed = 0;
   int blocks = 0, trials = 0, answered = 0, timeouts = 0, anticipations = 0, voided = 0;
   std::optional<double> accuracy;  ///< proportion correct of scored, answered, experimental trials
+  std::optional<double> points;    ///< the participant's score; empty if the protocol gives no points
   double duration_s = 0;           ///< duration of the session on its own clock
   int xruns = 0;
   /// number of trigger codes that were sent; of codes that were sent but not found in the captured signal;
@@ -88,7 +89,7 @@ struct Summary {
 
 /// Runs a session to its end on the calling thread, with the real clock, pages on `display` and input from
 /// `inputs`. If the amplifier is real or the session is live, the surface stays silent until an operator has
-/// pushed InputKind::arm; the same holds after each fault of the amplifier. `monitor` may be null.
+/// pushed input::Arm; the same holds after each fault of the amplifier. `monitor` may be null.
 ///
 /// If the setup has an observer, the session runs on the virtual clock and uses no hardware. The only input
 /// with an effect is a request to stop, and it is read only between trials. `display` may then be null.

@@ -44,13 +44,14 @@ SessionRun::SessionRun(const Setup& setup, trial::Director director, store::Sess
       director_(std::move(director)),
       pages_(setup),
       gate_(setup, pages_, director_, *stage_, log_, display),
-      interludes_(setup, pages_, director_, gate_, *stage_, participant, log_,
+      interludes_(setup, pages_, director_, scores_, gate_, *stage_, participant, log_,
                   [this](const protocol::Example& example, Page page) {
                     return play_example(example, std::move(page));
                   }),
       drift_(setup, *stage_, log_),
       guide_(setup.protocol.sensing) {
   interludes_.restore(earlier);
+  scores_.add(earlier.blocks);
   summary_.session_id = log_.session().session_id;
   summary_.participant = setup.participant;
   summary_.protocol_id = setup.protocol.id;
@@ -99,8 +100,10 @@ Flow SessionRun::run_parts() {
 
 Flow SessionRun::run_block() {
   const auto block = *director_.block();
-  gate_.keep(
-      [&] { log_.begin_block(trial::block_start(block, director_.block_index(), director_.attempt())); });
+  if (pass_mixer() == Flow::stop) return Flow::stop;
+  const auto start = trial::block_start(block, director_.block_index(), director_.attempt());
+  gate_.keep([&] { log_.begin_block(start); });
+  scores_.begin(start);
   const auto first = next_trial();
   if (!first) return gate_.stop_asked() ? Flow::stop : leave_block();
   plans_.begin(*first);
@@ -118,6 +121,7 @@ Flow SessionRun::run_block() {
 }
 
 Flow SessionRun::leave_block() {
+  if (pass_mixer() == Flow::stop) return Flow::stop;
   log_estimates();
   for (auto& e : director_.estimates()) summary_.estimates.push_back(std::move(e));
   for (auto& end : director_.early_ends()) {
@@ -126,6 +130,9 @@ Flow SessionRun::leave_block() {
   }
   if (director_.block()->kind == protocol::BlockKind::friction_table && finish_friction_table() == Flow::stop)
     return Flow::stop;
+  if (const auto page = pages_.block_over(*director_.block(), scores_.of(director_.block_index()),
+                                          scores_.points(), director_))
+    if (gate_.show_and_wait(*page, 0) == Flow::stop) return Flow::stop;
   ++summary_.blocks;
   director_.finish_block();
   return Flow::go_on;
@@ -144,6 +151,7 @@ void SessionRun::finish(core::SessionStatus status, const std::string& reason) {
   summary_.reason = reason;
   finish_triggers();
   summary_.duration_s = static_cast<double>(stage_->now_ns() - started_ns_) * 1e-9;
+  if (setup_.protocol.payoff) summary_.points = scores_.points();
   if (scored_ > 0) summary_.accuracy = static_cast<double>(right_) / scored_;
   gate_.keep([&] { log_.finish(status, reason); });
   summary_.checksum = log_.session().checksum;
@@ -162,12 +170,7 @@ bool is_over(trial::Phase phase) {
 }
 
 core::EventRow event(std::int64_t time_ns, const char* kind, double value, int trial_index) {
-  core::EventRow row;
-  row.time_ns = time_ns;
-  row.kind = kind;
-  row.value = core::number(value, 9);
-  row.trial_index = trial_index;
-  return row;
+  return {time_ns, kind, core::number(value, 9), trial_index};
 }
 
 }  // namespace
@@ -196,9 +199,10 @@ Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
   keep_raw(trial);
   gate_.keep([&] { log_.append(trial.row); });
   count(spec, trial.row);
+  director_.spend(trial.row.duration_s);
   if (const auto share = drift_.correction(trial_index())) {
     plans_.set_drift(*share);  // a trial that is already planned is planned again
-    stage_->set_drift(*share);
+    if (auto* watch = stage_->watch()) watch->set_drift(*share);
   }
   if (monitor_ != nullptr) monitor_->trial_ended(spec, trial.row);
   return after_trial(trial);
@@ -310,35 +314,41 @@ void SessionRun::drive_trial(Running& trial, std::optional<trial::EventKind> cut
 }
 
 void SessionRun::handle_in_trial(Input raw, Running& trial) {
-  const bool by_button = raw.kind == InputKind::button;
+  const bool by_button = raw.is<input::Button>();
   const auto input = gate_.received(std::move(raw));
   gate_.note(input);
-  if (input.measured) drift_.follow(*input.measured);
-  if (input.measured) add_measured(trial.row, *input.measured, input.value, trial.measured++ == 0);
-  if (input.forces && !trial.onsets.empty()) {
+  const auto* measured = input.as<input::Measured>();
+  if (measured) drift_.follow(*measured->result);
+  if (measured) add_measured(trial.row, *measured->result, measured->interval, trial.measured++ == 0);
+  if (measured && measured->forces && !trial.onsets.empty()) {
+    const auto& forces = *measured->forces;
     const auto& onset = trial.onsets.front();
-    add_forces(trial.row, *input.forces, {trial.friction_level, part_of(trial.spec)},
-               setup_.rig.output.rate_Hz,
+    add_forces(trial.row, forces, {trial.friction_level, part_of(trial.spec)}, setup_.rig.output.rate_Hz,
                {onset.frame, 1e-9 * static_cast<double>(onset.time_ns - started_ns_)});
-    const bool asked = setup_.protocol.sensing && input.forces->state == sensing::ForcesState::ok;
+    const bool asked = setup_.protocol.sensing && forces.state == sensing::ForcesState::ok;
     // A stimulus that was not the planned one makes the trial void, however the finger moved.
     const bool refuted = trial.row.proof == core::Proof::refused || trial.row.proof == core::Proof::stopped ||
                          trial.row.proof == core::Proof::lost;
-    trial.outside = asked && !refuted && !is_training() && input.forces->movement != sensing::Movement::ok;
+    trial.outside = asked && !refuted && !is_training() && forces.movement != sensing::Movement::ok;
     if (trial.outside && repeats_in_a_row_ < setup_.protocol.sensing->repeats)
       perform(trial.machine.handle({input.time_ns, trial::EventKind::outside, 0}), trial);
     else if (trial.spec.strokes)
-      judge_strokes(input, trial);
+      judge_strokes(forces, input, trial);
   }
-  const bool answers = input.kind == InputKind::answer || input.kind == InputKind::value ||
-                       (trial.slider && input.kind == InputKind::next);
+  const bool answers =
+      input.is<input::Answer>() || input.is<input::Value>() || (trial.slider && input.is<input::Next>());
   if (answers && !trial.spec.strokes && !trial.machine.result().response) {
     trial.row.response_time_quality = name(input.quality);
     trial.by_button = by_button;
   }
   const bool answered = trial.machine.result().response.has_value();
+  const bool confides = trial.machine.phase() == trial::Phase::confidence;
   if (const auto event = event_in_trial(input, trial, by_button))
     perform(trial.machine.handle(*event), trial);
+  // A page takes one answer each time it is shown.
+  if (confides && input.is<input::Answer>() && !by_button &&
+      trial.machine.phase() == trial::Phase::confidence)
+    show_phase(trial::Phase::confidence, trial);
   if (!answered && trial.machine.result().response) trigger(protocol::TriggerEvent::response, trial);
 }
 
@@ -412,10 +422,7 @@ void SessionRun::ask_observer(const Running& trial, std::int64_t onset_ns) {
       participant_->answer(trial::question_of(trial.spec, setup_.protocol, summary_.seed), times, now_ns);
   } catch (const core::ProgramFailed& failed) {
     // The trial ends without a result, and the session is interrupted.
-    Input failure;
-    failure.kind = InputKind::failure;
-    failure.text = failed.what();
-    participant_->will(failure, now_ns);
+    participant_->will({now_ns, input::Failure{failed.what()}}, now_ns);
   }
 }
 
@@ -480,7 +487,7 @@ void SessionRun::count(const trial::TrialSpec& spec, const core::TrialRow& row) 
       ++summary_.voided;
       break;
   }
-  interludes_.score(spec.block_index, spec.attempt, director_.block()->name, row);
+  scores_.add(trial::block_start(*director_.block(), spec.block_index, spec.attempt), row);
   if (spec.type == core::TrialType::experimental && row.correct) ++scored_, right_ += *row.correct ? 1 : 0;
 }
 
@@ -499,6 +506,12 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
   if (trial.slider && adjusting) pages_.add_slider(page, *trial.spec.slider, trial.slider->setting());
   if (phase == trial::Phase::late && trial.machine.result().outcome == core::Outcome::fault)
     page.text = pages_.movement(trial.row.finger.sensing);
+  const bool judged = phase == trial::Phase::feedback || phase == trial::Phase::late;
+  if (judged && director_.block() != nullptr && director_.block()->feedback == protocol::Feedback::trial)
+    if (const auto points = trial::points_of(trial.machine.result(), trial.spec, setup_.protocol))
+      pages_.add_points(
+          page, *points,
+          director_.block()->practice ? std::nullopt : std::optional(scores_.points() + *points));
   if (trial.spec.strokes && phase == trial::Phase::feedback)
     page.text = pages_.movement(trial.row.finger.sensing);
   hold_bars(phase, trial);
@@ -510,24 +523,24 @@ std::optional<trial::Event> SessionRun::event_in_trial(const Input& input, Runni
   const trial::Event touch{input.time_ns, trial::EventKind::touch, 0};
   const bool confiding = trial.machine.phase() == trial::Phase::confidence;
   const auto& answer = setup_.protocol.task.value;
-  if (input.kind == InputKind::value) {
-    const auto value = answer ? protocol::accepted(*answer, input.number) : std::nullopt;
+  if (const auto* given = input.as<input::Value>()) {
+    const auto value = answer ? protocol::accepted(*answer, given->number) : std::nullopt;
     if (!value || confiding) return touch;
     if (!trial.machine.result().response) trial.value = value;
     return trial::Event{input.time_ns, trial::EventKind::answer, 0};
   }
   // If a number is expected, a button or a touch beside the number pad is no answer. A button cannot give a
   // confidence rating either.
-  if (input.kind == InputKind::answer && (confiding ? by_button : answer.has_value())) return touch;
+  if (input.is<input::Answer>() && (confiding ? by_button : answer.has_value())) return touch;
   if (trial.spec.strokes) {
     const auto event = event_of(input);
     return event && event->kind == trial::EventKind::answer ? touch : event;
   }
   if (!trial.slider) return event_of(input);
   // Ignore slider movements in silence: the participant could not feel their effect.
-  if (input.kind == InputKind::slider && trial.machine.phase() == trial::Phase::stimulus)
-    trial.slider->move(input.number);
-  if (input.kind == InputKind::next) return trial::Event{input.time_ns, trial::EventKind::answer, 0};
+  const auto* slider = input.as<input::Slider>();
+  if (slider && trial.machine.phase() == trial::Phase::stimulus) trial.slider->move(slider->value);
+  if (input.is<input::Next>()) return trial::Event{input.time_ns, trial::EventKind::answer, 0};
   return event_of(input);
 }
 
@@ -568,9 +581,9 @@ bool SessionRun::is_training() const { return director_.block()->kind == protoco
 
 /// Ends a trial in which nothing is asked, once it is known how the finger moved. The trial is void if the
 /// forces are unknown.
-void SessionRun::judge_strokes(const Input& input, Running& trial) {
-  const bool known = input.forces->state == sensing::ForcesState::ok;
-  const int movement = input.forces->movement == sensing::Movement::ok ? 0 : 1;
+void SessionRun::judge_strokes(const sensing::TrialForces& forces, const Input& input, Running& trial) {
+  const bool known = forces.state == sensing::ForcesState::ok;
+  const int movement = forces.movement == sensing::Movement::ok ? 0 : 1;
   if (known) trial.row.response_time_quality = name(input.quality);
   perform(trial.machine.handle({input.time_ns, known ? trial::EventKind::answer : trial::EventKind::refuted,
                                 known ? movement : 0}),
@@ -632,7 +645,8 @@ void SessionRun::move_bars() {
   const bool watched = is_finger_watched();
   if ((!guide_.guides() && !watched) || stage_->now_ns() < guide_due_ns_) return;
   guide_due_ns_ = stage_->now_ns() + Guide::kEvery_ns;
-  const auto finger = stage_->finger_now();
+  auto* watch = stage_->watch();
+  const auto finger = watch ? watch->finger_now() : std::nullopt;
   if (guide_.move(finger) && display_ != nullptr) display_->guide(*guide_.bars());
   if (!watched) return;
   const bool touches = finger && finger->contact;
@@ -696,9 +710,7 @@ void SessionRun::log_triggers() {
     log_.event(row_of_extra(extra, now, trial_index()));
   }
   if (done.failure.empty()) return;
-  core::EventRow row;
-  row.time_ns = now, row.kind = "notice", row.value = "no more trigger codes on lines: " + done.failure;
-  log_.event(std::move(row));
+  log_.event({now, "notice", "no more trigger codes on lines: " + done.failure, {}});
 }
 
 /// Waits until the last codes have been sent and read back.
@@ -746,11 +758,35 @@ Flow SessionRun::pass_self_test() {
     return gate_.stop_asked() ? Flow::stop : Flow::go_on;
   }
   const auto what = failures(event.checks);
-  auto reason = setup_.despite;
-  if (reason.empty() && !gate_.stop_asked()) reason = gate_.reason_to_continue({FaultKind::self_test, what});
+  const auto mixer = row_of(judged(read_mixer(setup_.rig))).name;
+  for (const auto& check : event.checks)
+    if (check.name == mixer && check.verdict == Verdict::failed) known_mixer_ = check.what;
+  const auto reason = reason_despite("the self-test failed: ", what);
   event.value = reason.empty() ? "failed" : "failed; continued: " + reason;
   log_.event(std::move(event));
-  if (reason.empty() && !gate_.stop_asked()) gate_.stop("the self-test failed: " + what);
+  return gate_.stop_asked() ? Flow::stop : Flow::go_on;
+}
+
+/// Returns the operator's reason for going on although a check failed. Without one, the session is stopped;
+/// `stopped_by` begins its reason.
+std::string SessionRun::reason_despite(const std::string& stopped_by, const std::string& failed) {
+  auto reason = setup_.despite;
+  if (reason.empty() && !gate_.stop_asked())
+    reason = gate_.reason_to_continue({FaultKind::self_test, failed});
+  if (reason.empty() && !gate_.stop_asked()) gate_.stop(stopped_by + failed);
+  return reason;
+}
+
+/// Compares the mixer's levels with those of the calibration once more. Another program may change them after
+/// the self-test, and without pick-ups nothing else shows it.
+Flow SessionRun::pass_mixer() {
+  const auto check = row_of(judged(read_mixer(setup_.rig)));
+  if (check.verdict != Verdict::failed) known_mixer_.clear();
+  if (check.verdict != Verdict::failed || check.what == known_mixer_) return Flow::go_on;
+  known_mixer_ = check.what;
+  const auto reason = reason_despite("", check.name + ": " + check.what);
+  const auto answer = reason.empty() ? "" : "; continued: " + reason;
+  gate_.keep([&] { log_.event({stage_->now_ns(), "mixer", check.what + answer, {}}); });
   return gate_.stop_asked() ? Flow::stop : Flow::go_on;
 }
 
@@ -784,7 +820,7 @@ Flow SessionRun::play_example(const protocol::Example& example, Page page) {
       if (!waited) continue;
       const auto input = gate_.received(std::move(*waited));
       gate_.note(input);
-      if (gate_.stop_asked() || gate_.fault() || input.kind == InputKind::pause) {
+      if (gate_.stop_asked() || gate_.fault() || input.is<input::Pause>()) {
         off_ns = std::min(off_ns, stage_->silence(false));
         break;
       }
@@ -813,11 +849,8 @@ std::optional<trial::TrialSpec> SessionRun::next_trial() {
       log_programs();
       return spec;
     } catch (const core::ProgramFailed& failed) {
-      core::EventRow event;
-      event.time_ns = stage_->now_ns();
-      event.kind = "fault";
-      event.value = core::name(FaultKind::program) + std::string(": ") + failed.what();
-      log_.event(event);
+      log_.event(
+          {stage_->now_ns(), "fault", fmt::format("{}: {}", name(FaultKind::program), failed.what()), {}});
       log_programs();
       if (!setup_.observer.empty()) {
         gate_.stop(failed.what());
@@ -845,26 +878,19 @@ void SessionRun::log_programs() {
   if (programs_ == nullptr) return;
   auto started = programs_->take_started();
   if (started.empty()) return;
-  core::EventRow event;
-  event.time_ns = stage_->now_ns();
-  event.kind = core::kProgramEvent;
-  event.value = started.front().program;
+  core::EventRow event{stage_->now_ns(), core::kProgramEvent, started.front().program, {}};
   event.programs = std::move(started);
-  log_.event(event);
+  log_.event(std::move(event));
 }
 
 /// Stores what the programs of the block have estimated.
 void SessionRun::log_estimates() {
-  core::EventRow event;
+  core::EventRow event{stage_->now_ns(), core::kEstimatesEvent, director_.block()->name, {}};
   for (const auto& found : director_.estimates())
     if (protocol::is_program(setup_.protocol, found.procedure))
       event.estimates.push_back({director_.block_index(), director_.attempt(), found.procedure,
                                  found.parameter, found.mean, found.sd, found.basis});
-  if (event.estimates.empty()) return;
-  event.time_ns = stage_->now_ns();
-  event.kind = core::kEstimatesEvent;
-  event.value = director_.block()->name;
-  log_.event(event);
+  if (!event.estimates.empty()) log_.event(std::move(event));
 }
 
 namespace {
@@ -885,10 +911,11 @@ core::SignalRow raw_signal(const sensing::RawCapture& raw) {
 /// Adds what was captured last, on all channels, to the row of a void trial. Compressing and storing it takes
 /// a while. Until it is compressed and the amplifier is off, the stage attends to its devices.
 void SessionRun::keep_raw(Running& trial) {
-  if (!trial.is_void() || trial.onsets.empty()) return;
-  auto raw = stage_->raw_capture();
-  if (!raw || raw->samples.empty()) return;
-  auto packed = std::async(std::launch::async, [raw = *std::move(raw)] { return raw_signal(raw); });
+  const auto* watch = stage_->watch();
+  if (!trial.is_void() || trial.onsets.empty() || !watch) return;
+  auto raw = watch->raw();
+  if (raw.samples.empty()) return;
+  auto packed = std::async(std::launch::async, [raw = std::move(raw)] { return raw_signal(raw); });
   stage_->wait_for([&] {
     return packed.wait_for(std::chrono::seconds(0)) == std::future_status::ready &&
            stage_->amplifier() != audio::AmplifierState::enabled;

@@ -67,6 +67,8 @@ class SessionRun {
   Flow leave_block();
   Flow play_example(const protocol::Example& example, Page page);
   Flow pass_self_test();
+  Flow pass_mixer();
+  std::string reason_despite(const std::string& stopped_by, const std::string& failed);
   Flow rest_if_due(int trials_in_block);
   int trial_index() const { return log_.session().trials; }
   void finish(core::SessionStatus status, const std::string& reason);
@@ -109,7 +111,7 @@ class SessionRun {
 
   // Blocks in which the finger strokes the surface and nothing is asked.
   bool is_training() const;
-  void judge_strokes(const Input& input, Running& trial);
+  void judge_strokes(const sensing::TrialForces& forces, const Input& input, Running& trial);
   Flow finish_friction_table();
   void use_measured_friction();
   sensing::FrictionTable measured_friction(int block_index) const;
@@ -133,9 +135,11 @@ class SessionRun {
   trial::Director director_;
   Pages pages_;
   OperatorGate gate_;
+  Scores scores_;
   Interludes interludes_;
   Summary summary_;
-  int examples_ = 0;  ///< examples presented so far
+  std::string known_mixer_;  ///< what the mixer's check found when the operator last went on despite it
+  int examples_ = 0;         ///< examples presented so far
   int scored_ = 0, right_ = 0;
   int voids_in_a_row_ = 0, refused_in_a_row_ = 0, repeats_in_a_row_ = 0, unanswered_in_a_row_ = 0;
   std::int64_t started_ns_ = 0;

@@ -5,18 +5,6 @@
 
 namespace turnpoint::session {
 
-namespace {
-
-Input at(std::int64_t time_ns, std::int64_t now_ns, InputKind kind) {
-  Input input;
-  input.time_ns = std::max(now_ns, time_ns);
-  input.kind = kind;
-  input.quality = TimeQuality::simulated;
-  return input;
-}
-
-}  // namespace
-
 SimulatedParticipant::SimulatedParticipant(simulation::Respondent observer)
     : observer_(std::move(observer)) {}
 
@@ -25,13 +13,12 @@ void SimulatedParticipant::answer(const simulation::Question& question, const tr
   const auto reply = observer_.answer(question);
   next_.clear();
   for (const auto& event : trial::simulated_events(times, reply)) {
-    auto& input = next_.emplace_back(at(event.time_ns, now_ns, InputKind::answer));
-    input.value = event.value;
-    if (event.kind == trial::EventKind::contact) {
-      input.kind = InputKind::contact, input.number = -1;
-    } else if (reply.value) {
-      input.kind = InputKind::value, input.number = *reply.value;
-    }
+    auto& input = next_.emplace_back(
+        Input{std::max(now_ns, event.time_ns), input::Answer{event.value}, TimeQuality::simulated});
+    if (event.kind == trial::EventKind::contact)
+      input.content = input::Contact{event.value == 1, {}};
+    else if (reply.value)
+      input.content = input::Value{*reply.value};
   }
 }
 
@@ -39,16 +26,14 @@ void SimulatedParticipant::set(const simulation::Adjustment& adjustment, const t
                                const trial::SimulatedTimes& times, std::int64_t now_ns) {
   const auto settings = observer_.adjust(adjustment);
   next_.clear();
-  for (const auto& event : trial::simulated_events(times, {})) {
-    auto& input = next_.emplace_back(at(event.time_ns, now_ns, InputKind::contact));
-    input.value = event.value, input.number = -1;
-  }
+  const auto plan = [&](std::int64_t time_ns, auto content) {
+    next_.push_back({std::max(now_ns, time_ns), content, TimeQuality::simulated});
+  };
+  for (const auto& event : trial::simulated_events(times, {}))
+    plan(event.time_ns, input::Contact{event.value == 1, {}});
   for (const auto& move : settings.moves)
-    next_
-        .emplace_back(
-            at(times.slider_ns + static_cast<std::int64_t>(move.time_s * 1e9), now_ns, InputKind::slider))
-        .number = move.value;
-  next_.push_back(at(trial::simulated_done_ns(times, spec, settings.done_s), now_ns, InputKind::next));
+    plan(times.slider_ns + static_cast<std::int64_t>(move.time_s * 1e9), input::Slider{move.value});
+  plan(trial::simulated_done_ns(times, spec, settings.done_s), input::Next{});
   std::stable_sort(next_.begin(), next_.end(),
                    [](const Input& a, const Input& b) { return a.time_ns < b.time_ns; });
 }

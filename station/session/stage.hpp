@@ -60,7 +60,7 @@ class Stage {
   /// Schedules the intervals of a trial. The first interval begins at the earliest safe frame that is not
   /// before `earliest_ns`; the distances between intervals are exactly those of their start frames. Returns
   /// the onsets. If scheduling fails, returns nothing and pushes a fault to the inputs. Later, the inputs
-  /// report lost frames (InputKind::xrun), and each interval that was played completely (InputKind::heard).
+  /// report lost frames (input::Xrun), and each interval that was played completely (input::Heard).
   virtual std::vector<Onset> present(std::span<const audio::PreparedBurst> intervals,
                                      std::int64_t earliest_ns) = 0;
 
@@ -73,7 +73,7 @@ class Stage {
   /// will be silent. If the converter does not report its position, this time is an upper limit; if the
   /// converter is gone, it is the time of the loss.
   /// `awaits_heard` says that the trial has not ended: it still waits for the report that each interval was
-  /// played (InputKind::heard). No such report comes for an interval that is cancelled, so a fault comes
+  /// played (input::Heard). No such report comes for an interval that is cancelled, so a fault comes
   /// instead.
   virtual std::int64_t silence(bool awaits_heard) = 0;
 
@@ -102,15 +102,8 @@ class Stage {
   virtual audio::Amplifier* guarded_amplifier() { return nullptr; }
   virtual std::optional<CaptureSetup> capture() const { return std::nullopt; }
 
-  /// Tells the stage by what fraction the resonance frequencies of the surface have risen since the
-  /// calibration of the pick-ups.
-  virtual void set_drift(double) {}
-  /// Returns the force and movement of the finger at this moment; empty unless force cells measure them.
-  virtual std::optional<sensing::FingerNow> finger_now() { return std::nullopt; }
-
-  /// Returns the newest captured frames of all channels; empty if the stage captures nothing. Their numbers
-  /// are those of the playback, less the fraction of the loop's delay.
-  virtual std::optional<sensing::RawCapture> raw_capture() const { return std::nullopt; }
+  /// What judges the captured signals; null if the stage captures nothing.
+  virtual VibrationWatch* watch() { return nullptr; }
 
   virtual std::optional<ClockFit> clock_fit() = 0;
   virtual std::string realtime_rights() const = 0;

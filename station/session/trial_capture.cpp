@@ -88,7 +88,7 @@ void TrialCapture::follow_cells(std::int64_t now_ns) {
   auto playback = stream_.clock();
   playback.time_ns += std::llround(1e9 * stream_.config().converter_delay_s);
   cells_->follow(playback, feed_.watch());
-  for (auto& news : cells_->news()) inputs_.push(InputKind::notice, now_ns, std::move(news));
+  for (auto& news : cells_->news()) inputs_.push({now_ns, input::Notice{std::move(news)}});
 }
 
 // Reports the intervals whose samples have been captured: first the measurements of an interval, then that
@@ -100,14 +100,10 @@ void TrialCapture::report_measured(std::int64_t now_ns) {
     const auto index = static_cast<std::size_t>(interval);
     if (feed_.aligned() && measured_until() < watch.known_at(index) && now_ns < limit_ns) return;
     unmeasured_.pop_front();
-    Input input;
-    input.time_ns = now_ns;
-    input.kind = InputKind::measured;
-    input.value = interval;
-    input.measured = watch.result(index);
-    input.forces = watch.forces(index);
-    if (input.measured || input.forces) inputs_.push(std::move(input));
-    inputs_.push(InputKind::heard, now_ns, "", interval);
+    const auto forces = watch.forces(index);
+    if (const auto result = watch.result(index))
+      inputs_.push({now_ns, input::Measured{interval, result, forces}});
+    inputs_.push({now_ns, input::Heard{interval}});
   }
 }
 
@@ -116,10 +112,10 @@ void TrialCapture::report_measured(std::int64_t now_ns) {
 void TrialCapture::report_losses(std::int64_t now_ns) {
   const auto counters = feed_.counters();
   if (counters.numbering == std::exchange(numbering_, counters.numbering)) return;
-  inputs_.push(InputKind::notice, now_ns,
-               fmt::format("the capture has lost {} frames in {} overruns, and has had {} gaps of unknown "
-                           "length",
-                           counters.lost_frames, counters.overruns, counters.unknown_gaps));
+  inputs_.push(
+      {now_ns, input::Notice{fmt::format(
+                   "the capture has lost {} frames in {} overruns, and has had {} gaps of unknown length",
+                   counters.lost_frames, counters.overruns, counters.unknown_gaps)}});
 }
 
 }  // namespace turnpoint::session

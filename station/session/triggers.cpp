@@ -211,10 +211,7 @@ Triggers::Done Triggers::take(std::int64_t now_ns) {
 std::vector<core::EventRow> rows_of(const Trigger& trigger) {
   const auto what = fmt::format("{} {} frame {}", trigger.code, protocol::name(trigger.event), trigger.frame);
   const auto row = [&](const char* kind, const std::string& value) {
-    core::EventRow made;
-    made.time_ns = trigger.time_ns, made.kind = kind, made.value = value;
-    made.trial_index = trigger.trial_index;
-    return made;
+    return core::EventRow{trigger.time_ns, kind, value, trigger.trial_index};
   };
   if (!trigger.refused.empty() && !trigger.lines_ns)
     return {row("trigger_missed", what + ", not sent: " + trigger.refused)};
@@ -234,10 +231,7 @@ std::vector<core::EventRow> rows_of(const Trigger& trigger) {
 }
 
 core::EventRow row_of_extra(const sensing::DecodedTrigger& extra, std::int64_t time_ns, int trial_index) {
-  core::EventRow row;
-  row.time_ns = time_ns, row.kind = "trigger_extra", row.trial_index = trial_index;
-  row.value = fmt::format("{} frame {:.0f}", extra.code, extra.frame);
-  return row;
+  return {time_ns, "trigger_extra", fmt::format("{} frame {:.0f}", extra.code, extra.frame), trial_index};
 }
 
 }  // namespace turnpoint::session

@@ -57,11 +57,7 @@ class VirtualStage : public Stage {
       return std::nullopt;
     }
     advance_to(now_ns_ + kContinue_ns);
-    Input input;
-    input.time_ns = now_ns_;
-    input.kind = InputKind::next;
-    input.quality = TimeQuality::simulated;
-    return input;
+    return Input{now_ns_, input::Next{}, TimeQuality::simulated};
   }
 
   /// Returns only requests to stop the session, which take effect before the next trial. So a simulated
@@ -74,7 +70,7 @@ class VirtualStage : public Stage {
     touchable_ = false;
     std::vector<Input> stops;
     for (auto& input : inputs_.drain()) {
-      if (input.kind != InputKind::stop) continue;
+      if (!input.is<input::Stop>()) continue;
       input.time_ns = now_ns_;
       stops.push_back(std::move(input));
     }
@@ -150,15 +146,7 @@ class VirtualStage : public Stage {
   std::optional<CaptureSetup> capture() const override {
     return room_ ? std::optional(room_->capture()) : std::nullopt;
   }
-  void set_drift(double share) override {
-    if (watch_) watch_->set_drift(share);
-  }
-  std::optional<sensing::FingerNow> finger_now() override {
-    return watch_ ? watch_->finger_now() : std::nullopt;
-  }
-  std::optional<sensing::RawCapture> raw_capture() const override {
-    return watch_ ? std::optional(watch_->raw()) : std::nullopt;
-  }
+  VibrationWatch* watch() override { return watch_ ? &*watch_ : nullptr; }
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::string realtime_rights() const override { return describe(stream_->rights()); }
   void finish() override {
@@ -178,32 +166,21 @@ class VirtualStage : public Stage {
     const auto end_ns = stream_->time_of(end_frame).value();
     if (end_ns > until_ns) return std::nullopt;
     advance_to(end_ns);
-    Input input;
-    input.time_ns = now_ns_;
-    input.value = interval;
-    input.quality = TimeQuality::simulated;
     if (watch_ && !std::exchange(measured_, true)) {
-      input.kind = InputKind::measured;
-      input.measured = watch_->result(index);
-      input.forces = watch_->forces(index);
-      if (input.forces) touchable_ = false;
-      if (input.measured || input.forces) return input;
+      const auto forces = watch_->forces(index);
+      if (forces) touchable_ = false;
+      if (const auto result = watch_->result(index))
+        return Input{now_ns_, input::Measured{interval, result, forces}, TimeQuality::simulated};
     }
-    input.kind = InputKind::heard;
     unheard_.erase(unheard_.begin());
     measured_ = false;
-    return input;
+    return Input{now_ns_, input::Heard{interval}, TimeQuality::simulated};
   }
 
   /// A pulse of a simulated device, one each second.
   Input pulse() {
-    Input input;
-    input.time_ns = sync_due_ns_;
-    input.kind = InputKind::sync;
-    input.text = fmt::format("frame {}", stream_->frame_at(sync_due_ns_).value());
-    input.quality = TimeQuality::simulated;
-    sync_due_ns_ += 1'000'000'000;
-    return input;
+    const auto due_ns = std::exchange(sync_due_ns_, sync_due_ns_ + 1'000'000'000);
+    return {due_ns, input::Sync{stream_->frame_at(due_ns).value()}, TimeQuality::simulated};
   }
 
   // time for which the simulated observer reads a page

@@ -232,17 +232,18 @@ double Observer::drift(const Question& q) const {
   return half_logit / parameters_.bound;
 }
 
-double Observer::bound(double deadline_s) const {
-  if (deadline_s <= 0) return parameters_.bound;
+double Observer::bound(const Question& q) const {
+  if (q.caution) return *q.caution * parameters_.bound;
+  if (q.deadline_s <= 0 || q.signal_s) return parameters_.bound;
   // Without drift, the proportion of decisions later than t is P(T > t) <= 4/pi exp(-pi^2 t / (8 bound^2)).
   // The bound is chosen so that this is 4 %.
-  const double left_s = std::max(0.02, deadline_s - nondecision_s() - 0.5 * parameters_.residual_range_s);
+  const double left_s = std::max(0.02, q.deadline_s - nondecision_range_s().second);
   return std::min(parameters_.bound, std::sqrt(0.35 * left_s));
 }
 
 double Observer::upper(const Question& q, double drift) const {
-  if (q.signal_s) return upper_by(drift, parameters_.bound, *q.signal_s);
-  return upper_probability(drift, bound(q.deadline_s), parameters_.start_range);
+  if (q.signal_s) return upper_by(drift, bound(q), *q.signal_s);
+  return upper_probability(drift, bound(q), parameters_.start_range);
 }
 
 double Observer::latency_s(const Question& q) const {
@@ -291,7 +292,7 @@ Reply Observer::answer(const Question& q) const {
   const double start = p.start_range * (2 * draws.uniform() - 1);
   const double pull = drift(q) + p.drift_sd * draws.normal();
   const auto passage = q.signal_s ? Passage{draws.uniform() < upper(q, pull), *q.signal_s}
-                                  : first_passage(pull, bound(q.deadline_s), start, draws);
+                                  : first_passage(pull, bound(q), start, draws);
   Reply reply;
   if (q.decides == Decides::right_answer) {
     // With three or more answers, and in ABX, fewer answers are right than with two intervals. So some walks
@@ -301,6 +302,12 @@ Reply Observer::answer(const Question& q) const {
     const bool found = passage.upper && u * upper < share_right(upper, q);
     const int right = q.correct.value_or(any);
     reply.choice = found ? right : (right + 1 + other) % q.answers;
+    // All wrong answers are guesses, and of the right ones as many as guesses happen to find.
+    if (q.unsure && q.correct) {
+      const double share = share_right(upper, q), lucky = (1 - share) / std::max(1, q.answers - 1);
+      const bool guessed = !found || draws.uniform() * share < lucky;
+      if (guessed && draws.uniform() < p.unsure) reply.choice = q.answers;
+    }
   } else if (q.rating) {
     const double seems = sensitivity(q) + felt;
     int rating = 0;
@@ -347,6 +354,10 @@ Setting Observer::adjust(const Adjustment& a) const {
     setting.moves.push_back({time_s, std::clamp(wanted + overshoot, a.low, a.high)});
   }
   setting.done_s = time_s + parameters_.travel_s;
+  if (a.within_s <= 0) return setting;
+  const double share = std::min(1.0, 0.9 * a.within_s / setting.done_s);
+  for (auto& move : setting.moves) move.time_s *= share;
+  setting.done_s *= share;
   return setting;
 }
 
@@ -362,6 +373,7 @@ void check(const Parameters& p) {
   require(p.scatter >= 0, "scatter must be 0 or more");
   require(p.lapse >= 0 && p.lapse <= 1 && p.anticipation >= 0 && p.anticipation <= 1,
           "lapse and anticipation must be probabilities from 0 to 1");
+  require(p.unsure >= 0 && p.unsure <= 1, "unsure must be a proportion from 0 to 1");
   require(p.bound > 0 && p.residual_s >= 0 && p.travel_s >= 0,
           "bound must be above 0, and residual and travel 0 or more");
   require(p.drift_sd >= 0 && p.start_range >= 0 && p.start_range < 1,
@@ -389,6 +401,7 @@ constexpr Key kKeys[] = {{"threshold", nullptr, &Parameters::threshold, true},
                          {"bias", &Parameters::bias, nullptr, true},
                          {"criterion", &Parameters::criterion, nullptr, true},
                          {"scatter", &Parameters::scatter, nullptr, false},
+                         {"unsure", &Parameters::unsure, nullptr, false},
                          {"bound", &Parameters::bound, nullptr, false},
                          {"residual", &Parameters::residual_s, nullptr, false},
                          {"travel", &Parameters::travel_s, nullptr, false},
@@ -398,8 +411,8 @@ constexpr Key kKeys[] = {{"threshold", nullptr, &Parameters::threshold, true},
                          {"anticipation", &Parameters::anticipation, nullptr, false}};
 
 const Key* key_of(const std::string& name) {
-  const auto* found = std::find_if(std::begin(kKeys), std::end(kKeys),
-                                   [&name](const Key& key) { return name == key.name; });
+  const auto* found =
+      std::find_if(std::begin(kKeys), std::end(kKeys), [&name](const Key& key) { return name == key.name; });
   return found == std::end(kKeys) ? nullptr : found;
 }
 
@@ -421,7 +434,8 @@ void read_list(const std::string& list, const char* option, const std::string& a
     double value = 0;
     const char* first = part.data() + (equals == std::string::npos ? part.size() : equals + 1);
     const auto [last, error] = std::from_chars(first, part.data() + part.size(), value);
-    if (found == nullptr || error != std::errc{} || last != part.data() + part.size() || !std::isfinite(value))
+    if (found == nullptr || error != std::errc{} || last != part.data() + part.size() ||
+        !std::isfinite(value))
       throw core::UsageError(std::string(option) + ": \"" + part + "\" is not understood; write " + allowed);
     take(*found, value);
     at = end == std::string::npos ? end : end + 1;

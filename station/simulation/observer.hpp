@@ -54,6 +54,9 @@ struct Parameters {
   double residual_range_s = 0;
   /// SD of the judgements; if the answers are numbers (magnitude estimation), of their decimal logarithm
   double scatter = 0.1;
+  /// fraction of the guesses that the observer admits, where a question allows it: answers that would be
+  /// right only by chance
+  double unsure = 0.5;
   double anticipation = 0;  ///< fraction of trials answered before anything can be felt
 };
 
@@ -62,8 +65,8 @@ struct Parameters {
 Parameters parse(const std::string& text);
 
 /// How much people differ in the parameters of an observer, by their names in parse(). The standard deviation
-/// of `threshold`, `gradient`, `floor`, `bias` and `criterion` is in their own unit, that of all others is the
-/// standard deviation of the natural logarithm.
+/// of `threshold`, `gradient`, `floor`, `bias` and `criterion` is in their own unit, that of all others is
+/// the standard deviation of the natural logarithm.
 using Spread = std::map<std::string, double>;
 
 /// Reads `threshold=0.03,bound=0.15,residual=0.1`. Throws core::UsageError.
@@ -121,6 +124,8 @@ struct Question {
   Finding finding = Finding::weibull;   ///< for `right_answer`: how the observer finds the right answer
   std::vector<double> categories = {};  ///< for `category`: the level for which each answer stands
   int answers = 2;
+  /// for `right_answer`: true if the observer may say that it would guess; `choice` is then `answers`
+  bool unsure = false;
   bool rating = false;  ///< true if the answers are the points of a scale, from low to high levels
   Middle middle = Middle::criterion;
   std::optional<ValueQuestion> value;  ///< set if the answer is a number
@@ -129,6 +134,9 @@ struct Question {
   /// deadline of the answer; 0 if there is none. If time is short, the observer decides sooner and makes more
   /// errors
   double deadline_s = 0;
+  /// If set, the observer's decision boundaries lie so many times as far apart as Parameters::bound says,
+  /// whatever the deadline is. The drift stays, so the observer trades speed for accuracy.
+  std::optional<double> caution = {};
   /// If set, a signal asks for the answer at this time. The observer then gives the answer on which it has
   /// decided or, if it has not decided yet, the answer to which the evidence points so far. Because the
   /// answer is prepared, the observer then needs only half of its residual time, and the time to move; less
@@ -153,6 +161,9 @@ struct Reply {
 struct Adjustment {
   double start = 0, low = 0, high = 1;
   double equal = 0;
+  /// time from the onset of the scene that the slider changes until the setting must be made; 0: as long as
+  /// the observer likes
+  double within_s = 0;
   core::DrawKey key;
 };
 
@@ -175,11 +186,16 @@ class Observer {
   /// Returns the probability that answer() gives `choice`. Lapses are included, anticipations are not.
   double share(const Question& question, int choice) const;
   Reply answer(const Question& question) const;
-  /// Returns the bound for this deadline (0: none), in square roots of a second. If time is short, the bound
+  /// Returns the bound for this question's deadline, in square roots of a second. If time is short, the bound
   /// is so low that only 4 % of the decisions come too late, even if nothing can be felt.
-  double bound(double deadline_s) const;
+  double bound(const Question& question) const;
   /// Returns the mean non-decision time, in s.
   double nondecision_s() const { return parameters_.residual_s + parameters_.travel_s; }
+  /// Returns the shortest and the longest non-decision time, in s.
+  std::pair<double, double> nondecision_range_s() const {
+    const double half = 0.5 * parameters_.residual_range_s;
+    return {nondecision_s() - half, nondecision_s() + half};
+  }
   /// Returns the mean time from the response signal to the answer, in s.
   double latency_s(const Question& question) const;
   /// Returns the mean drift in s^-1/2. What a positive drift leads to depends on question.decides: the right
@@ -188,7 +204,8 @@ class Observer {
   double drift(const Question& question) const;
   /// Moves the slider in ever smaller steps to where the stimuli seem equal: the bias away from where they
   /// are. The settings follow a normal distribution around that place; its 75 % point is one threshold above
-  /// it (without a threshold: a tenth of the range). In a lapse, the setting is anywhere in the range.
+  /// it (without a threshold: a tenth of the range). In a lapse, the setting is anywhere in the range. If
+  /// time is short, the observer moves the slider faster, and the setting is the same.
   Setting adjust(const Adjustment& adjustment) const;
 
  private:

@@ -335,12 +335,6 @@ bool holds_link(Database& database, const std::string& session_id, const std::st
   return false;
 }
 
-std::string last_checksum(Database& database, const std::string& session_id) {
-  Statement row(database, "SELECT sha256 FROM link WHERE session_id = ? ORDER BY link_index DESC LIMIT 1");
-  row.bind(session_id);
-  return row.step() ? row.text(0) : "";
-}
-
 std::vector<VerifiedSession> verify_database(Database& database, const std::string& schema) {
   std::vector<std::string> ids;
   Statement rows(database, "SELECT session_id FROM " + schema + ".session ORDER BY participant, session_id");

@@ -82,9 +82,6 @@ void renew_links(Database& database, const std::string& session_id);
 /// True if one link of the session's chain has this checksum, or had it under an earlier name of its station.
 bool holds_link(Database& database, const std::string& session_id, const std::string& sha256);
 
-/// Returns the checksum of a session's last link; "" if there is no such session.
-std::string last_checksum(Database& database, const std::string& session_id);
-
 /// Returns the SHA-256 over the annotations of a session, which its chain does not cover.
 std::string annotations_checksum(Database& database, const std::string& session_id);
 

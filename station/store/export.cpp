@@ -98,9 +98,26 @@ void check_style(const ExportOptions& options) {
         "formats");
 }
 
-void add_factors(std::vector<std::string>& all, const std::vector<std::string>& more) {
-  for (const auto& factor : more)
-    if (std::find(all.begin(), all.end(), factor) == all.end()) all.push_back(factor);
+void add_factors(std::vector<ExportedFactor>& all, const std::vector<std::string>& more) {
+  for (const auto& name : more)
+    if (std::none_of(all.begin(), all.end(), [&name](const auto& one) { return one.name == name; }))
+      all.push_back({name, {}});
+}
+
+/// Adds the texts that were presented in a session. A reader of the export cannot tell a text "007" from a
+/// number, nor a text "n/a" from a missing value.
+void add_levels(Database& database, const std::string& session_id, std::vector<ExportedFactor>& factors) {
+  Statement texts(database,
+                  "SELECT DISTINCT f.key, f.value FROM trial, json_each(trial.factors) AS f"
+                  " WHERE session_id = ? AND f.type = 'text' ORDER BY 1, 2");
+  texts.bind(session_id);
+  while (texts.step()) {
+    const auto name = texts.text(0), level = texts.text(1);
+    for (auto& factor : factors)
+      if (factor.name == name &&
+          std::find(factor.levels.begin(), factor.levels.end(), level) == factor.levels.end())
+        factor.levels.push_back(level);
+  }
 }
 
 std::vector<ProtocolSelection> select(Database& database, const std::string& directory,
@@ -110,6 +127,7 @@ std::vector<ProtocolSelection> select(Database& database, const std::string& dir
        list_sessions(database, {options.session_id, options.participant, options.protocol_id})) {
     auto& selection = protocols[session.start.protocol_id];
     add_factors(selection.factors, session.start.factor_columns);
+    add_levels(database, session.session_id, selection.factors);
     selection.sessions.push_back(std::move(session));
   }
   std::vector<ProtocolSelection> list;
@@ -152,9 +170,11 @@ void for_each_row(Database& database, const ProtocolSelection& selection, const 
     session_cells.self_test = newest_self_test(stored);
     rows.sessions(cells_of(columns.sessions, session_cells));
     for (const auto& block : stored.blocks)
-      for (const auto& trial : block.trials) {
+      for (std::size_t i = 0; i < block.trials.size(); ++i) {
+        const auto& trial = block.trials[i];
         ExportRow row{&stored.session, &block.start, &trial};
         row.span = span_of(spans, trial);
+        row.previous = previous_trial(block, i);
         rows.trials(cells_of(columns.trials, row));
         for (const auto& tone : trial.tones) {
           row.tone = &tone;

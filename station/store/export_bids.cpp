@@ -34,7 +34,7 @@ std::string bids_sidecar(const SessionStart& start, const std::vector<Column>& c
 
 /// Returns the columns of trials.csv. Onset and duration are called stimulus_onset and stimulus_duration,
 /// because BIDS reserves the short names for tables of events.
-ExportColumns bids_trial_columns(const std::vector<std::string>& factors);
+ExportColumns bids_trial_columns(const std::vector<ExportedFactor>& factors);
 std::vector<Column> bids_participant_columns();
 std::vector<Column> bids_event_columns();
 
@@ -128,7 +128,7 @@ std::string bids_sidecar(const SessionStart& start, const std::vector<Column>& c
   return json.dump(2) + "\n";
 }
 
-ExportColumns bids_trial_columns(const std::vector<std::string>& factors) {
+ExportColumns bids_trial_columns(const std::vector<ExportedFactor>& factors) {
   auto columns = trial_columns(factors);
   for (auto& [column, cell] : columns)
     if (column.name == "onset" || column.name == "duration") column.name = "stimulus_" + column.name;
@@ -353,10 +353,11 @@ class BidsWriter {
       const auto columns = bids_trial_columns(selection_.factors);
       TableFile trials(base + "_beh.tsv", kBids, names_of(columns));
       for (const auto& block : stored.blocks)
-        for (const auto& trial : block.trials)
-          if (trial.segment_index == segment) {
+        for (std::size_t at = 0; at < block.trials.size(); ++at)
+          if (const auto& trial = block.trials[at]; trial.segment_index == segment) {
             ExportRow row{&stored.session, &block.start, &trial};
             row.span = span_of(spans, trial);
+            row.previous = previous_trial(block, at);
             trials.row(cells_of(columns, row));
           }
       trials.finish(files_);

@@ -29,6 +29,21 @@ ExportColumn session(const std::string& csv) {
 }
 ExportColumn block(const std::string& csv) { return exported(block_table(), csv, &ExportRow::block); }
 ExportColumn trial(const std::string& csv) { return exported(trial_table(), csv, &ExportRow::trial); }
+/// A column of the trial before, with the same meaning as in its own line.
+ExportColumn previous(const std::string& csv) {
+  auto column = exported(trial_table(), csv, &ExportRow::trial);
+  column.column.name = "previous_" + csv;
+  column.column.description =
+      "The same column of the trial presented just before in this block; n/a for the first trial of an "
+      "attempt "
+      "or after an interruption";
+  column.cell = [cell = std::move(column.cell)](const ExportRow& row) {
+    ExportRow before = row;
+    before.trial = row.previous;
+    return row.previous ? cell(before) : Cell{};
+  };
+  return column;
+}
 ExportColumn tone(const std::string& csv) { return exported(tone_table(), csv, &ExportRow::tone); }
 ExportColumn event(const std::string& csv) { return exported(event_table(), csv, &ExportRow::event); }
 
@@ -134,9 +149,9 @@ ExportColumn self_test() {
           [](const ExportRow& row) { return row.self_test ? cell(row.self_test->value) : Cell{}; }};
 }
 
-ExportColumn factor_value(const std::string& factor, const std::string& name) {
-  return {{name, "Value of this factor of the protocol in the trial", "", ""},
-          [factor](const ExportRow& row) {
+ExportColumn factor_value(const ExportedFactor& factor, const std::string& name) {
+  return {{name, "Value of this factor of the protocol in the trial", "", "", factor.levels},
+          [factor = factor.name](const ExportRow& row) {
             const auto found = row.trial->factors.find(factor);
             if (found == row.trial->factors.end()) return Cell{};
             return std::visit([](const auto& value) { return cell(value); }, found->second);
@@ -145,12 +160,12 @@ ExportColumn factor_value(const std::string& factor, const std::string& name) {
 
 /// Adds a column for each factor. A factor with the name of another column gets the prefix factor_, because
 /// programs disagree on how to read two columns with the same name.
-void add_factors(ExportColumns& columns, std::ptrdiff_t at, const std::vector<std::string>& factors) {
+void add_factors(ExportColumns& columns, std::ptrdiff_t at, const std::vector<ExportedFactor>& factors) {
   const auto fixed = names_of(columns);
   ExportColumns own;
   for (const auto& factor : factors) {
-    const bool clash = std::find(fixed.begin(), fixed.end(), factor) != fixed.end();
-    own.push_back(factor_value(factor, clash ? "factor_" + factor : factor));
+    const bool clash = std::find(fixed.begin(), fixed.end(), factor.name) != fixed.end();
+    own.push_back(factor_value(factor, clash ? "factor_" + factor.name : factor.name));
   }
   columns.insert(columns.begin() + at, own.begin(), own.end());
 }
@@ -160,6 +175,7 @@ Json explained(const Column& column) {
   json["Description"] = column.description;
   if (!column.unit.empty()) json["Units"] = column.unit;
   if (!column.values.empty()) json["Values"] = column.values;
+  for (const auto& level : column.levels) json["Levels"][level] = level;
   return json;
 }
 
@@ -196,7 +212,7 @@ std::vector<Column> explanations(const ExportColumns& columns) {
   return list;
 }
 
-ExportColumns trial_columns(const std::vector<std::string>& factors) {
+ExportColumns trial_columns(const std::vector<ExportedFactor>& factors) {
   ExportColumns columns{participant_id(), session_id()};
   add(columns, session, {"session_index", "run_mode", "protocol_id", "protocol_version", "protocol_sha256"});
   add(columns, block, {"block_index", "block_name", "instruction", "practice", "attempt"});
@@ -223,6 +239,7 @@ ExportColumns trial_columns(const std::vector<std::string>& factors) {
        "onset_error_us",
        "confidence",
        "confidence_time",
+       "points",
        "sensing",
        "contact_s",
        "strokes",
@@ -240,6 +257,7 @@ ExportColumns trial_columns(const std::vector<std::string>& factors) {
        "mu",
        "silence_db",
        "silence_tone_db"});
+  add(columns, previous, {"level", "correct_response", "response", "correct", "outcome"});
   columns.push_back(columns_version());
   add_factors(columns, at, factors);
   return columns;
@@ -251,8 +269,9 @@ ExportColumns interval_columns() {
   add(columns, trial, {"trial_index"});
   add(columns, tone,
       {"interval_index", "scene_index", "tone_index", "scene", "boundary_mm", "frequency_hz", "amplitude_um",
-       "displacement_um", "friction", "rove_db", "model", "error_bound_mm", "uncertainty_mm", "reason",
-       "onset_frame", "length_frames", "measured_db", "measured_phase_deg"});
+       "displacement_um", "friction", "rove_db", "model", "error_bound_mm", "uncertainty_mm",
+       "level_uncertainty_db", "reason", "onset_frame", "length_frames", "measured_db",
+       "measured_phase_deg"});
   columns.push_back(columns_version());
   return columns;
 }
@@ -333,7 +352,7 @@ const EventRow* newest_self_test(const StoredSession& stored) {
   return newest;
 }
 
-std::string codebook_json(const std::string& protocol_id, const std::vector<std::string>& factors) {
+std::string codebook_json(const std::string& protocol_id, const std::vector<ExportedFactor>& factors) {
   Json json;
   json["protocol_id"] = protocol_id;
   json["missing"] = "n/a";

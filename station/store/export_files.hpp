@@ -39,7 +39,7 @@ class Gzip {
 struct ProtocolSelection {
   /// `folder`: the folder for the files of this protocol, without a slash at the end
   std::string protocol_id, folder;
-  std::vector<std::string> factors;
+  std::vector<ExportedFactor> factors;
   std::vector<SessionRecord> sessions;
 };
 

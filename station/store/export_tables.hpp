@@ -14,6 +14,13 @@ namespace turnpoint::store {
 /// How the codebook describes a column.
 struct Column {
   std::string name, description, unit, values;  ///< unit and values are "" if the column has none
+  std::vector<std::string> levels = {};         ///< of a factor whose values are texts
+};
+
+/// A factor of the protocol. Its levels are those that are texts, as presented in the exported trials.
+struct ExportedFactor {
+  std::string name;
+  std::vector<std::string> levels;
 };
 
 /// The time from the start of a trial's first stimulus to the end of its last stimulus.
@@ -50,7 +57,17 @@ struct ExportRow {
   const EstimateRow* estimate = nullptr;    ///< an estimate in `event`
   const AnswerRow* answer = nullptr;        ///< the answer in `event`
   const EventRow* self_test = nullptr;      ///< the newest self-test of the session; null if there was none
+  const TrialRow* previous = nullptr;       ///< see previous_trial(); null if there was none
 };
+
+/// The trial of this block that was presented just before the trial at `index`, whatever became of it. Null
+/// for the first trial of an attempt at the block, and for the first one after an interruption of the
+/// session.
+inline const TrialRow* previous_trial(const BlockRecord& block, std::size_t index) {
+  if (index == 0) return nullptr;
+  const auto &trial = block.trials[index], &before = block.trials[index - 1];
+  return before.segment_index == trial.segment_index ? &before : nullptr;
+}
 
 /// A column of an exported table: its description, and the function that computes the column's value in a
 /// line.
@@ -62,7 +79,7 @@ using ExportColumns = std::vector<ExportColumn>;
 
 /// Return the columns of a table in their fixed order. Among the columns of `trials`, the protocol's factors
 /// have a fixed place. A factor with the name of another column is exported as factor_NAME.
-ExportColumns trial_columns(const std::vector<std::string>& factors);
+ExportColumns trial_columns(const std::vector<ExportedFactor>& factors);
 ExportColumns interval_columns();
 ExportColumns event_columns();
 ExportColumns session_columns();
@@ -80,10 +97,10 @@ std::vector<std::string> names_of(const std::vector<Column>& columns);
 std::vector<Cell> cells_of(const ExportColumns& columns, const ExportRow& row);
 
 /// Returns the data dictionary (codebook) of an export folder as JSON. Columns are grouped by table.
-std::string codebook_json(const std::string& protocol_id, const std::vector<std::string>& factors);
+std::string codebook_json(const std::string& protocol_id, const std::vector<ExportedFactor>& factors);
 
 /// Returns only the columns as JSON, in the form of BIDS sidecars and codebooks: name -> Description, Units,
-/// Values.
+/// Values, Levels.
 std::string columns_json(const std::vector<Column>& columns);
 std::vector<Column> explanations(const ExportColumns& columns);
 

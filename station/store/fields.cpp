@@ -463,10 +463,10 @@ const Table<TrialRow>& trial_table() {
                              "um"}),
        field<&T::correct_response>(
            {"correct_response", "correct_response", "Correct choice; n/a if no choice is correct"}),
-       field<&T::response>(
-           {"response", "response",
-            "Choice of the participant; in an adjustment task the setting, in the unit of the level; on a "
-            "scale or with a number pad the number that was given"}),
+       field<&T::response>({"response", "response",
+                            "Choice of the participant; unsure if the participant did not want to guess; in "
+                            "an adjustment task the setting, in the unit of the level; on a "
+                            "scale or with a number pad the number that was given"}),
        field<&T::correct>({"correct", "correct",
                            "1 if the choice was correct, 0 if not; n/a if the answer is not scored", "",
                            "0 | 1 | n/a"}),
@@ -526,6 +526,9 @@ const Table<TrialRow>& trial_table() {
        field<&T::confidence_time_s>({"confidence_time_s", "confidence_time",
                                      "Time from the answer to the participant's statement of confidence",
                                      "s"}),
+       field<&T::points>({"points", "points",
+                          "Points that the result of the trial was worth to the participant; n/a if the "
+                          "protocol gives none, and for void trials"}),
        finger<&F::sensing>(
            {"sensing", "sensing",
             "Whether the touch met the requirements of the protocol's [sensing]: ok, or too few "
@@ -610,6 +613,11 @@ const Table<ToneRow>& tone_table() {
        field<&T::uncertainty_mm>({"uncertainty_mm", "uncertainty_mm",
                                   "Uncertainty of the boundary's position that the rig's parameters cause",
                                   "mm"}),
+       field<&T::level_uncertainty_dB>(
+           {"level_uncertainty_dB", "level_uncertainty_db",
+            "Standard deviation of the level at the tone's last maximum that the rig's parameters cause, "
+            "computed at a frequency that differs by at most 0.25 %",
+            "dB"}),
        field<&T::reason>({"reason", "reason", "Why this model was chosen"}),
        field<&T::onset_frame>({"onset_frame", "onset_frame",
                                "Output frame at which the tone starts, counted from the start of the segment",

@@ -180,6 +180,8 @@ CREATE TABLE trial (
   confidence INTEGER CHECK (confidence IS NULL OR (confidence >= 1 AND outcome = 'answered')),
   confidence_time_s REAL
     CHECK ((confidence_time_s IS NULL) = (confidence IS NULL) AND coalesce(confidence_time_s, 0) >= 0),
+  -- what the result was worth to the participant
+  points REAL CHECK (points IS NULL OR outcome NOT IN ('aborted', 'fault')),
   -- what force sensors measured
   sensing TEXT NOT NULL
     CHECK (sensing IN ('', 'ok', 'strokes', 'light', 'hard', 'slow', 'fast', 'lost', 'wire', 'tare')),
@@ -225,6 +227,7 @@ CREATE TABLE tone (
   model TEXT NOT NULL,
   error_bound_mm REAL NOT NULL,
   uncertainty_mm REAL NOT NULL,
+  level_uncertainty_dB REAL,
   reason TEXT NOT NULL,
   onset_frame INTEGER NOT NULL,
   length_frames INTEGER NOT NULL,

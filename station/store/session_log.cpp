@@ -198,7 +198,6 @@ struct SessionLog::Impl {
   std::optional<Chain> chain;  ///< the session's chain of checksums; set when the session's id is known
   TrialPlace place;
   SessionRecord session;
-  std::vector<BlockRecord> blocks;
   std::vector<EventRow> events;
   std::int64_t next_event = 0;
   bool in_block = false;
@@ -230,7 +229,7 @@ SessionLog SessionLog::resume(const std::string& path, const std::string& id, co
   require_space(path);
   auto impl = std::make_unique<Impl>(open_writer(path, IfMissing::fail));
   auto& database = impl->writer.database;
-  auto stored = read_session(database, id);
+  const auto stored = read_session(database, id);
   if (stored.session.status != SessionStatus::interrupted)
     refuse(database, ErrorKind::refused,
            fmt::format("session {} is {}; only an interrupted session can be continued", id,
@@ -261,12 +260,10 @@ SessionLog SessionLog::resume(const std::string& path, const std::string& id, co
   impl->chain.emplace(database, id);
   impl->commit(transaction);
   impl->session = session_record(database, id);
-  impl->blocks = std::move(stored.blocks);
   return SessionLog(std::move(impl));
 }
 
 const SessionRecord& SessionLog::session() const { return impl_->session; }
-const std::vector<BlockRecord>& SessionLog::stored_blocks() const { return impl_->blocks; }
 
 void SessionLog::begin_block(const BlockStart& block) {
   auto& database = impl_->writer.database;
@@ -348,22 +345,6 @@ void annotate(const std::string& path, const std::string& session_id, const std:
   SealedTransaction transaction(writer.database);
   Statement(writer.database, "INSERT INTO annotation VALUES (?,?,?,?)")
       .bind(system::new_uuid(), session.session_id, system::realtime_ns(), text)
-      .run();
-  transaction.commit();
-}
-
-void abandon(const std::string& path, const std::string& session_id, const std::string& reason) {
-  auto writer = open_writer(path, IfMissing::fail);
-  const auto session = session_record(writer.database, session_id);
-  if (session.status != SessionStatus::interrupted)
-    throw StoreError(
-        ErrorKind::refused,
-        fmt::format("database {}: session {} is {}; only an interrupted session can be abandoned", path,
-                    session_id, name(session.status)));
-  SealedTransaction transaction(writer.database);
-  Statement(writer.database,
-            "UPDATE session SET status = 'abandoned', status_reason = ? WHERE session_id = ?")
-      .bind(reason, session_id)
       .run();
   transaction.commit();
 }

@@ -57,8 +57,6 @@ class SessionLog {
   ~SessionLog();
 
   const SessionRecord& session() const;  ///< the session's record; its checksum is that of the last commit
-  /// blocks that were in the log when the session was resumed; empty for a new session
-  const std::vector<BlockRecord>& stored_blocks() const;
 
   /// Begins a block. If the log already has a block with this index and attempt, continues that block; its
   /// other values must then be equal.
@@ -90,9 +88,5 @@ class SessionLog {
 /// Adds a researcher's note to a session that is not running. The rows of its trials do not change. Throws
 /// StoreError, or core::UsageError for an empty note.
 void annotate(const std::string& database, const std::string& session_id, const std::string& text);
-
-/// Marks an interrupted session as abandoned, because nobody will continue it, and stores the reason. Throws
-/// StoreError (refused) if the session is not interrupted.
-void abandon(const std::string& database, const std::string& session_id, const std::string& reason);
 
 }  // namespace turnpoint::store

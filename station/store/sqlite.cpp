@@ -60,7 +60,8 @@ const char* advice(ErrorKind kind) {
 }
 
 constexpr auto kTooLarge =
-    "rows committed before are intact; use a disk with ext4 (FAT32 has files of at most 4 GB), or raise the limit on "
+    "rows committed before are intact; use a disk with ext4 (FAT32 has files of at most 4 GB), or raise the "
+    "limit on "
     "the size of files (ulimit -f)";
 
 int flags_of(Database::Access access) {
@@ -138,13 +139,6 @@ std::string Statement::text(int column) const {
 std::optional<std::int64_t> Statement::maybe_integer(int column) const {
   return is_null(column) ? std::nullopt : std::optional(integer(column));
 }
-std::optional<double> Statement::maybe_real(int column) const {
-  return is_null(column) ? std::nullopt : std::optional(real(column));
-}
-std::optional<std::string> Statement::maybe_text(int column) const {
-  return is_null(column) ? std::nullopt : std::optional(text(column));
-}
-
 void Statement::bind_integer(int index, std::int64_t value) {
   if (const int code = sqlite3_bind_int64(statement_, index, value)) database_->fail(code, "bind");
 }
@@ -227,7 +221,8 @@ int Database::changes() const { return sqlite3_changes(handle_); }
 void Database::fail(int code, const std::string& what) const {
   const auto kind = kind_of(code);
   if (kind == ErrorKind::io && sqlite3_system_errno(handle_) == EFBIG)
-    throw StoreError(kind, fmt::format("database {}: {}: the file may not become larger; {}", path_, what, kTooLarge));
+    throw StoreError(
+        kind, fmt::format("database {}: {}: the file may not become larger; {}", path_, what, kTooLarge));
   throw StoreError(
       kind, fmt::format("database {}: {}: {}; {}", path_, what, sqlite3_errmsg(handle_), advice(kind)));
 }

@@ -65,8 +65,6 @@ class Statement {
   double real(int column) const;
   std::string text(int column) const;  ///< text or bytes of a column; "" for NULL
   std::optional<std::int64_t> maybe_integer(int column) const;
-  std::optional<double> maybe_real(int column) const;
-  std::optional<std::string> maybe_text(int column) const;
 
  private:
   void bind_integer(int index, std::int64_t value);

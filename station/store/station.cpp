@@ -1,38 +1,156 @@
 #include "station/store/station.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <linux/fiemap.h>
+#include <linux/fs.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "station/core/file_descriptor.hpp"
+#include "station/core/letters.hpp"
 #include "station/core/number.hpp"
 #include "station/store/checksum.hpp"
 #include "station/store/files.hpp"
 #include "station/store/open.hpp"
 #include "station/store/seal.hpp"
 #include "station/system/clocks.hpp"
+#include "station/system/condition.hpp"
 #include "station/system/uuid.hpp"
 
 namespace turnpoint::store {
 
 namespace {
 
-std::string first_word(const std::string& path) {
+std::string first_line(const std::string& path) {
   std::ifstream file(path);
-  std::string word;
-  file >> word;
-  return word.substr(0, word.find('\0'));  // texts of the device tree end with a zero
+  std::string line;
+  std::getline(file, line);
+  return line.substr(0, line.find('\0'));  // texts of the device tree end with a zero
+}
+
+std::string first_word(const std::string& path) {
+  const auto line = first_line(path);
+  const auto begin = std::min(line.find_first_not_of(" \t\r"), line.size());
+  return line.substr(begin, line.find_first_of(" \t\r", begin) - begin);
 }
 
 bool everybody_may_read(const std::string& path) {
   struct stat status {};
   return ::stat(path.c_str(), &status) == 0 && (status.st_mode & S_IROTH) != 0;
+}
+
+/// True for a file whose data have a place on a disk, as the file systems of disks tell every user. Those in
+/// memory have no answer, and an overlay asks the layer that holds the file.
+bool has_place_on_disk(const std::string& path) {
+  const core::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  struct fiemap request {};
+  request.fm_length = FIEMAP_MAX_OFFSET;
+  return ::ioctl(file.get(), FS_IOC_FIEMAP, &request) == 0 && request.fm_mapped_extents > 0;
+}
+
+/// True for a machine-id that the next boot replaces. On a disk that cannot be written, systemd makes one in
+/// memory and mounts it over the file; a system that runs from memory, or keeps all changes there in the
+/// upper layer of an overlay, makes one at each start. The file's time does not tell: many boards set their
+/// clock only after they have made it.
+bool lasts_until_shutdown(const std::string& path, const std::string& root) {
+  const auto file_system = system::read_disk(path).file_system;
+  if (file_system == "overlay") return !has_place_on_disk(path);
+  if (file_system != "tmpfs" && file_system != "ramfs") return false;
+  struct stat file {
+  }, above{};
+  const bool is_mounted = ::stat(path.c_str(), &file) == 0 && ::stat((root + "/etc").c_str(), &above) == 0 &&
+                          file.st_dev != above.st_dev;
+  return root.empty() || is_mounted;  // the folder that a test gives may itself be in memory
+}
+
+std::string lower_letters_and_digits(const std::string& text) {
+  std::string kept;
+  for (const char c : text) {
+    const char low = core::lower(c);
+    if ((low >= 'a' && low <= 'z') || (low >= '0' && low <= '9')) kept += low;
+  }
+  return kept;
+}
+
+/// True if the digits (of base 16) and letters are what somebody types to fill a field: one of them again and
+/// again, or a row of neighbours such as 0123456789 or 11112222. Zeros do not count. In a serial number that
+/// was given out, or in a random UUID, a fifth of the steps are as small as this, not nearly all.
+bool is_filler(const std::string& symbols) {
+  std::vector<int> values;
+  for (const char c : symbols)
+    if (c != '0') values.push_back(c <= '9' ? c - '0' : c - 'a' + 10);
+  if (values.size() < 4) return true;
+  std::size_t large = 0;
+  for (std::size_t k = 1; k < values.size(); ++k) large += std::abs(values[k] - values[k - 1]) > 1 ? 1 : 0;
+  const auto steps = values.size() - 1;
+  return large <= (steps - std::min<std::size_t>(steps, 4)) / 5;
+}
+
+/// True for a value that its maker never set, and that all machines of a kind share.
+bool is_of_all_machines(const std::string& value) {
+  const auto symbols = lower_letters_and_digits(value);
+  // What several makers of boards wrote instead of a UUID. The first pair is one value in both orders of
+  // bytes; the others are a machine of Dell without a service tag.
+  for (const auto* known : {"03000200040005000006000700080009", "00020003000400050006000700080009",
+                            "4c4c454400002010802080c04f202020", "4c4c4544002020108020a0c04f202020",
+                            "4c4c4544000020108020a0c04f202020", "4c4c454400202010802080c04f202020"})
+    if (symbols == known) return true;
+  if (symbols.find_first_of("0123456789") == std::string::npos) return true;  // "Default string", "None"
+  for (const auto* word : {"default", "serial", "filled", "specified", "applicable", "settable", "present",
+                           "unknown", "invalid", "empty", "number", "asset"})
+    if (symbols.find(word) != std::string::npos) return true;
+  std::string digits;
+  for (const char c : symbols)
+    if (c >= '1' && c <= '9') digits += c;
+  return is_filler(symbols) || (digits.size() >= 8 && is_filler(digits));
+}
+
+/// The machine-id; "" if it is not one that this system made for good.
+std::string lasting_machine_id(const std::string& root) {
+  const auto path = root + "/etc/machine-id";
+  const auto id = first_word(path);
+  if (id.size() != 32 || id.find_first_not_of("0123456789abcdef") != std::string::npos) return "";
+  return is_filler(id) || !everybody_may_read(path) || lasts_until_shutdown(path, root) ? "" : id;
+}
+
+/// The folder of the disk (not of its partition) that holds /etc; "" if that is no single disk.
+std::string disk_of_system(const std::string& root) {
+  struct stat state {};
+  std::error_code error;
+  if (::stat((root + "/etc").c_str(), &state) != 0) return "";
+  const auto folder = std::filesystem::canonical(
+      fmt::format("{}/sys/dev/block/{}:{}", root, major(state.st_dev), minor(state.st_dev)), error);
+  if (error) return "";
+  return std::filesystem::exists(folder / "partition", error) ? folder.parent_path().string()
+                                                              : folder.string();
+}
+
+/// The first number that a maker gave to this one board, computer or disk.
+std::string hardware_number(const std::string& root) {
+  std::vector<std::string> places;
+  for (const auto* name : {"/sys/firmware/devicetree/base/serial-number", "/sys/class/dmi/id/product_uuid",
+                           "/sys/class/dmi/id/board_serial", "/sys/class/dmi/id/product_serial"})
+    places.push_back(root + name);
+  if (const auto disk = disk_of_system(root); !disk.empty())
+    for (const auto* name : {"/device/cid", "/wwid", "/device/wwid", "/serial", "/device/serial"})
+      places.push_back(disk + name);
+  for (const auto& path : places) {
+    if (!everybody_may_read(path)) continue;
+    if (auto value = first_line(path); !is_of_all_machines(value)) return value;
+  }
+  return "";
 }
 
 std::string meta(Database& database, const char* key) {
@@ -147,12 +265,13 @@ NamedStation station_in(Database& database) {
 
 }  // namespace
 
+MachineTraits machine_traits(const std::string& root) {
+  return {lasting_machine_id(root), hardware_number(root)};
+}
+
 std::string machine_identity(const std::string& root) {
-  const auto id = first_word(root + "/etc/machine-id");
-  auto board = first_word(root + "/sys/firmware/devicetree/base/serial-number");
-  const auto uuid = root + "/sys/class/dmi/id/product_uuid";
-  if (board.empty() && everybody_may_read(uuid)) board = first_word(uuid);
-  return id.empty() && board.empty() ? "" : core::sha256(id + "\n" + board);
+  const auto [id, hardware] = machine_traits(root);
+  return id.empty() && hardware.empty() ? "" : core::sha256(id + "\n" + hardware);
 }
 
 std::string suggested_station_name(const std::string& root) {

@@ -10,12 +10,22 @@ namespace turnpoint::store {
 // were recorded. A database remembers both from its first session on (meta `station` and `machine`), so a
 // host that gets another name changes nothing, and a copy of a card or of an image is noticed.
 
-/// Identifies this machine: a SHA-256 over /etc/machine-id, which a copied card or image shares, and the
-/// serial number of the board (device tree) or the UUID of the firmware (DMI), which it does not share. The
-/// result does not depend on who asks: the UUID counts only if every user may read it, as the package
-/// arranges. "" if the machine has neither; such a machine is never taken for another one. `root` is the
-/// folder in which to look; tests give another one.
+/// Identifies this machine: a SHA-256 over /etc/machine-id, which a copied card or image shares, and a number
+/// that a maker gave to the hardware, which it does not share: the serial number of the board in the device
+/// tree, the UUID of the firmware (DMI), the serial number there, or else that of the disk with the system.
+/// Values that a maker never set ("Default string", zeros) and a machine-id that the next boot replaces do
+/// not count, so that no two machines are one because of them, and no machine becomes another one. The result
+/// does not depend on who asks: a number counts only if every user may read it, as the package arranges. ""
+/// if nothing is left; such a machine is never taken for another one. `root` is the folder in which to look;
+/// tests give another one.
 std::string machine_identity(const std::string& root = "");
+
+/// What machine_identity() rests on. Without a number of the hardware, nobody notices that a disk was copied
+/// to another machine; without a lasting machine-id, two virtual machines of one image may count as one.
+struct MachineTraits {
+  std::string machine_id, hardware;
+};
+MachineTraits machine_traits(const std::string& root = "");
 
 /// The name that this machine suggests for its station: the first word of /etc/turnpoint/station if there is
 /// one, otherwise the host's name. A name that images give ("turnpoint", "localhost", ...) is followed by

@@ -25,11 +25,16 @@ std::string file_system_of(const std::string& folder) {
   if (::statfs(folder.c_str(), &state) != 0) return "";
   const auto number = static_cast<std::uint32_t>(state.f_type);
   static const std::map<std::uint32_t, const char*> names{
-      {0xef53, "ext4"},      {0x9123683e, "btrfs"}, {0x58465342, "xfs"},     {0xf2f52010, "f2fs"},
-      {0x01021994, "tmpfs"}, {0x858458f6, "ramfs"}, {0x794c7630, "overlay"}, {0x6969, "nfs"},
-      {0xff534d42, "cifs"},  {0xfe534d42, "cifs"},  {0x517b, "cifs"},        {0x65735546, "fuse"},
-      {0x01021997, "9p"},    {0x4d44, "vfat"},      {0x2011bab0, "exfat"},   {0x5346544e, "ntfs"},
-      {0x7366746e, "ntfs"},  {0x00c36400, "ceph"},  {0x5346414f, "afs"},     {0x786f4256, "vboxsf"}};
+      {0xef53, "ext4"},      {0x9123683e, "btrfs"}, {0x58465342, "xfs"},      {0xf2f52010, "f2fs"},
+      {0x01021994, "tmpfs"}, {0x858458f6, "ramfs"}, {0x794c7630, "overlay"},  {0x6969, "nfs"},
+      {0xff534d42, "cifs"},  {0xfe534d42, "cifs"},  {0x517b, "cifs"},         {0x65735546, "fuse"},
+      {0x01021997, "9p"},    {0x4d44, "vfat"},      {0x2011bab0, "exfat"},    {0x5346544e, "ntfs"},
+      {0x7366746e, "ntfs"},  {0x00c36400, "ceph"},  {0x0bd00bd0, "lustre"},   {0x73757245, "coda"},
+      {0x01161970, "gfs2"},  {0x7461636f, "ocfs2"}, {0x47504653, "gpfs"},     {0x19830326, "beegfs"},
+      {0x6b414653, "afs"},   {0x2fc12fc1, "zfs"},   {0xca451a4e, "bcachefs"}, {0x3434, "nilfs"},
+      {0x24051905, "ubifs"}, {0x72b6, "jffs2"},     {0x52654973, "reiserfs"}, {0x3153464a, "jfs"},
+      {0xf15f, "ecryptfs"},  {0x482b, "hfsplus"},   {0x9660, "iso9660"},      {0x73717368, "squashfs"},
+      {0xe0f5e1e2, "erofs"}, {0x5346414f, "afs"},   {0x786f4256, "vboxsf"}};
   const auto found = names.find(number);
   return found == names.end() ? fmt::format("{:#x}", number) : found->second;
 }

@@ -8,9 +8,11 @@
 #include "station/core/number.hpp"
 #include "station/procedure/description.hpp"
 #include "station/procedure/state_hash.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/trial/director_state.hpp"
 #include "station/trial/orders.hpp"
+#include "station/trial/timing.hpp"
 
 namespace turnpoint::trial {
 
@@ -19,6 +21,7 @@ using protocol::Block;
 
 void Director::State::enter_block() {
   trial = shown = right = 0;
+  spent_s = 0;
   specs.clear();
   procedures.clear();
   practice_levels.clear();
@@ -75,16 +78,30 @@ void Director::State::learn(const TrialEnd& end) {
       end.outcome == core::Outcome::answered)
     return procedures[index]->record_setting(*end.setting);
   auto answer = procedure::Answer::none;
-  if (end.outcome == core::Outcome::answered && end.response) {
-    const auto& tracks = specs[index]->tracks;
-    const auto& choice = protocol.task.choices[static_cast<std::size_t>(*end.response)];
-    const bool one = tracks.empty() ? end.correct.value_or(false) : choice.id == tracks;
-    answer = one ? procedure::Answer::one : procedure::Answer::zero;
-  }
+  if (end.outcome == core::Outcome::answered && end.response)
+    answer =
+        protocol::learned_from(*specs[index], protocol::answer_id(protocol.task, *end.response), end.correct);
   procedures[index]->record(answer);
 }
 
+/// True if the trials of the current block have lasted as long as the block does.
+bool Director::State::time_is_up() const { return now()->lasts_s && spent_s >= *now()->lasts_s; }
+
+/// About how long a trial of the current block lasts: as long as those so far or, before the first one, as
+/// long as a quick answer takes.
+double Director::State::trial_s() const {
+  constexpr double quick_s = 0.5;
+  return trial > 0 && spent_s > 0 ? spent_s / trial : protocol::quick_trial_s(protocol, quick_s);
+}
+
 int Director::State::block_expected(const Block& b) const {
+  int trials = trials_of(b);
+  if (b.lasts_s) trials = std::min(trials, static_cast<int>(std::ceil(*b.lasts_s / trial_s())));
+  return trials;
+}
+
+/// The number of trials of a block whose time does not end it.
+int Director::State::trials_of(const Block& b) const {
   if (!b.levels.empty()) return b.trials.value_or(static_cast<int>(b.levels.size()));
   if (b.trials) return *b.trials;
   double trials = 0;
@@ -95,7 +112,7 @@ int Director::State::block_expected(const Block& b) const {
     else if (procedure::follows_answers(spec))
       trials += spec.stop.trials.value_or(6 * spec.stop.reversals.value_or(8));
     else
-      trials += static_cast<double>(spec.values.size()) * spec.repeats;
+      trials += static_cast<double>(procedure::list_trials(spec));
   }
   return static_cast<int>(std::lround(trials * (1 + (b.catch_trials ? b.catch_trials->rate : 0))));
 }
@@ -105,13 +122,21 @@ int Director::State::block_expected(const Block& b) const {
 int Director::State::left_in_block() const {
   const auto* b = now();
   if (b == nullptr) return 0;
-  if (procedures.empty() || b->trials) return std::max(block_expected(*b) - trial, current ? 1 : 0);
+  const int left = left_of_procedures(*b);
+  if (!b->lasts_s) return left;
+  const double left_s = std::max(0.0, *b->lasts_s - spent_s);
+  return std::min(left, static_cast<int>(std::ceil(left_s / trial_s())));
+}
+
+/// The same, if its time does not end the block.
+int Director::State::left_of_procedures(const Block& b) const {
+  if (procedures.empty() || b.trials) return std::max(trials_of(b) - trial, current ? 1 : 0);
   double left = 0;
   for (const auto& procedure : procedures) {
     const int own = procedure->expected() - procedure->recorded();
     left += own > 0 ? own : procedure->ready() && procedure->next() ? 1 : 0;
   }
-  left *= 1 + (b->catch_trials ? b->catch_trials->rate : 0);
+  left *= 1 + (b.catch_trials ? b.catch_trials->rate : 0);
   return std::max(static_cast<int>(std::lround(left)), current ? 1 : 0);
 }
 
@@ -140,9 +165,11 @@ void Director::record(const TrialEnd& end) {
   auto& s = *state_;
   if (!s.current)
     throw std::logic_error("director: record() was called although no trial had been given out");
+  s.last_counts = false;
   if (end.outcome == core::Outcome::fault || end.outcome == core::Outcome::aborted) return;
   s.count_runs(*s.current);
   const auto type = s.current->type;
+  s.last_counts = type != core::TrialType::warmup;
   const auto level = s.current->level;
   s.current.reset();
   if (type == core::TrialType::warmup) {
@@ -156,6 +183,13 @@ void Director::record(const TrialEnd& end) {
   ++s.trial, ++s.done;
   if (type != core::TrialType::catch_trial) ++s.shown;
   if (end.correct.value_or(false)) ++s.right;
+}
+
+void Director::spend(double trial_s) {
+  auto& s = *state_;
+  if (!s.last_counts || s.now() == nullptr) return;
+  s.spent_s += trial_s;
+  if (s.time_is_up()) s.current.reset();
 }
 
 void Director::finish_block() {

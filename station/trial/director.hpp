@@ -40,6 +40,7 @@ struct TrialSpec {
   std::optional<double> signal_s;
   /// true if the block's instruction sets the deadline; a timeout then counts as a result
   bool timeouts_are_data = false;
+  bool operator==(const TrialSpec&) const = default;
 };
 
 /// The parts of a trial's result on which later trials depend.
@@ -90,6 +91,9 @@ class Director {
   std::optional<TrialSpec> next();
   /// Records the result of the trial that next() returned last.
   void record(const TrialEnd& end);
+  /// Adds the duration of the trial that was recorded last to the time of its block, which may end the block.
+  /// Void trials and warm-up trials do not count. A trial that next() has already returned is given up then.
+  void spend(double trial_s);
   /// Closes a finished block: advances to the next block, or repeats practice that was not passed.
   void finish_block();
   /// Starts another attempt at the current block.

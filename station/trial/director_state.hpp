@@ -28,6 +28,8 @@ struct Director::State {
   /// number of trials of the block so far that count; part of the key of the next trial's random draws
   int trial = 0;
   int shown = 0, right = 0;
+  double spent_s = 0;        ///< duration of the block's trials so far that count
+  bool last_counts = false;  ///< whether the last trial counts
   int warmups = 0, warmups_given = 0;
   int done = 0;
   std::string ended;
@@ -89,7 +91,11 @@ struct Director::State {
   procedure::Context context_for() const;
   void learn(const TrialEnd& end);
   int block_expected(const protocol::Block& b) const;
+  int trials_of(const protocol::Block& b) const;
   int left_in_block() const;
+  int left_of_procedures(const protocol::Block& b) const;
+  bool time_is_up() const;
+  double trial_s() const;
 
   // These functions make one trial (director_trials.cpp).
   bool timeouts_are_data() const;

@@ -25,11 +25,7 @@ std::vector<double> easy_levels(const std::vector<double>& values) {
 }  // namespace
 
 bool Director::State::timeouts_are_data() const {
-  const auto found = now()->fixed.find("instruction");
-  if (found == now()->fixed.end()) return false;
-  const auto* name = std::get_if<std::string>(&found->second);
-  const auto instruction = name ? protocol.instructions.find(*name) : protocol.instructions.end();
-  return instruction != protocol.instructions.end() && instruction->second.deadline_s.has_value();
+  return protocol::deadline_of_instruction(protocol, *now()) != nullptr;
 }
 
 /// Sets the times that depend on the trial's factors.
@@ -43,8 +39,7 @@ void Director::State::set_times(TrialSpec& spec) const {
     spec.signal_s = spec.anticipation_s = set(timing.signal->after_s);
     spec.deadline_s = *spec.signal_s + timing.signal->window_s;
   } else if (spec.timeouts_are_data) {
-    spec.deadline_s =
-        set(*protocol.instructions.at(std::get<std::string>(now()->fixed.at("instruction"))).deadline_s);
+    spec.deadline_s = set(*protocol::deadline_of_instruction(protocol, *now()));
   } else if (timing.deadline_s) {
     spec.deadline_s = set(*timing.deadline_s);
   }
@@ -136,9 +131,8 @@ IntervalOrder Director::State::presented_order(int key) const {
 /// Fills in what follows from the level and the factors: order of intervals, right answer, roving, times.
 void Director::State::complete(TrialSpec& spec) const {
   const int key = spec.type == core::TrialType::warmup ? -1 - warmups_given : trial;
-  const auto order = presented_order(spec.type == core::TrialType::warmup
-                                         ? warmups_given
-                                         : order_key(deviation.order_of.value_or(trial)));
+  const auto order = presented_order(
+      spec.type == core::TrialType::warmup ? warmups_given : order_key(deviation.order_of.value_or(trial)));
   spec.intervals = order.intervals;
   spec.correct = order.correct ? order.correct : correct_choice(protocol.task, spec.factors, order.intervals);
   spec.slider = slider(key);
@@ -263,6 +257,7 @@ std::optional<TrialSpec> Director::State::make() {
   if (now() == nullptr) return std::nullopt;
   current_procedure = no_procedure;
   if (now()->kind != protocol::BlockKind::trials) return strokes_trial();
+  if (time_is_up()) return std::nullopt;
   if (warmups > 0) return warmup_trial();
   if (!practice_levels.empty()) return practice_trial();
   if (now()->trials && shown >= *now()->trials) return std::nullopt;

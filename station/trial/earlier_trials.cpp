@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <variant>
 
+#include "station/protocol/answers.hpp"
 #include "station/protocol/sources.hpp"
 
 namespace turnpoint::trial {
@@ -17,8 +18,7 @@ bool was_repeated(const core::BlockRecord& block, const std::vector<core::BlockR
 
 procedure::Answer answer_in(const core::TrialRow& row, const procedure::Spec& spec) {
   if (row.outcome != core::Outcome::answered) return procedure::Answer::none;
-  const bool one = spec.tracks.empty() ? row.correct.value_or(false) : row.response == spec.tracks;
-  return one ? procedure::Answer::one : procedure::Answer::zero;
+  return protocol::learned_from(spec, row.response.value_or(""), row.correct);
 }
 
 }  // namespace

@@ -17,9 +17,9 @@ void check(const Timing& plan) {
   if (plan.intervals.empty())
     throw std::invalid_argument("trial: there is no interval; at least one is needed");
   if (plan.answers < 1) throw std::invalid_argument("trial: there are no answers; at least one is needed");
-  for (const auto time :
-       {plan.signal_ns.value_or(0), plan.cue_ns, plan.gap_ns, plan.deadline_ns, plan.anticipation_ns,
-        plan.feedback_ns, plan.late_ns, plan.iti_ns, plan.watermark_ns})
+  for (const auto time : {plan.signal_ns.value_or(0), plan.cue_ns, plan.gap_ns, plan.deadline_ns,
+                          plan.anticipation_ns, plan.feedback_ns, plan.late_ns, plan.iti_ns,
+                          plan.wrong_delay_ns, plan.late_delay_ns, plan.early_delay_ns, plan.watermark_ns})
     if (time < 0) throw std::invalid_argument("trial: a time is negative; all times must be 0 or more");
   for (const auto& interval : plan.intervals) {
     std::int64_t last = 0;
@@ -167,7 +167,7 @@ bool Machine::step(std::int64_t now_ns) {
       return true;
     case Phase::feedback:
     case Phase::late:
-      enter(Phase::interval, at + plan_.iti_ns);
+      enter(Phase::interval, at + pause_ns());
       return true;
     case Phase::interval:
       if (!decided()) return false;
@@ -182,7 +182,6 @@ bool Machine::step(std::int64_t now_ns) {
 void Machine::begin_interval(std::int64_t onset_ns) {
   const auto& interval = plan_.intervals[static_cast<std::size_t>(interval_)];
   const bool last = interval_ + 1 == static_cast<int>(plan_.intervals.size());
-  result_.onsets_ns.push_back(onset_ns);
   enter(Phase::stimulus, onset_ns + interval.duration_ns);
   if (!last) return;
   switch (plan_.response_zero) {
@@ -248,7 +247,7 @@ void Machine::answer(const Event& event) {
     return;
   }
   result_.response = event.value;
-  if (plan_.correct) result_.correct = event.value == *plan_.correct;
+  if (plan_.correct && event.value != plan_.unsure) result_.correct = event.value == *plan_.correct;
   result_.response_time_ns = event.time_ns - *result_.zero_ns;
   if (lift_off_ns_ && *lift_off_ns_ >= *result_.zero_ns) {
     result_.decision_time_ns = *lift_off_ns_ - *result_.zero_ns;
@@ -323,33 +322,23 @@ void Machine::settle(std::int64_t at_ns) {
   else if (result_.outcome == Outcome::answered && plan_.feedback_ns > 0)
     enter(Phase::feedback, at_ns + plan_.feedback_ns);
   else
-    enter(Phase::interval, at_ns + plan_.iti_ns);
+    enter(Phase::interval, at_ns + pause_ns());
 }
 
-const char* name(Phase phase) {
-  switch (phase) {
-    case Phase::idle:
-      return "idle";
-    case Phase::cue:
-      return "cue";
-    case Phase::stimulus:
-      return "stimulus";
-    case Phase::gap:
-      return "gap";
-    case Phase::response:
-      return "response";
-    case Phase::confidence:
-      return "confidence";
-    case Phase::feedback:
-      return "feedback";
-    case Phase::late:
-      return "late";
-    case Phase::interval:
-      return "interval";
-    case Phase::done:
-      return "done";
+// The pause after the trial, which is longer if the answer was not right.
+std::int64_t Machine::pause_ns() const {
+  switch (result_.outcome) {
+    case Outcome::answered:
+      return plan_.iti_ns + (result_.correct == false ? plan_.wrong_delay_ns : 0);
+    case Outcome::timeout:
+      return plan_.iti_ns + plan_.late_delay_ns;
+    case Outcome::anticipation:
+      return plan_.iti_ns + plan_.early_delay_ns;
+    case Outcome::aborted:
+    case Outcome::fault:
+      break;
   }
-  return "";
+  return plan_.iti_ns;
 }
 
 }  // namespace turnpoint::trial

@@ -49,11 +49,14 @@ struct Timing {
   std::int64_t feedback_ns = 0;  ///< length of the feedback; 0 for none
   std::int64_t late_ns = 0;      ///< length of the message after a late answer; 0 for none
   std::int64_t iti_ns = 0;
+  /// what the pause after the trial is longer by if the answer was wrong, too late or too early
+  std::int64_t wrong_delay_ns = 0, late_delay_ns = 0, early_delay_ns = 0;
   /// How long a time stamp may take to arrive. The machine waits this long after a deadline before it decides
   /// from the time stamps whether an answer was late.
   std::int64_t watermark_ns = 20'000'000;
   int answers = 2;             ///< number of possible answers
   std::optional<int> correct;  ///< index of the right answer; empty if no answer is right or wrong
+  std::optional<int> unsure;   ///< index of an answer that is neither right nor wrong; empty if there is none
   /// number of confidence levels that the participant chooses from after the answer, without a deadline; 0:
   /// confidence is not asked for. A second press of the answer, within core::kConfidenceGuard_ns of the
   /// first, is no confidence
@@ -106,7 +109,6 @@ struct Result {
   std::optional<std::int64_t> response_time_ns, decision_time_ns, movement_time_ns;
   std::optional<int> confidence;                   ///< degree of confidence; 1 is the least sure
   std::optional<std::int64_t> confidence_time_ns;  ///< time of the confidence rating, counted from the answer
-  std::vector<std::int64_t> onsets_ns;
   std::int64_t started_ns = 0, ended_ns = 0;
   int extra_touches = 0;  ///< late, early, repeated or outdated touches; they are logged but never scored
   int xruns = 0;
@@ -159,6 +161,7 @@ class Machine {
   void forget_response();
   void end(Outcome outcome, std::int64_t at_ns);
   void settle(std::int64_t at_ns);
+  std::int64_t pause_ns() const;
   std::int64_t deadline_at() const;
   std::int64_t signal_at() const;
 
@@ -176,7 +179,5 @@ class Machine {
   Result result_;
   std::vector<Action> actions_;
 };
-
-const char* name(Phase phase);
 
 }  // namespace turnpoint::trial

@@ -5,11 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "station/core/number.hpp"
 #include "station/protocol/answers.hpp"
+#include "station/protocol/expression.hpp"
 #include "station/protocol/resolve.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/trial/timing.hpp"
 
 namespace turnpoint::trial {
+
+using core::phrase, core::plain;
 
 namespace {
 
@@ -75,6 +80,7 @@ simulation::Question question_of(const TrialSpec& spec, const protocol::Protocol
   question.default_threshold = protocol::middle_level(protocol, level);
   set_second(spec, protocol, level, question);
   const auto& task = protocol.task;
+  question.unsure = !task.unsure.empty();
   if (task.confidence) question.confidence = static_cast<int>(task.confidence->labels.size());
   if (protocol::judges(task)) {
     question.decides = simulation::Decides::presence;
@@ -141,8 +147,89 @@ simulation::Adjustment adjustment_of(const TrialSpec& spec, const protocol::Prot
   adjustment.start = spec.level.value_or(spec.slider->low);
   adjustment.low = spec.slider->low, adjustment.high = spec.slider->high;
   adjustment.equal = equal_setting(protocol, spec.factors);
+  // after the tones there is nothing to feel, and after the deadline nothing counts
+  const auto times = simulated_times(protocol, spec, 0);
+  const auto from_slider_s = [&times](std::int64_t from_onset_ns) {
+    return 1e-9 * static_cast<double>(from_onset_ns - times.slider_ns);
+  };
+  constexpr double least_s = 0.05;  // where there is no time at all, the setting comes too late anyway
+  adjustment.within_s =
+      std::max(least_s, std::min(interval_times(protocol, spec).back().length_s + from_slider_s(0),
+                                 spec.deadline_s + from_slider_s(times.zero_ns)));
   adjustment.key = {seed, core::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
   return adjustment;
+}
+
+namespace {
+
+/// The deadlines of the protocol's blocks, each once.
+std::vector<const protocol::Linear*> deadlines_of(const protocol::Protocol& protocol) {
+  std::vector<const protocol::Linear*> deadlines;
+  for (const auto& block : protocol::all_blocks(protocol)) {
+    const auto* deadline = protocol::deadline_of_instruction(protocol, block);
+    if (deadline == nullptr && protocol.timing.deadline_s) deadline = &*protocol.timing.deadline_s;
+    const bool known = std::find(deadlines.begin(), deadlines.end(), deadline) != deadlines.end();
+    if (deadline != nullptr && !known && block.kind == protocol::BlockKind::trials)
+      deadlines.push_back(deadline);
+  }
+  return deadlines;
+}
+
+/// How long after response zero a simulated observer's answers are taken at the earliest and at the latest.
+std::pair<double, double> answers_from_s(const protocol::Protocol& protocol) {
+  if (protocol::explored(protocol.task)) return {0, 0};
+  if (const auto end = protocol::stimulus_end(protocol)) return {end->earliest_s, end->latest_s};
+  if (protocol.timing.response_zero != ResponseZero::first_contact) return {0, 0};
+  const double whole_s = protocol.task.duration_s.value_or(0), open_s = whole_s - reach_s(whole_s);
+  return {open_s, open_s};
+}
+
+}  // namespace
+
+std::vector<core::Problem> observer_notes(const protocol::Protocol& protocol,
+                                          const simulation::Observer& observer) {
+  std::vector<core::Problem> notes;
+  if (protocol.task.kind == protocol::TaskKind::adjustment || protocol.timing.signal) return notes;
+  const auto [least_s, most_s] = observer.nondecision_range_s();
+  const auto seconds = [](double s) { return plain(core::number(s, 3)); };
+  const auto [first_open_s, opens_s] = answers_from_s(protocol);
+  for (const auto* deadline : deadlines_of(protocol)) {
+    const double shortest_s = protocol::bounds(*deadline, protocol.factors).first;
+    const double left_s = shortest_s - most_s;
+    if (shortest_s < opens_s) {
+      notes.push_back(
+          {deadline->place,
+           phrase("the simulated observer can answer only when the last interval has ended, up to "
+                  "%1 s after \"%2\", so a deadline of %3 s is over before",
+                  {seconds(opens_s), plain(name(protocol.timing.response_zero)), seconds(shortest_s)}),
+           phrase("a longer deadline, or %1", {plain("response_zero = \"interval_off\"")})});
+      continue;
+    }
+    if (left_s > kLeastDecision_s - 1e-9) continue;
+    notes.push_back(
+        {deadline->place,
+         left_s > 0
+             ? phrase("the simulated observer needs %1 s outside its decision (its residual and travel), so "
+                      "a deadline of %2 s leaves it only %3 s to decide, and it guesses; people may be "
+                      "quicker",
+                      {seconds(most_s), seconds(shortest_s), seconds(left_s)})
+             : phrase("the simulated observer needs %1 s outside its decision (its residual and travel), so "
+                      "a deadline of %2 s leaves it no time to decide, and its answers are guesses that "
+                      "come too late; people may be quicker",
+                      {seconds(most_s), seconds(shortest_s)}),
+         phrase("--observer sim:residual=...,travel=... of `run` and `power` simulates quicker people")});
+  }
+  const auto& early = protocol.timing.anticipation_s;
+  if (const double early_s = protocol::bounds(early, protocol.factors).second;
+      early_s > std::max(least_s, first_open_s))
+    notes.push_back(
+        {early.place,
+         phrase("the simulated observer may answer after %1 s (its residual and travel), and answers before "
+                "%2 s "
+                "count as too early; people may be slower",
+                {seconds(least_s), seconds(early_s)}),
+         phrase("--observer sim:residual=...,travel=... of `run` and `power` simulates slower people")});
+  return notes;
 }
 
 }  // namespace turnpoint::trial

@@ -1,6 +1,7 @@
 #include "station/trial/rows.hpp"
 
 #include "station/core/number.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/trial/timing.hpp"
 
 namespace turnpoint::trial {
@@ -9,12 +10,6 @@ namespace {
 
 std::optional<double> seconds(const std::optional<std::int64_t>& ns) {
   return ns ? std::optional(static_cast<double>(*ns) * 1e-9) : std::nullopt;
-}
-
-std::string choice_id(const protocol::Protocol& protocol, int index) {
-  const auto& choices = protocol.task.choices;
-  return index >= 0 && index < static_cast<int>(choices.size()) ? choices[static_cast<std::size_t>(index)].id
-                                                                : "";
 }
 
 /// Returns the "response" to store for a trial without a question: a word for how the finger moved.
@@ -47,7 +42,8 @@ core::TrialRow row_of(const TrialSpec& spec, const protocol::Protocol& protocol,
   row.level = spec.level;
   for (const auto& [name, value] : spec.factors)
     std::visit([&row, &name = name](const auto& v) { row.factors[name] = v; }, value);
-  if (spec.correct) row.correct_response = spec.strokes ? "ok" : choice_id(protocol, *spec.correct);
+  if (spec.correct)
+    row.correct_response = spec.strokes ? "ok" : protocol::answer_id(protocol.task, *spec.correct);
   row.response_zero = name(zero_of(protocol, spec));
   row.response_time_quality = "n/a";
   row.deadline_s = spec.deadline_s;
@@ -58,7 +54,8 @@ void fill_result(core::TrialRow& row, const Result& result, const TrialSpec& spe
                  const protocol::Protocol& protocol, std::int64_t origin_ns,
                  const std::optional<double>& value) {
   row.outcome = result.outcome;
-  if (result.response) row.response = value ? core::exact(*value) : choice_id(protocol, *result.response);
+  if (result.response)
+    row.response = value ? core::exact(*value) : protocol::answer_id(protocol.task, *result.response);
   if (result.response && spec.strokes) row.response = movement_word(row, *result.response);
   row.correct = result.correct;
   row.confidence = result.confidence;
@@ -72,7 +69,33 @@ void fill_result(core::TrialRow& row, const Result& result, const TrialSpec& spe
   row.extra_touches = result.extra_touches;
   row.xruns = result.xruns;
   if (!spec.correct) row.correct.reset();
+  row.points = points_of(result, spec, protocol);
   if (!result.response) row.response_time_quality = "n/a";
+}
+
+std::optional<double> points_of(const Result& result, const TrialSpec& spec,
+                                const protocol::Protocol& protocol) {
+  if (!protocol.payoff || spec.strokes || spec.type == core::TrialType::warmup) return std::nullopt;
+  const auto& payoff = *protocol.payoff;
+  const auto value = [&](const protocol::Linear& points) { return protocol::evaluate(points, spec.factors); };
+  switch (result.outcome) {
+    case Outcome::answered:
+      break;
+    case Outcome::timeout:
+      return value(payoff.late);
+    case Outcome::anticipation:
+      return value(payoff.early);
+    case Outcome::aborted:
+    case Outcome::fault:
+      return std::nullopt;
+  }
+  if (!spec.correct) return std::nullopt;
+  if (!result.correct)  // the participant did not want to guess
+    return value(payoff.unsure);
+  if (!*result.correct) return value(payoff.wrong);
+  const auto time_s = seconds(result.response_time_ns);
+  const bool fast = payoff.fast && time_s && *time_s < value(payoff.fast->below_s);
+  return value(payoff.right) + (fast ? value(payoff.fast->points) : 0);
 }
 
 }  // namespace turnpoint::trial

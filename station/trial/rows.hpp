@@ -20,4 +20,9 @@ void fill_result(core::TrialRow& row, const Result& result, const TrialSpec& spe
                  const protocol::Protocol& protocol, std::int64_t origin_ns,
                  const std::optional<double>& value);
 
+/// Returns what the result of a trial is worth to the participant. Empty if the protocol gives no points, for
+/// void and warm-up trials, and for answers to questions without a right answer.
+std::optional<double> points_of(const Result& result, const TrialSpec& spec,
+                                const protocol::Protocol& protocol);
+
 }  // namespace turnpoint::trial

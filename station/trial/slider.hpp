@@ -11,6 +11,7 @@ struct SliderSpan {
   double low = 0, high = 1;  ///< limits of the settings, in the unit of the factor
   double step = 0;           ///< possible settings are low + k * step
   double shown_low = 0, shown_high = 1;
+  bool operator==(const SliderSpan&) const = default;
 };
 
 /// Duration of one glide of the surface to a new setting, and time from the start of one glide to the next.

@@ -79,9 +79,10 @@ core::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& 
   return spec.strokes ? core::ResponseZero::interval_off : protocol.timing.response_zero;
 }
 
+double reach_s(double length_s) { return std::min(0.2, 0.5 * length_s); }
+
 SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSpec& spec,
                                std::int64_t onset_ns) {
-  constexpr double reach_s = 0.2;
   const auto last = interval_times(protocol, spec).back();
   SimulatedTimes times{onset_ns, onset_ns, {}, {}, onset_ns};
   if (spec.strokes || !protocol::explored(protocol.task)) times.open_ns += whole_ns(last.length_s);
@@ -97,11 +98,11 @@ SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSp
       times.zero_ns += whole_ns(last.length_s);
       break;
     case core::ResponseZero::first_contact:
-      times.touch_ns = times.zero_ns += whole_ns(std::min(reach_s, 0.5 * last.length_s));
+      times.touch_ns = times.zero_ns += whole_ns(reach_s(last.length_s));
       times.slider_ns = std::max(times.slider_ns, times.zero_ns);
       break;
     case core::ResponseZero::lift_off:
-      times.touch_ns = onset_ns + whole_ns(std::min(reach_s, 0.5 * last.length_s));
+      times.touch_ns = onset_ns + whole_ns(reach_s(last.length_s));
       times.lift_ns = times.zero_ns += whole_ns(last.length_s);
       break;
   }
@@ -130,14 +131,16 @@ std::vector<Event> simulated_events(const SimulatedTimes& times, const simulatio
 }
 
 std::int64_t simulated_done_ns(const SimulatedTimes& times, const TrialSpec& spec, double done_s) {
-  constexpr double press_s = 0.5;
+  const double press_s = std::min(0.5, 0.5 * (spec.deadline_s - spec.anticipation_s));
   const auto done_ns = times.slider_ns + whole_ns(done_s);
-  return done_ns >= times.zero_ns ? done_ns : times.zero_ns + whole_ns(spec.anticipation_s + press_s);
+  return done_ns >= times.zero_ns + whole_ns(spec.anticipation_s)
+             ? done_ns
+             : times.zero_ns + whole_ns(spec.anticipation_s + press_s);
 }
 
 Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec) {
   Timing plan;
-  plan.cue_ns = ns(kCue_s);
+  plan.cue_ns = ns(protocol::kCue_s);
   plan.watermark_ns = core::kWatermark_ns;
   for (const auto& interval : interval_times(protocol, spec)) {
     IntervalTiming timed{ns(interval.length_s), {}};
@@ -150,19 +153,25 @@ Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& bloc
   plan.deadline_ns = ns(spec.deadline_s);
   plan.anticipation_ns = ns(spec.anticipation_s);
   if (spec.signal_s) plan.signal_ns = ns(*spec.signal_s);
-  plan.feedback_ns = block.feedback == protocol::Feedback::trial ? ns(kFeedback_s) : 0;
-  plan.late_ns = ns(kLate_s);
+  plan.feedback_ns = block.feedback == protocol::Feedback::trial ? ns(protocol::kFeedback_s) : 0;
+  plan.late_ns = ns(protocol::kLate_s);
   plan.iti_ns = ns(spec.iti_s);
-  plan.answers = protocol.task.kind == protocol::TaskKind::adjustment
-                     ? 1
-                     : static_cast<int>(protocol.task.choices.size());
   plan.correct = spec.correct;
+  const auto delay_ns = [&](const protocol::Linear& delay_s) {
+    return ns(protocol::evaluate(delay_s, spec.factors));
+  };
+  plan.wrong_delay_ns = delay_ns(protocol.timing.delay_s.wrong);
+  plan.late_delay_ns = delay_ns(protocol.timing.delay_s.late);
+  plan.early_delay_ns = delay_ns(protocol.timing.delay_s.early);
   if (spec.strokes) {
     plan.answers = 2;  // the two possible "answers": the movement was right or wrong
-    if (block.kind == protocol::BlockKind::training) plan.feedback_ns = ns(kLate_s);
+    if (block.kind == protocol::BlockKind::training) plan.feedback_ns = ns(protocol::kLate_s);
     return plan;
   }
-  if (protocol.task.confidence) plan.confidence = static_cast<int>(protocol.task.confidence->labels.size());
+  const auto& task = protocol.task;
+  plan.answers = task.kind == protocol::TaskKind::adjustment ? 1 : protocol::answer_count(task);
+  plan.unsure = protocol::answer_index(task, protocol::kUnsure);
+  if (task.confidence) plan.confidence = static_cast<int>(task.confidence->labels.size());
   return plan;
 }
 

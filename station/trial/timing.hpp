@@ -11,9 +11,6 @@
 
 namespace turnpoint::trial {
 
-/// How long the page shows the get-ready cue, the feedback, and the message after a late answer.
-inline constexpr double kCue_s = 0.8, kFeedback_s = 0.8, kLate_s = 1.0;
-
 /// The moment from which response times of a trial are counted. In a block in which the finger only strokes
 /// the surface, it is the end of the interval, because the movement is judged then.
 core::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& spec);
@@ -31,10 +28,13 @@ struct SimulatedTimes {
 SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSpec& spec,
                                std::int64_t onset_ns);
 
+/// How long after the onset of an interval of this length the simulated finger touches the surface.
+double reach_s(double length_s);
+
 /// What the simulated participant does then, in order of time.
 std::vector<Event> simulated_events(const SimulatedTimes& times, const simulation::Reply& reply);
 
-/// When the simulated participant presses Done: never before response times count.
+/// When the simulated participant presses Done: never before answers count.
 std::int64_t simulated_done_ns(const SimulatedTimes& times, const TrialSpec& spec, double done_s);
 
 Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec);

@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "station/core/median.hpp"
 #include "station/core/number.hpp"
 #include "station/report/words.hpp"
 
@@ -55,13 +56,6 @@ using Facts = std::vector<std::pair<std::string, std::string>>;
 constexpr double kWindow_s = 60;
 
 std::string percent(double share) { return number(std::round(1000 * share) / 10, 4) + " %"; }
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
 
 int count(const std::vector<LiveTrial>& trials, core::Outcome outcome) {
   return static_cast<int>(std::count_if(trials.begin(), trials.end(),
@@ -141,10 +135,10 @@ Facts course_of(const std::vector<LiveTrial>& trials, const std::string& languag
   if (catches > 0)
     facts.emplace_back(words("report.catch_right"), words("report.of", {whole(caught), whole(catches)}));
   add_estimates(trials, words, facts);
-  facts.emplace_back(words("live.response_time"),
-                     times.empty()
-                         ? words("live.none_yet")
-                         : words("live.median_last", {number(median(times), 3), number(times.back(), 3)}));
+  facts.emplace_back(
+      words("live.response_time"),
+      times.empty() ? words("live.none_yet")
+                    : words("live.median_last", {number(core::median(times), 3), number(times.back(), 3)}));
   facts.emplace_back(words("report.late_early"), fmt::format("{}, {}", count(trials, Outcome::timeout),
                                                              count(trials, Outcome::anticipation)));
   facts.emplace_back(words("report.void"),

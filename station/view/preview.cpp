@@ -84,7 +84,14 @@ void describe_plan(SceneLook& look) {
   add("preview.error", phrase(plan.inside_tolerance ? "preview.at_most_mm" : "preview.beyond_tolerance",
                               {shown(1e3 * plan.error_bound_m, 3)}));
   if (plan.cheaper) add("preview.cheaper", why_not_cheaper(*plan.cheaper, plan.scene.tolerance));
-  add("preview.uncertain", phrase("preview.mm_sd", {shown(1e3 * plan.uncertainty_m, 3)}));
+  Phrase uncertain{"", "", {phrase("preview.mm_sd", {shown(1e3 * plan.uncertainty_m, 3)})}};
+  if (look.under.level) {
+    uncertain.values.push_back(plain("; "));
+    uncertain.values.push_back(
+        phrase("preview.level_sd", {shown(look.under.level->total_dB, 2), shown(look.under.friction_low, 3),
+                                    shown(look.under.friction_high, 3)}));
+  }
+  add("preview.uncertain", std::move(uncertain));
   for (const auto& tone : plan.tones)
     add("preview.tone",
         phrase("preview.tone_drive", {shown(1e-3 * tone.frequency_Hz, 6), um(tone.amplitude_m),
@@ -155,13 +162,6 @@ SceneLook Preview::look(const std::string& scene, const protocol::Factors& facto
     look.problem = error.what();
   }
   return look;
-}
-
-Outline outline_of(const rig::Rig& rig) {
-  const auto shape = rig::surface_of(rig);
-  const double length_m = rig.surface.length_m;
-  return {1e3 * length_m, 1e3 * physics::half_width_m(shape, 0), 1e3 * physics::half_width_m(shape, length_m),
-          rig.surface.wide_end == rig::WideEnd::left};
 }
 
 protocol::Factors factors_for(const protocol::Protocol& protocol, const std::vector<std::string>& set,

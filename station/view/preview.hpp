@@ -67,13 +67,6 @@ class Preview {
   scene::Planner planner_;
 };
 
-/// The outline of a rig's surface, for a drawing.
-struct Outline {
-  double length_mm = 0, wide_half_width_mm = 0, narrow_half_width_mm = 0;
-  bool wide_end_left = true;
-};
-Outline outline_of(const rig::Rig& rig);
-
 /// Returns values for every factor. `set` contains texts of the form "factor=value". Each factor that `set`
 /// does not name gets its first level or the middle of its range, and is listed in `assumed`. Throws
 /// core::UsageError for a text of another form, an unknown factor, or a word where the factor needs a

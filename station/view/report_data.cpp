@@ -69,15 +69,17 @@ std::optional<Phrase> flashes(const std::vector<core::EventRow>& events) {
 /// Describes the largest model error and the largest uncertainty of the boundaries of the tones that were
 /// presented.
 std::string boundary_errors(const std::vector<store::BlockRecord>& blocks) {
-  double bound_mm = 0, uncertainty_mm = 0;
+  double bound_mm = 0, uncertainty_mm = 0, level_dB = 0;
   for (const auto& block : blocks)
     for (const auto& row : block.trials)
       for (const auto& tone : row.tones) {
         bound_mm = std::max(bound_mm, tone.error_bound_mm);
         uncertainty_mm = std::max(uncertainty_mm, tone.uncertainty_mm);
+        level_dB = std::max(level_dB, tone.level_uncertainty_dB.value_or(0));
       }
   return "model at most " + core::number(bound_mm, 2) + " mm; uncertain parameters of the rig " +
-         (uncertainty_mm > 0 ? core::number(uncertainty_mm, 3) + " mm (SD)" : std::string("not known"));
+         (uncertainty_mm > 0 ? core::number(uncertainty_mm, 3) + " mm (SD)" : std::string("not known")) +
+         (level_dB > 0 ? ", of the level at the last maximum " + core::number(level_dB, 2) + " dB (SD)" : "");
 }
 
 /// The numbers of trials by the words that the database has for them, such as "57 ok, 2 wire".

@@ -13,6 +13,7 @@
 #include "station/session/session.hpp"
 #include "station/trial/director.hpp"
 #include "station/trial/machine.hpp"
+#include "station/trial/rows.hpp"
 
 namespace turnpoint::view {
 
@@ -36,6 +37,7 @@ class Sampler {
     }
     session::Summary summary;
     summary.status = core::SessionStatus::completed;
+    if (setup_.protocol.payoff) summary.points = 0;
     add("design.page.end", pages_.end(summary, director_));
     return std::move(all_);
   }
@@ -89,6 +91,10 @@ class Sampler {
     const bool judged =
         block.feedback == protocol::Feedback::trial || block.kind == protocol::BlockKind::training;
     if (judged && feedback_.insert(task).second) add_feedback(*spec, block, director);
+    session::BlockScore score;
+    score.trials = 10, score.right = 8, score.times_s = {0.5};
+    if (auto over = pages_.block_over(block, score, 0, director); over && over_.insert(told).second)
+      add("design.page.block_over", *std::move(over));
     if (block.break_after && !rest_) {
       rest_ = true;
       add("design.page.rest", pages_.rest(block, block.break_after->min_s, director));
@@ -132,6 +138,8 @@ class Sampler {
       result.correct = right;
       auto page = pages_.of_phase(Phase::feedback, last_of(spec), spec, block, result, director);
       if (spec.strokes) page.text = pages_.movement(right ? "ok" : "hard");
+      if (const auto points = trial::points_of(result, spec, setup_.protocol))
+        pages_.add_points(page, *points, block.practice ? std::nullopt : points);
       add("design.page.feedback", std::move(page));
     }
   }
@@ -142,7 +150,7 @@ class Sampler {
   const trial::Director director_;
   std::vector<SamplePage> all_;
   std::set<std::string> interludes_;
-  std::set<std::tuple<protocol::BlockKind, bool, std::string>> blocks_;
+  std::set<std::tuple<protocol::BlockKind, bool, std::string>> blocks_, over_;
   std::set<std::pair<protocol::BlockKind, std::string>> tasks_, feedback_;
   bool rest_ = false;
 };

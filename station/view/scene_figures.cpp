@@ -175,14 +175,7 @@ void draw_surface(report::Canvas& canvas, const SceneLook& look, const rig::Rig&
 Drawing drawing_of(report::Figure figure) {
   return [figure = std::move(figure)](report::Canvas& canvas, double width_px, double height_px) {
     try {
-      auto placed = report::laid_out(figure, width_px, height_px);
-      // a caption must leave the figure four fifths of the height
-      if (report::caption_height_px(placed) > 0.2 * height_px) {
-        auto plain = figure;
-        plain.caption.clear();
-        placed = report::laid_out(std::move(plain), width_px, height_px);
-      }
-      report::draw(canvas, placed);
+      report::draw(canvas, report::laid_out(figure, width_px, height_px));
     } catch (const std::invalid_argument&) {
       // If the legend does not fit into this width and height, use the original layout and scale it down.
       report::draw(canvas, figure);

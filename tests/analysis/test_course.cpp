@@ -105,6 +105,7 @@ TEST_CASE("People who repeat their answers are found, and a run of equal stimuli
     for (int i = 0; i < 4000; ++i) {
       if (draws.uniform() < 0.3) right = 1 - right;  // stimuli come in runs
       TrialRecord trial;
+      trial.trial_index = i;
       trial.right_choice = right;
       trial.response = draws.uniform() < 0.8 ? right : 1 - right;
       if (draws.uniform() < habit) trial.response = last;

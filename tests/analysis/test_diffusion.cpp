@@ -18,6 +18,7 @@
 #include "station/analysis/trade.hpp"
 #include "tests/analysis/first_passage_table.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/number_from.hpp"
 #include "tests/support/diffusion.hpp"
 
 using namespace turnpoint::analysis;
@@ -128,11 +129,6 @@ Coverage coverage(std::size_t index, int sets, int first) {
   return result;
 }
 
-int number_from(const char* variable, int otherwise) {
-  const char* text = std::getenv(variable);
-  return text == nullptr ? otherwise : std::atoi(text);
-}
-
 }  // namespace
 
 namespace {
@@ -168,11 +164,13 @@ TEST_CASE("The first-passage density, distribution, tail and survival agree with
 TEST_CASE("With variability of drift and delay, the first-passage functions agree with quadrature in mpmath",
           "[analysis][diffusion]") {
   std::vector<std::array<double, 10>> rows;
-  for (const auto& row : turnpoint::tests::kFirstPassageVaried) std::copy_n(row, 10, rows.emplace_back().begin());
+  for (const auto& row : turnpoint::tests::kFirstPassageVaried)
+    std::copy_n(row, 10, rows.emplace_back().begin());
   if (const char* more = std::getenv("TURNPOINT_VARIED_ROWS")) {
     std::ifstream file(more);
     for (std::string line; std::getline(file, line);) {
-      std::replace_if(line.begin(), line.end(), [](char c) { return c == ',' || c == '{' || c == '}'; }, ' ');
+      std::replace_if(
+          line.begin(), line.end(), [](char c) { return c == ',' || c == '{' || c == '}'; }, ' ');
       std::istringstream words(line);
       for (auto& number : rows.emplace_back()) words >> number;
       REQUIRE(words);
@@ -540,8 +538,8 @@ GroupShares group_shares(int people, int studies, int first) {
 
 }  // namespace
 
-// TURNPOINT_GROUP_STUDIES=1000 prints the shares for 8 and for 20 people; TURNPOINT_GROUP_FIRST=50 begins at that
-// study, and TURNPOINT_GROUP_PEOPLE=20 takes one size of group, so that a run can be made in parts.
+// TURNPOINT_GROUP_STUDIES=1000 prints the shares for 8 and for 20 people; TURNPOINT_GROUP_FIRST=50 begins at
+// that study, and TURNPOINT_GROUP_PEOPLE=20 takes one size of group, so that a run can be made in parts.
 TEST_CASE(
     "A group's effects on the diffusion's parameters hold the truth, and none is claimed that is not there",
     "[analysis][diffusion]") {
@@ -564,4 +562,74 @@ TEST_CASE(
     for (std::size_t m = 0; m < 3; ++m) CHECK(percent(shares.held[m]) > 92);
     for (std::size_t m = 1; m < 3; ++m) CHECK(percent(shares.claimed[m]) < 7);
   }
+}
+
+TEST_CASE("One answer that came before all others does not hide the maximum of the likelihood",
+          "[analysis][diffusion]") {
+  // Without contaminants, the time outside the decision must be shorter than it. People of `speed_acc` have
+  // such answers.
+  rnd::Draws draws({10, rnd::Stream::observer, 0, 0, 0});
+  auto trials = simulated(kAccuracy, 0, kCells[0], {100, 100, 100}, draws);
+  for (const double first_s : {0.25, 0.15}) {
+    trials.front().time_s = first_s;
+    DiffusionOptions options;
+    options.contaminants = false, options.start = true, options.method = DiffusionOptions::Method::likelihood;
+    const auto fit = fit_diffusion(trials, 3, 1, 1, options).estimates;
+    REQUIRE(fit);
+    const auto log_likelihood = [&](double boundary, double ter_s, double start,
+                                    const std::vector<double>& drift) {
+      double sum = 0;
+      for (const auto& trial : trials)
+        sum += log_density({drift[trial.difficulty] / 0.1, boundary / 0.1, start}, trial.correct,
+                           trial.time_s - ter_s);
+      return sum;
+    };
+    std::vector<double> drift;
+    for (const auto& one : fit->drift) drift.push_back(one.value);
+    const double highest =
+        log_likelihood(fit->boundary.value, fit->nondecision_s.value, fit->start.value, drift);
+    CHECK(highest == Approx(fit->log_likelihood).margin(1e-6));
+    int higher = 0;
+    for (int i = 0; i < 20000; ++i) {  // near the maximum, and far from it
+      const double far = i % 2 == 0 ? 0.02 : 0.5;
+      std::vector<double> others;
+      for (const double v : drift) others.push_back(v + 0.2 * far * draws.normal());
+      higher +=
+          log_likelihood(fit->boundary.value * std::exp(far * draws.normal()),
+                         std::min(fit->nondecision_s.value * std::exp(far * draws.normal()), 0.999 * first_s),
+                         std::clamp(fit->start.value + 0.3 * far * draws.normal(), 0.01, 0.99),
+                         others) > highest + 1e-6;
+    }
+    CHECK(higher == 0);
+    options.method = DiffusionOptions::Method::posterior;
+    CHECK(fit_diffusion(trials, 3, 1, 1, options).estimates);
+  }
+}
+
+TEST_CASE("An end of an interval hardly depends on which draws were taken", "[analysis][diffusion]") {
+  // A condition whose posterior has two modes. Times in ms, below 0 of wrong answers. With the draws of the
+  // best round alone, the lower end of the time outside the decision moved by 12 % of the width.
+  const std::vector<std::vector<int>> times_ms{
+      {661,  -566, 667,  548, -560, 736,  605, 667,  639,  531,  658,  -750, 577,  679,
+       -830, -704, -543, 549, -803, -558, 612, -671, -568, -559, -646, 750,  -573, 701},
+      {663, -528, 922,  704, -592, 544, -687, 759, 594, 798,  578, 666, 536, 834,
+       594, -579, -662, 659, 743,  793, 529,  517, 688, -524, 525, 599, 569, -529},
+      {546, 563, 591, 536, 608, 522, 595, 746, 594, 557, 579,  544, 640, 596,
+       543, 535, 513, 602, 571, 696, 552, 546, 565, 536, -498, 543, 569, 544}};
+  std::vector<DiffusionTrial> trials;
+  for (std::size_t difficulty = 0; difficulty < times_ms.size(); ++difficulty)
+    for (const int time_ms : times_ms[difficulty])
+      trials.push_back({difficulty, DiffusionTrial::Outcome::answered, time_ms > 0,
+                        std::abs(time_ms) / 1000.0, 1.0, 0.15});
+  std::vector<double> low, high;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    const auto fit = fit_diffusion(trials, 3, seed, 1);
+    REQUIRE(fit.estimates);
+    CHECK(fit.estimates->effective_draws >= 400);
+    low.push_back(fit.estimates->nondecision_s.interval.low);
+    high.push_back(fit.estimates->nondecision_s.interval.high);
+  }
+  const double width = mean(high) - mean(low);
+  CHECK(std::sqrt(variance(low)) < 0.07 * width);
+  CHECK(std::sqrt(variance(high)) < 0.07 * width);
 }

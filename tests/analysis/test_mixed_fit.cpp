@@ -8,6 +8,7 @@
 #include "station/analysis/quantile.hpp"
 #include "station/core/draws.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/number_from.hpp"
 
 using namespace turnpoint;
 using namespace turnpoint::analysis;
@@ -153,14 +154,11 @@ TEST_CASE("Few trials of an unusual participant are drawn to the group, many are
 
 TEST_CASE("Partial pooling predicts participants better than their own fits, and its intervals hold",
           "[mixed]") {
-  const int studies = std::getenv("TURNPOINT_STUDIES") ? std::atoi(std::getenv("TURNPOINT_STUDIES")) : 60;
+  const int studies = number_from("TURNPOINT_STUDIES", 60);
   int group_holds = 0, person_holds = 0, people = 0;
   double pooled_error = 0, own_error = 0;
   // TURNPOINT_PEOPLE and TURNPOINT_LEVEL_TRIALS make other studies than ten people with ten trials a level
-  const auto from = [](const char* name, int otherwise) {
-    return std::getenv(name) ? std::atoi(std::getenv(name)) : otherwise;
-  };
-  const Group group{from("TURNPOINT_PEOPLE", 10), from("TURNPOINT_LEVEL_TRIALS", 10)};
+  const Group group{number_from("TURNPOINT_PEOPLE", 10), number_from("TURNPOINT_LEVEL_TRIALS", 10)};
   for (int study = 0; study < studies; ++study) {
     core::Draws draws({7, core::Stream::observer, 0, 0, study});
     std::vector<double> thresholds;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "station/analysis/psychometric_fit.hpp"
@@ -45,6 +46,47 @@ TEST_CASE("The maximum-likelihood fit of the reference data gives the known para
   CHECK(fit.deviance == Approx(0.2833).margin(5e-5));
   CHECK(fit.free_parameters == 3);
   CHECK(fit.statements.empty());
+}
+
+TEST_CASE("An unsure answer counts as the share of a right one that a guess would be", "[analysis]") {
+  std::vector<TrialRecord> trials(6);
+  for (auto& trial : trials) trial.level = -10;
+  trials[0].correct = true, trials[1].correct = false;
+  trials[2].unsure = trials[3].unsure = true;
+  trials[4].outcome = Outcome::timeout;
+  trials[5].unsure = true, trials[5].type = TrialType::practice;
+  const auto two = count_correct(trials), three = count_correct(trials, 3);
+  REQUIRE(two.size() == 1);
+  CHECK(two[0].trials == 4);
+  CHECK(two[0].sum() == 2);
+  CHECK(two[0].positive == 1);
+  CHECK(three[0].sum() == Approx(1 + 2.0 / 3));
+
+  // An observer who admits all guesses gives the same fit as one who makes them, with less scatter.
+  const Psychometric truth{-18, 2, 0.5, 0};
+  double guessed = 0, admitted = 0;
+  const int runs = 40;
+  for (int run = 0; run < runs; ++run) {
+    rnd::Draws draws({7, rnd::Stream::observer, run, 0, 0});
+    std::vector<LevelCount> forced, unforced;
+    for (const double level : {-30.0, -25.0, -21.0, -18.0, -15.0, -11.0}) {
+      const double knows = 2 * probability(Function::weibull, Scale::linear, truth, level) - 1;
+      LevelCount a{level, 30, 0}, b{level, 30, 0};
+      for (int i = 0; i < 30; ++i) {
+        const bool known = draws.uniform() < knows, lucky = draws.uniform() < 0.5;
+        a.positive += known || lucky ? 1 : 0;
+        b.positive += known ? 1 : 0;
+        b.admitted += known ? 0 : 0.5;
+      }
+      forced.push_back(a), unforced.push_back(b);
+    }
+    const auto one = fit_psychometric(forced, {}), other = fit_psychometric(unforced, {});
+    REQUIRE((one.parameters && other.parameters));
+    guessed += one.parameters->threshold / runs;
+    admitted += other.parameters->threshold / runs;
+  }
+  CHECK(guessed == Approx(truth.threshold).margin(0.7));
+  CHECK(admitted == Approx(truth.threshold).margin(0.4));
 }
 
 TEST_CASE("Degenerate data give a statement instead of a number", "[analysis]") {
@@ -200,6 +242,122 @@ TEST_CASE("A bootstrap depends only on its seed and stream", "[analysis]") {
   CHECK_THROWS_AS(bootstrap(fit, {10, 0.95, 1, 0, 0}), std::invalid_argument);
 }
 
+namespace {
+
+/// -ln likelihood, written apart from the fit. With `p75`, the threshold is the level of three quarters.
+double cost(const FitOptions& options, const std::vector<LevelCount>& data, double threshold, double slope,
+            double lapse, double guess, bool p75) {
+  if (options.guess == Guess::fixed) guess = options.guess_value;
+  double sum = 0;
+  for (const auto& point : data) {
+    double p = guess;
+    if (point.level != kNoise) {
+      double turns = std::pow(point.level / threshold, slope);
+      if (p75) {
+        const double inside = (0.75 - guess) / (1 - guess - lapse);
+        if (!(inside > 0 && inside < 1)) return 1e9;
+        turns *= -std::log(1 - inside);
+      }
+      p += (1 - guess - lapse) * (1 - std::exp(-turns));
+    }
+    p = std::min(std::max(p, 1e-12), 1 - 1e-12);
+    sum -= point.positive * std::log(p) + (point.trials - point.positive) * std::log(1 - p);
+  }
+  return sum;
+}
+
+/// The lowest cost with this threshold: over a grid, then by halved steps from its ten best points.
+double lowest(const FitOptions& options, const std::vector<LevelCount>& data, double threshold, bool p75) {
+  double first = 1e9, last = 0;
+  for (const auto& point : data)
+    if (point.level != kNoise) first = std::min(first, point.level), last = std::max(last, point.level);
+  const double range_dB = 20 * std::log10(last / first), dB = std::log(10) / 20;
+  const std::array<double, 3> low{std::log(0.1 / range_dB / dB), 0, 0},
+      high{std::log(80 / range_dB / dB), options.lapse_high, options.guess_high};
+  const auto at = [&](const std::array<double, 3>& x) {
+    return cost(options, data, threshold, std::exp(x[0]), x[1], x[2], p75);
+  };
+  std::vector<std::pair<double, std::array<double, 3>>> grid;
+  const bool free = options.guess == Guess::fitted;
+  for (int s = 0; s <= 60; ++s)
+    for (int l = 0; l <= 2; ++l)
+      for (int g = 0; g <= (free ? 30 : 0); ++g) {
+        const std::array<double, 3> x{low[0] + s * (high[0] - low[0]) / 60, l * high[1] / 2,
+                                      g * high[2] / 30};
+        grid.push_back({at(x), x});
+      }
+  std::partial_sort(grid.begin(), grid.begin() + 10, grid.end());
+  double best = grid[0].first;
+  for (int i = 0; i < 10; ++i) {
+    auto [here, x] = grid[i];
+    for (double step = 0.05; step > 1e-6;) {
+      bool moved = false;
+      for (std::size_t k = 0; k < (free ? 3u : 2u); ++k)
+        for (const double side : {-1.0, 1.0}) {
+          auto next = x;
+          next[k] = std::clamp(x[k] + side * step * (high[k] - low[k]), low[k], high[k]);
+          if (const double value = at(next); value < here - 1e-12) here = value, x = next, moved = true;
+        }
+      if (!moved) step /= 2;
+    }
+    best = std::min(best, here);
+  }
+  return best;
+}
+
+}  // namespace
+
+TEST_CASE("An interval ends where functions with that threshold stop being likely enough, at both ends alike",
+          "[analysis]") {
+  // With the threshold held, a steep and a shallow function can each be a maximum; the likelihood can fall
+  // quickly where the threshold passes a level, and rise again beyond.
+  FitOptions three, detection, two;
+  two.scale = three.scale = detection.scale = Scale::log10;
+  three.guess_value = 1.0 / 3;
+  detection.guess = Guess::fitted, detection.guess_high = 0.9;
+  const std::vector<std::pair<FitOptions, std::vector<LevelCount>>> sessions{
+      {three,
+       {{0.049, 18, 7}, {0.089, 18, 6}, {0.137, 18, 14}, {0.253, 18, 14}, {0.421, 18, 16}, {0.708, 18, 18}}},
+      {detection, {{kNoise, 24, 6}, {0.048, 12, 4}, {0.115, 12, 3}, {0.283, 12, 9}, {0.699, 12, 12}}},
+      {detection, {{kNoise, 42, 9}, {0.051, 11, 6}, {0.124, 11, 4}, {0.302, 11, 11}, {0.733, 9, 9}}},
+      {detection, {{kNoise, 18, 5}, {0.05, 18, 5}, {0.126, 18, 7}, {0.3175, 18, 9}, {0.8, 18, 17}}},
+      {detection, {{kNoise, 25, 0}, {0.05, 25, 0}, {0.2, 25, 1}, {0.8, 25, 23}}},
+      {detection, {{kNoise, 21, 7}, {0.05, 21, 9}, {0.126, 21, 19}, {0.3175, 21, 21}, {0.8, 21, 21}}},
+      {two, {{0.05, 12, 6}, {0.1, 12, 5}, {0.2, 12, 12}, {0.4, 12, 12}, {0.8, 12, 12}}},
+      {three,
+       {{0.05, 27, 5},
+        {0.0794, 27, 8},
+        {0.126, 27, 9},
+        {0.2, 27, 13},
+        {0.3175, 27, 25},
+        {0.504, 27, 26},
+        {0.8, 27, 27}}},
+      {three, {{0.05, 8, 1}, {0.1, 8, 5}, {0.2, 8, 6}, {0.4, 8, 8}, {0.8, 8, 8}}}};
+  for (std::size_t i = 0; i < sessions.size(); ++i)
+    for (const bool p75 : {false, true}) {
+      INFO("session " << i << (p75 ? ", level of 75 %" : ", threshold"));
+      const auto& [options, data] = sessions[i];
+      const auto fit = fit_psychometric(data, options);
+      REQUIRE(fit.parameters);
+      const auto drawn = bootstrap(fit, {100, 0.95, 3, 0, 0});
+      const auto found = p75 ? drawn.interval_75 : drawn.threshold;
+      REQUIRE(found);
+      const auto ratio = [&, &opts = options, &counts = data](double level) {
+        return 2 * (lowest(opts, counts, level, p75) - fit.negative_log_likelihood);
+      };
+      const double low = found->interval.low, high = found->interval.high, past = std::pow(high / low, 0.005);
+      // the ratio rises from below the critical value to above it within a hundredth of the interval
+      double least = 1e9, most = 0;
+      if (!found->touches_low)
+        least = std::min(least, ratio(low / past)), most = std::max(most, ratio(low * past));
+      if (!found->touches_high)
+        least = std::min(least, ratio(high * past)), most = std::max(most, ratio(high / past));
+      INFO("from " << low << " to " << high << ": inside " << most << ", outside " << least);
+      CHECK(least > 3.84);
+      CHECK(most < least);
+    }
+}
+
 TEST_CASE("The fit agrees with psignifit 4.3 on the same data", "[analysis]") {
   // Results of psignifit 4.3 (Python) for 2AFC with the sigmoids weibull and norm, default priors and the
   // maximum a posteriori. `threshold` is the 50 % point and `width` the 5-95 % range of the sigmoid; `low`
@@ -299,12 +457,15 @@ TEST_CASE("Trials without a signal determine the rate of false alarms", "[analys
   CHECK(posterior.intervals.guess->interval.high < 0.5);
 }
 
-TEST_CASE("an interval that ends at a bound says so, even if the best curve at the bound itself is hard to find", "[analysis]") {
+TEST_CASE(
+    "an interval that ends at a bound says so, even if the best curve at the bound itself is hard to find",
+    "[analysis]") {
   FitOptions options;
   options.function = Function::weibull;
   options.scale = Scale::log10;
   const auto fit = fit_psychometric(
-      {{0.051, 19, 4}, {0.087, 19, 14}, {0.137, 19, 11}, {0.243, 19, 16}, {0.432, 19, 19}, {0.68, 19, 18}}, options);
+      {{0.051, 19, 4}, {0.087, 19, 14}, {0.137, 19, 11}, {0.243, 19, 16}, {0.432, 19, 19}, {0.68, 19, 18}},
+      options);
   const auto drawn = bootstrap(fit, {});
   // with this steep a slope the likelihood is still only 0.6 below its maximum
   REQUIRE(drawn.slope);

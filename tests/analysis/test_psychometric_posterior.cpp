@@ -28,6 +28,24 @@ std::vector<LevelCount> staircase(const Psychometric& truth, int trials, int run
   return data;
 }
 
+/// Simulates a weighted staircase towards 75 % of a person who admits every guess. Answers that a forced
+/// person would have guessed are counted as `admitted`, or as guesses that were made if `forced`.
+std::vector<LevelCount> unforced(const Psychometric& truth, int trials, int run, bool forced = false) {
+  rnd::Draws draws({8, rnd::Stream::observer, run, 0, 0});
+  std::vector<LevelCount> data;
+  double level = -5;
+  bool lucky = false;
+  for (int i = 0; i < trials; ++i) {
+    const double p = probability(Function::weibull, Scale::linear, truth, level);
+    const bool knows = draws.uniform() < 2 * p - 1;
+    if (!knows) lucky = !lucky;  // exactly half of the guesses are right: their mean, without its own scatter
+    data.push_back({level, 1, knows || (forced && lucky), knows || forced ? 0 : 0.5});
+    const double step = i < 20 ? 2 : 1;
+    level = std::clamp(level + (knows ? -step : step), -30.0, -3.0);
+  }
+  return data;
+}
+
 std::vector<LevelCount> fixed_levels(const FitOptions& options, const Psychometric& truth, int trials) {
   rnd::Draws draws({6, rnd::Stream::observer, 0, 0, 0});
   std::vector<LevelCount> data;
@@ -122,6 +140,39 @@ TEST_CASE("Posterior intervals agree with a dense grid in NumPy", "[analysis]") 
   near(fit.intervals.threshold->interval, -21.1918, -16.6948);
   near(fit.intervals.slope->interval, 1.24920, 7.45432);
   near(fit.intervals.interval_75->interval, -22.1878, -17.8629);
+}
+
+TEST_CASE("Intervals of unforced choice contain the 75 % point as often as they claim, and no more often",
+          "[analysis]") {
+  const Psychometric truth{-17, 1.5, 0.5, 0};
+  const double level_75 = -17 + 20 / 1.5 * std::log10(std::log(2.0));
+  struct Held {
+    int inside = 0, runs = 0;
+    double width = 0;
+    void add(const PosteriorFit& fit, double value) {
+      if (!fit.intervals.interval_75) return;
+      const auto found = fit.intervals.interval_75->interval;
+      inside += found.low <= value && value <= found.high, ++runs, width += found.high - found.low;
+    }
+  };
+  Held weighted, plain;
+  for (int run = 0; run < 200; ++run) {
+    const auto fit = fit_posterior(unforced(truth, 80, run), {}, kContrast, 0);
+    CHECK(fit.fit.weight > 1.2);
+    weighted.add(fit, level_75);
+    // Negative control: if the same answers have the likelihood of forced ones, their intervals are too wide.
+    const auto forced = fit_posterior(unforced(truth, 80, run, true), {}, kContrast, 0);
+    CHECK(forced.fit.weight == 1);
+    plain.add(forced, level_75);
+  }
+  const auto share = [](const Held& held) { return static_cast<double>(held.inside) / held.runs; };
+  CHECK(weighted.runs > 190);
+  INFO(share(weighted) << " " << share(plain) << " " << weighted.width / weighted.runs << " "
+                       << plain.width / plain.runs);
+  CHECK(share(weighted) > 0.92);
+  CHECK(share(weighted) < 0.99);
+  CHECK(share(plain) > 0.99);
+  CHECK(weighted.width / weighted.runs < 0.85 * plain.width / plain.runs);
 }
 
 TEST_CASE("The grid resolves a posterior that is a thousand times narrower than its prior", "[analysis]") {

@@ -10,6 +10,7 @@
 #include "station/analysis/quantile.hpp"
 #include "station/core/draws.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/number_from.hpp"
 
 using namespace turnpoint::analysis;
 using turnpoint::core::Draws;
@@ -124,11 +125,6 @@ std::array<Shares, 6> simulate(const Truth& truth, int first, int sets, int per_
     all[5].add(difference.intercept_s, 0);
   }
   return all;
-}
-
-int number_from(const char* variable, int otherwise) {
-  const char* text = std::getenv(variable);
-  return text == nullptr ? otherwise : std::atoi(text);
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 #include "station/analysis/settings.hpp"
+#include "station/analysis/student.hpp"
+#include "station/core/draws.hpp"
 
 #include <cmath>
 
@@ -94,4 +96,33 @@ TEST_CASE("Settings by the side of the start: means, scatters, and the differenc
   const auto none = analysis::settings({set_to(1), set_to(2), set_to(4)}).front();
   CHECK(none.from_below.settings == 0);
   CHECK_FALSE(none.side_difference);
+}
+
+TEST_CASE("The interval of a ratio covers the ratio of the means", "[analysis]") {
+  // points in times that depend on the answer, as in blocks of a fixed time with a delay after errors
+  int covered = 0;
+  const int runs = 1500;
+  for (int run = 0; run < runs; ++run) {
+    core::Draws draws({17, core::Stream::observer, run, 0, 0});
+    std::vector<double> points, minutes;
+    for (int i = 0; i < 60; ++i) {
+      const bool right = draws.uniform() < 0.8;
+      points.push_back(right ? 1 : 0);
+      minutes.push_back(0.05 + 0.02 * draws.uniform() + (right ? 0 : 0.025));
+    }
+    const auto rate = analysis::student_ratio(points, minutes);
+    REQUIRE(rate);
+    const double truth = 0.8 / (0.06 + 0.2 * 0.025);
+    covered += rate->interval.low <= truth && truth <= rate->interval.high ? 1 : 0;
+  }
+  INFO("covered in " << covered << " of " << runs);
+  CHECK(covered > 0.93 * runs);
+  CHECK(covered < 0.97 * runs);
+  CHECK(analysis::student_ratio({1, 1, 1}, {2, 2, 2})->interval.low == 0.5);
+  CHECK_FALSE(analysis::student_ratio({1, 0}, {2, 2}));
+  // with equal times it is Student's interval of the mean
+  const auto ratio = analysis::student_ratio({3, 5, 10}, {1, 1, 1}),
+             mean = analysis::student_mean({3, 5, 10});
+  CHECK(ratio->value == Approx(mean->value));
+  CHECK(ratio->interval.high == Approx(mean->interval.high));
 }

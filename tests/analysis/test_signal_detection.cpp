@@ -55,14 +55,6 @@ TEST_CASE(
   CHECK(covered(0.02, 24, normal) < 0.5);
 }
 
-TEST_CASE("d' is sqrt 2 z for two-interval forced choice and 2 z for a single interval", "[analysis]") {
-  CHECK(*d_prime_forced_choice(0.75) == Approx(0.9539).margin(5e-5));
-  CHECK(*d_prime_forced_choice(0.5) == Approx(0).margin(1e-15));
-  CHECK_FALSE(d_prime_forced_choice(1).has_value());
-  CHECK_FALSE(d_prime_forced_choice(0).has_value());
-  CHECK_THROWS_AS(d_prime_forced_choice(1.2), std::invalid_argument);
-}
-
 TEST_CASE("Yes/no sensitivity with the log-linear correction is finite for perfect rates", "[analysis]") {
   const auto perfect = yes_no({20, 0, 0, 20});
   REQUIRE(perfect);

@@ -1,8 +1,9 @@
 """Runs .ci/leg in a repository of its own, where the commands of the legs are replaced, and tests/summary on the results
 of tests that pass, fail and are skipped.
 
-usage: test_ci.py SOURCE   (the folder of the project)
+usage: test_ci.py SOURCE [BUILD]   (the folder of the project, and one where all its tests were built)
 """
+import ast
 import re
 import shutil
 import subprocess
@@ -11,7 +12,9 @@ import tempfile
 import unittest
 from pathlib import Path
 
-SOURCE = Path(sys.argv.pop())
+SOURCE = Path(sys.argv[1])
+BUILD = sys.argv[2] if len(sys.argv) > 2 else None
+del sys.argv[1:]
 LEG = (SOURCE / ".ci/leg").read_text()
 TURNS = re.search(r"^turns=\(([^)]*)\)", LEG, re.M)[1].split()
 
@@ -106,10 +109,21 @@ class Summary(unittest.TestCase):
     def test_only_the_tests_that_are_named_may_be_skipped(self):
         self.assertEqual(self.summary(["good", "skipped"], "--may-skip", "skipped")[0], 0)
         self.assertEqual(self.summary(["good"], "--may-skip", "none")[0], 0)
+        status, lines = self.summary(["good", "skipped"], "--may-skip", "skipped", "--may-skip", "renamed")
+        self.assertEqual(status, 1, lines)
+        self.assertIn("  renamed", lines[lines.index("May be skipped, but are no tests (any more):"):])
         for cases in (["good", "skipped"], ["good", "partly"]):
             status, lines = self.summary(cases, "--may-skip", "none")
             self.assertEqual(status, 1, lines)
             self.assertIn(f"  {cases[1]}", lines[lines.index("Skipped, although they must run here:"):])
+
+    @unittest.skipUnless(BUILD, "not all tests are built here; cmake -D TURNPOINT_TESTS=all")
+    def test_a_newcomer_may_skip_only_tests_that_there_are(self):
+        listed = subprocess.run(["ctest", "-N"], cwd=BUILD, capture_output=True, text=True, check=True).stdout
+        there = set(re.findall(r"Test +#\d+: (.*)$", listed, re.M))
+        self.assertGreater(len(there), 1000)
+        words = re.search(r"^MAY_SKIP = (\[.*?^\])", (SOURCE / "tests/newcomer").read_text(), re.M | re.S)[1]
+        self.assertEqual([name for name in ast.literal_eval(words) if name not in there], [])
 
     def test_a_failure_a_missing_program_no_test_and_a_failed_build_fail(self):
         for cases in (["good", "bad"], ["good", "gone"], []):

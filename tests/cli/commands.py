@@ -10,6 +10,7 @@ import pty
 import re
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -18,6 +19,7 @@ import unittest
 HERE = os.path.dirname(os.path.realpath(__file__))
 SOURCE = os.path.dirname(os.path.dirname(HERE))
 PROGRAM = os.path.realpath(sys.argv[1])
+BUILD = os.path.dirname(os.path.dirname(PROGRAM))
 with open(os.path.join(HERE, "json_shapes.json"), encoding="utf-8") as file:
     SHAPES = json.load(file)
 
@@ -268,13 +270,80 @@ class Outputs(HelpExamples):
     def bytes_of(self, *names):
         return {name: open(os.path.join(self.folder, name), "rb").read() for name in names}
 
-    def test_every_option_that_names_an_output_is_tried(self):
-        known = {(words[0], words[words.index(word) - 1] if word in ("@", "wav:@") else "")
-                 for words in self.WRITERS for word in words if "@" in word}
-        tried_elsewhere = {("export", "--out"), ("figures", "--out"), ("preview", "--out"), ("power", "--out")}   # folders
+    # Options that name a folder to write to, and the names that they write there.
+    FOLDERS = [
+        (["report", "--db", "lab.sqlite", "--participant", "P01", "--out", "page.html", "--figures", "@"], ".svg"),
+        (["report", "--db", "lab.sqlite", "--study", "--protocol", "friction-2ifc", "--out", "page.html", "--figures", "@"], ".svg"),
+        (["report", "--db", "lab.sqlite", "--study", "--protocol", "friction-2ifc", "--out", "page.html", "--tables", "@"], ".csv"),
+        (["export", "--db", "lab.sqlite", "--out", "@"], ".csv"),
+        (["figures", "--out", "@"], ".svg"),
+        (["preview", "demo", "--out", "@"], ".svg"),
+        (["power", "demo", "--observers", "2", "--out", "@"], ".json"),   # nothing is estimated: it has no figure
+        (["power", "boundary-constant", "--observers", "2", "--intervals", "0", "--out", "@"], ".svg"),
+        (["help", "--man", "@"], ".1"),
+    ]
+    # Every other option and argument that names a file or a folder: what is read, and what has tests of its own. A database
+    # is opened by SQLite; backup, withdraw and push write into folders of databases, which tests/store and tests/faults try.
+    READ = {"--calibration", "--rig", "--db", "--against", "--join", "--estimator", "--response", "--boundaries", "--friction",
+            "--sound", "--vibrometer", "--accelerometer", "--folder", "--protocols", "--data", "--backups"}
+    ELSEWHERE = {("backup", "--dir"), ("export", "--sign"), ("push", "--received"), ("push", "--certificates")}
+
+    def test_every_option_that_names_a_file_is_known(self):
+        lines = self.WRITERS + [words for words, _ in self.FOLDERS]
+        tried = {(words[0], words[i - 1]) for words in lines for i, word in enumerate(words) if "@" in word}
         for name in self.names:
-            for option in re.findall(r"^  (--(?:[a-z]+-)?(?:out|plot|plots)) ", self.helps[name], re.MULTILINE):
-                self.assertIn((name, option), known | tried_elsewhere, "add it to WRITERS")
+            for option, kind in re.findall(r"^  (--[a-z-]+)((?: |,|=)[^\n]*)$", self.helps[name], re.MULTILINE):
+                of_file = re.match(r" (?:[A-Z]+=)?(?:FILE|FOLDER|RIG|PROGRAM)\b", kind) or re.search(r"wav:FILE|=FILE", kind)
+                if of_file and option not in self.READ:
+                    self.assertIn((name, option), tried | self.ELSEWHERE, "add it to WRITERS, FOLDERS or, if it is read, to READ")
+
+    def test_no_folder_of_output_loses_a_database_or_an_input(self):
+        for words, ending in self.FOLDERS:
+            with self.subTest(words=words):
+                folder = os.path.join(self.folder, "folder")
+                shutil.rmtree(folder, ignore_errors=True)
+                words = [word.replace("@", "folder") for word in words]
+                status, out, err = run(words, self.folder)
+                self.assertEqual(status, 0, out + err)
+                written = sorted(name for name in os.listdir(folder) if name.endswith(ending))
+                inside = [os.path.relpath(os.path.join(at, name), folder) for at, _, names in os.walk(folder) for name in names
+                          if name.endswith(ending)]
+                victim = (written or sorted(inside))[0]
+                # a database under that name, a link to the database that is read, and a pipe that nobody reads
+                for make in (lambda path: shutil.copy(os.path.join(self.folder, "lab.sqlite"), path),
+                             lambda path: os.symlink("/proc/self/cwd/lab.sqlite", path),
+                             lambda path: os.link(os.path.join(self.folder, "lab.sqlite"), path), os.mkfifo, os.mkdir):
+                    path = os.path.join(folder, victim)
+                    shutil.rmtree(path) if os.path.isdir(path) else os.unlink(path)
+                    before = self.bytes_of("lab.sqlite")
+                    make(path)
+                    status, out, err = run(words, self.folder)
+                    self.assertIn(status, (1, 2), f"{words} {victim}: {out}{err}")
+                    self.assertNotRegex(err, NOT_FOR_PEOPLE)
+                    self.assertEqual(self.bytes_of("lab.sqlite"), before)
+
+    def test_no_other_way_to_an_input_is_a_way_around(self):
+        os.mkdir(os.path.join(self.folder, "folder"))
+        shutil.copy(os.path.join(SOURCE, "protocols/programs/right_answers.py"), os.path.join(self.folder, "mine.py"))
+        shutil.copy(os.path.join(SOURCE, "deploy/rigs/simulated.toml"), os.path.join(self.folder, "plate.toml"))
+        for name in ("lab.sqlite", "friction.csv", "mine.py", "plate.toml"):
+            os.symlink(name, os.path.join(self.folder, "soft-" + name))
+            os.link(os.path.join(self.folder, name), os.path.join(self.folder, "hard-" + name))
+        victims = self.bytes_of("lab.sqlite", "friction.csv", "mine.py", "plate.toml")
+        report = ["report", "--db", "lab.sqlite", "--participant", "P02"]
+        for words, victim in (([*report, "--out", "@"], "lab.sqlite"),
+                              ([*report, "--estimator", "program:mine.py,limit_s=60", "--out", "@"], "mine.py"),
+                              (["calibrate", "--rig", "plate.toml", "--friction", "friction.csv", "--out", "@"], "plate.toml"),
+                              (["calibrate", "--rig", "plate.toml", "--friction", "friction.csv", "--out", "@"], "friction.csv"),
+                              (["map", "--rig", "plate.toml", "--boundary", "150", "--budget", "--plot", "@"], "plate.toml")):
+            for way in ("{}", "./{}", "folder/../{}", "soft-{}", "hard-{}", "/proc/self/cwd/{}", "/proc/self/fd/3", "/dev/fd/3"):
+                with self.subTest(words=words, way=way):
+                    target = way.format(victim)
+                    line = " ".join([PROGRAM, *(word.replace("@", target) for word in words)]) + f" 3<{victim}"
+                    status, out, err = run(line, self.folder)
+                    self.assertEqual(self.bytes_of(*victims), victims)
+                    self.assertEqual(status, 2, out + err)
+                    self.assertNotRegex(err, NOT_FOR_PEOPLE)
 
     def test_no_output_replaces_a_database_or_an_input(self):
         os.mkdir(os.path.join(self.folder, "folder"))
@@ -357,33 +426,206 @@ class Outputs(HelpExamples):
         self.write("falling.csv", b"frequency_Hz,boundary_mm,sd_mm\n26000,175,1\n30000,147,1\n36000,124,1\n")
         self.write("precise.csv", b"frequency_Hz,boundary_mm,sd_mm\n27000,180,1\n31000,160,1e-200\n36000,140,1\n")
         self.write("vague.csv", b"frequency_Hz,boundary_mm,sd_mm\n27000,180,1e9\n31000,160,1\n")
+        self.write("many.csv", b"frequency_Hz,boundary_mm,sd_mm\n" + 1001 * b"30000,147,1\n")
         self.write("sound.csv", b"frequency_Hz,level_dB\n0,60\n30000,60\n")
-        for option, name, says in (("--boundaries", "falling.csv", "contradict"), ("--boundaries", "precise.csv", "1e-9"),
-                                   ("--boundaries", "vague.csv", "1e-9"), ("--sound", "sound.csv", "sound level")):
+        for option, name, says in (("--boundaries", "falling.csv", "175 mm at 26000 Hz, "), ("--boundaries", "precise.csv", "1e-9"),
+                                   ("--boundaries", "vague.csv", "1e-9"), ("--boundaries", "many.csv", "at most 1000"), ("--sound", "sound.csv", "sound level")):
             self.refused(["calibrate", "--rig", "simulated", option, name, "--out", "refused.toml"], says)
             self.assertFalse(os.path.exists(os.path.join(self.folder, "refused.toml")))
         rig = os.path.join(SOURCE, "deploy/rigs/simulated.toml")
         shutil.copy(rig, os.path.join(self.folder, "plate.toml"))
         self.assertEqual(run(["calibrate", "--rig", "plate.toml", "--friction", "friction.csv"], self.folder)[0], 0)
-        status, out, err = run(["plan", "demo", "--rig", "plate.toml", "--scene", "edge"], self.folder)
+        # also if nothing else was measured, and if somebody names the file
+        self.write("sound.csv", b"frequency_Hz,level_dB\n25000,60\n30000,60\n")
+        for option, name in (("--friction", "friction.csv"), ("--sound", "sound.csv")):
+            made = self.path_of_calibration(option, name)
+            for words in (["plan", "demo", "--scene", "edge"], ["check", "demo", "--sessions", "0"],
+                          ["run", "demo", "--db", "used.sqlite", "--participant", "P01", "--observer", "sim"]):
+                status, out, err = run([*words, "--rig", "plate.toml", "--calibration", made], self.folder)
+                self.assertEqual(status, 0, out + err)
+
+    def path_of_calibration(self, option, name):
+        made = f"{name}.toml"
+        status, out, err = run(["calibrate", "--rig", "plate.toml", option, name, "--out", made], self.folder)
         self.assertEqual(status, 0, out + err)
+        return made
 
 
 class Locales(Folder):
-    """A comma in the numbers of the locale, and the Turkish I, change nothing."""
+    """A comma in the numbers of the locale, the Turkish I, and Arabic digits change nothing. The programs without a screen
+    never set a locale, as Qt does, so that a library sets it for them."""
+    NAMES = ("de_DE", "tr_TR", "ar_EG", "fa_IR")
+    PRELOADED = os.path.join(BUILD, "tests/faults/libfaulty_system.so")
+
+    def under(self, name, words, program=PROGRAM):
+        """What the program says under this locale, or without one."""
+        variables = {"LD_PRELOAD": self.PRELOADED, "USE_LOCALE": "1", "LC_ALL": f"{name}.UTF-8", "LOCPATH": os.path.join(BUILD, "locales")}
+        if os.path.exists(os.path.join(self.folder, "made.toml")):  # by the run before
+            os.remove(os.path.join(self.folder, "made.toml"))
+        ran = subprocess.run([program, *words], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False,
+                             env={"PATH": os.environ["PATH"], "HOME": self.folder, "LANG": "C.UTF-8", **(variables if name else {})})
+        return ran.returncode, ran.stdout, ran.stderr
+
+    def test_negative_control_a_conversion_that_depends_on_the_locale_is_noticed(self):
+        read = "import ctypes; f = ctypes.CDLL(None).strtod; f.restype = ctypes.c_double; print(f(b'2.75', None))"
+        self.assertEqual(self.under("", ["-c", read], sys.executable)[1], "2.75\n")
+        for name in self.NAMES[:2]:
+            self.assertEqual(self.under(name, ["-c", read], sys.executable)[1], "2.0\n", name)
+
     def test_commands_print_the_same_under_every_locale(self):
-        for name in ("de_DE", "tr_TR"):
-            made = run(f"localedef -i {name} -f UTF-8 {self.folder}/{name}.UTF-8", self.folder)
-            self.assertTrue(os.path.isdir(os.path.join(self.folder, f"{name}.UTF-8")), made)
         self.add_sessions()
+        self.write("friction.csv", b"displacement_um,relative_friction\n0,1\n0.5,0.82\n1,0.8\n2,0.41\n4,0.3\n")
+        with open(os.path.join(SOURCE, "deploy/rigs/simulated.toml"), "rb") as rig:
+            self.write("lines.toml", rig.read().replace(b"[buttons]\nuri = \"sim:\"", b"[buttons]\nuri = \"gpio:left=a,right=b,hold_ms=2.5\""))
         for words in (["plan", "demo", "--scene", "edge", "--json"], ["map", "--boundary", "150"],
                       ["field", "--tone", "30000.5", "--points", "3"], ["trace", "demo", "--procedure", "levels", "--answers", "1"],
-                      ["calibrate", "--rig", "simulated", "--sweep"], ["report", "--db", "lab.sqlite", "--participant", "P01", "--json"],
-                      ["sessions", "--db", "lab.sqlite"]):
-            plain = run(words, self.folder, LC_ALL="C.UTF-8")
-            for name in ("de_DE", "tr_TR"):
-                other = run(words, self.folder, LC_ALL=f"{name}.UTF-8", LOCPATH=self.folder)
-                self.assertEqual(other, plain, words)
+                      ["calibrate", "--rig", "simulated", "--sweep"],
+                      ["calibrate", "--rig", "simulated", "--friction", "friction.csv", "--out", "made.toml"],
+                      ["report", "--db", "lab.sqlite", "--participant", "P01", "--json"],
+                      ["check", "DEMO", "--sessions", "0"], ["doctor", "--rig", "lines.toml", "--data", "."],
+                      ["export", "--db", "lab.sqlite", "--out", "export"], ["verify", "--db", "lab.sqlite"],
+                      ["figures", "--help"], ["sessions", "--db", "lab.sqlite"]):
+            plain = self.under("", words)
+            self.assertEqual(plain[0], {"check": 2, "doctor": 1}.get(words[0], 0), f"{words}: {plain}")
+            for name in self.NAMES:
+                other = self.under(name, words)
+                if words[0] == "doctor":  # what it measures changes; what it reads does not
+                    self.assertNotIn("hold_ms", other[1])
+                    other, plain = other[:1], plain[:1]
+                self.assertEqual(other, plain, f"{name}: {words}")
+
+    def test_the_benchmark_says_the_same_things_under_every_locale(self):
+        def shape(value):
+            if isinstance(value, dict):
+                return {key: shape(inner) for key, inner in value.items()}
+            return [shape(inner) for inner in value] if isinstance(value, list) else value if isinstance(value, str) else type(value).__name__
+        said = [self.under(name, ["procedures", "--json"], os.path.join(BUILD, "bin/turnpoint-bench")) for name in ("", "de_DE", "ar_EG")]
+        self.assertEqual([status for status, _, _ in said], [0, 0, 0], said)
+        self.assertEqual(len({json.dumps(shape(json.loads(out))) for _, out, _ in said}), 1)
+
+    def test_a_session_has_the_same_trials_under_every_locale(self):
+        trials = {}
+        for name in ("", *self.NAMES):
+            database = f"x{name}.sqlite"
+            done = self.under(name, ["run", "friction-2ifc", "--participant", "P01", "--db", database, "--seed", "3",
+                                     "--observer", "sim:threshold=0.12,slope=2.5,lapse=0.02"])
+            self.assertEqual(done[0], 0, done)
+            with sqlite3.connect(os.path.join(self.folder, database)) as opened:
+                trials[name] = opened.execute("SELECT trial_index, level, correct, onset_ns FROM trial ORDER BY trial_index").fetchall()
+        for name in self.NAMES:
+            self.assertEqual(trials[name], trials[""], name)
+
+
+@unittest.skipIf(os.geteuid() != 0, "only root can give a process another machine-id and host name; sudo tests/run")
+class Clones(Folder):
+    """Two machines with copies of one card or image, a folder of backups that both use, and a host that is renamed. Each
+    refusal says what to do, and doing it is the way out."""
+    IDS = {"one": "4c1d0f5b7e2a49c38d6e90b1a7f35c28", "two": "9be07a3c5d1f42e68a0c7b94f2d35e61"}
+
+    def setUp(self):
+        # Not in memory, because a machine-id there does not count.
+        self.folder = tempfile.mkdtemp(prefix="turnpoint-clones-", dir=os.environ.get("TURNPOINT_TEST_DISK", os.getcwd()))
+        self.addCleanup(shutil.rmtree, self.folder)
+        for name, machine_id in self.IDS.items():
+            self.write(f"{name}.id", f"{machine_id}\n".encode())
+            os.mkdir(os.path.join(self.folder, name))
+
+    def on(self, machine, *words, host="lab", status=0):
+        """Runs the program on a machine, in its folder. Returns all that it says."""
+        line = 'mount --bind "$0" /etc/machine-id && hostname "$1" && shift && exec "$@"'
+        ran = subprocess.run(["unshare", "--mount", "--uts", "--propagation", "private", "sh", "-c", line,
+                              os.path.join(self.folder, f"{machine}.id"), host, PROGRAM, *words],
+                             cwd=os.path.join(self.folder, machine), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                             env={"PATH": os.environ["PATH"], "HOME": self.folder, "LANG": "C.UTF-8"}, check=False, timeout=300)
+        self.assertEqual(ran.returncode, status, f"{machine}: {words}: {ran.stdout}")
+        return ran.stdout
+
+    def content(self, name):
+        with open(os.path.join(self.folder, name), "rb") as file:
+            return file.read()
+
+    def session(self, machine, person, **how):
+        return self.on(machine, "run", "demo", "--db", "lab.sqlite", "--participant", person, "--observer", "sim", "--seed", "1", **how)
+
+    def stations(self, machine, database="lab.sqlite"):
+        return [session["station_id"] for session in json.loads(self.on(machine, "sessions", "--db", database, "--json"))]
+
+    def test_a_card_is_copied_after_use(self):
+        self.session("one", "P01")
+        shutil.copy(os.path.join(self.folder, "one/lab.sqlite"), os.path.join(self.folder, "two"))
+        before = self.content("two/lab.sqlite")
+        for words in (["run", "demo", "--participant", "P02", "--observer", "sim"], ["push", "--to", "host=collector.invalid"],
+                      ["station-name", "--stored", "lab"]):
+            said = self.on("two", words[0], "--db", "lab.sqlite", *words[1:], status=1)
+            if words[-1] != "lab":
+                self.assertIn("it belongs to station lab on another machine", said)
+                self.assertIn("name it: turnpoint station-name --db ", said)
+                self.assertIn("station-name --db " + os.path.join(self.folder, "two/lab.sqlite") + " --moved", said)
+        self.assertEqual(self.content("two/lab.sqlite"), before)
+        self.assertIn("machine: another one than this", self.on("two", "station-name", "--db", "lab.sqlite"))
+        self.assertIn("station of its own now", self.on("two", "station-name", "--db", "lab.sqlite", "bench-2"))
+        self.session("two", "P02")
+        self.session("one", "P02")
+        for machine in ("one", "two"):
+            self.on("one", "merge", "--db", "hub.sqlite", f"../{machine}/lab.sqlite")
+        self.assertEqual(sorted(self.stations("one", "hub.sqlite")), ["bench-2", "lab", "lab"])
+        self.on("one", "verify", "--db", "hub.sqlite")
+
+    def test_the_board_is_replaced(self):
+        self.session("one", "P01")
+        shutil.move(os.path.join(self.folder, "one/lab.sqlite"), os.path.join(self.folder, "two"))
+        self.session("two", "P02", status=1)
+        self.on("two", "station-name", "--db", "lab.sqlite", "--moved")
+        self.session("two", "P02", host="another")
+        self.assertEqual(self.stations("two"), ["lab", "lab"])
+
+    def test_two_machines_get_one_image(self):
+        for machine in self.IDS:
+            self.session(machine, "P01", host="turnpoint")  # the name that the image gives
+        names = {self.stations(machine)[0] for machine in self.IDS}
+        self.assertEqual(len(names), 2, names)
+        for name in names:
+            self.assertRegex(name, "^turnpoint-[0-9a-f]{4}$")
+
+    def test_two_machines_have_one_name(self):
+        for machine, person in (("one", "P01"), ("two", "P01")):
+            self.session(machine, person, host="bench")
+        self.on("one", "merge", "--db", "hub.sqlite", "lab.sqlite")
+        said = self.on("one", "merge", "--db", "hub.sqlite", "../two/lab.sqlite", status=1)
+        self.assertIn("two machines have recorded as station bench", said)
+        self.assertIn("on its own machine: turnpoint station-name --db FILE NEW-NAME --stored", said)
+        self.on("two", "station-name", "--db", "lab.sqlite", "bench-2", "--stored")
+        self.on("one", "merge", "--db", "hub.sqlite", "../two/lab.sqlite")
+        self.assertEqual(sorted(self.stations("one", "hub.sqlite")), ["bench", "bench-2"])
+
+    def test_a_renamed_host_stays_the_same_station(self):
+        self.session("one", "P01", host="lab")
+        self.session("one", "P02", host="attic")
+        self.assertEqual(self.stations("one"), ["lab", "lab"])
+
+    def test_two_machines_share_a_folder_of_backups(self):
+        self.session("one", "P01")
+        shutil.copy(os.path.join(self.folder, "one/lab.sqlite"), os.path.join(self.folder, "two"))
+        backup = ["backup", "--db", "lab.sqlite", "--dir", "../shared", "--to", "folder", "--keep", "1"]
+        self.on("one", *backup)
+        self.on("two", *backup)
+        self.on("two", *backup)
+        kept = [name for name in os.listdir(os.path.join(self.folder, "shared")) if name.endswith(".sqlite")]
+        self.assertEqual(len(kept), 2, "one of each machine")
+        for name in os.listdir(os.path.join(self.folder, "one")):
+            os.remove(os.path.join(self.folder, "one", name))
+        # The backup of the other machine is the newest one.
+        self.assertIn("restored", self.on("one", *backup[:5], "--restore"))
+        for name in os.listdir(os.path.join(self.folder, "one")):
+            os.remove(os.path.join(self.folder, "one", name))
+        self.write("three.id", b"b07a3c5d1f42e68a0c7b94f2d35e619e\n")
+        os.mkdir(os.path.join(self.folder, "three"))
+        said = self.on("three", *backup[:5], "--restore", status=1)
+        self.assertIn("another machine made the backups", said)
+        self.assertIn("if this machine replaces that one, add --moved", said)
+        self.assertFalse(os.path.exists(os.path.join(self.folder, "three/lab.sqlite")))
+        self.on("three", *backup[:5], "--restore", "--moved")
+        self.session("three", "P02")
 
 
 class Mistakes(Folder):
@@ -741,6 +983,30 @@ class Measured(Folder):
             self.assertEqual((trial["outcome"], trial["proof"], 0 <= after_signal_s <= 0.4), ("answered", "ok", True), trial)
 
 
+class Observer(Folder):
+    def test_a_deadline_that_is_too_short_for_the_observer_is_a_fact_about_the_observer(self):
+        with open(os.path.join(SOURCE, "protocols", "speed-accuracy.toml"), encoding="utf-8") as file:
+            text = file.read()
+        self.assertIn("deadline_s = 0.8\n", text)
+        with open(os.path.join(self.folder, "speed.toml"), "w", encoding="utf-8") as file:
+            file.write(text.replace("deadline_s = 0.8\n", "deadline_s = 0.5\n"))
+        line = text[:text.index("deadline_s = 0.8\n")].count("\n") + 1
+        session = ["run", "speed.toml", "--rig", "simulated", "--participant", "P01", "--headless"]
+        study = ["power", "speed.toml", "--rig", "simulated", "--observers", "2", "--intervals", "0"]
+        for arguments in (["check", "speed.toml", "--rig", "simulated", "--sessions", "2"],
+                          [*session, "--db", "a.sqlite", "--observer", "sim"], study):
+            status, _, err = run(arguments, self.folder)
+            self.assertEqual(status, 0, err)
+            self.assertIn(f"note: speed.toml:{line}:", err)
+            self.assertIn("the simulated observer needs 0.5 s outside its decision (its residual and travel), so a deadline "
+                          "of 0.5 s leaves it no time to decide", err)
+            self.assertIn("--observer sim:residual=...,travel=...", err)
+        for arguments in ([*session, "--db", "b.sqlite"], study):
+            status, _, err = run([*arguments, "--observer", "sim:residual=0.1,travel=0.1"], self.folder)
+            self.assertEqual(status, 0, err)
+            self.assertNotIn("simulated observer", err)
+
+
 STUDY = ["power", "boundary-constant", "--observers", "12", "--intervals", "4"]
 
 
@@ -801,6 +1067,20 @@ class LongWork(Folder):
         self.refused_in_one_sentence([*words[:3], "8", *words[4:]], "use 6 or 9")
         self.refused_in_one_sentence([*words[:7], "threshold=0.1"], "write sim:threshold=")
         self.refused_in_one_sentence([*words[:7], "bonud=0.1"], "\"bonud=0.1\" is not understood")
+
+    def test_an_observer_who_earns_the_most_is_joined_from_parts(self):
+        words = ["power", "reward-rate", "--observers", "4", "--intervals", "0", "--reward"]
+        for part in ("1", "2"):
+            self.write(f"reward{part}.json", run([*words, "--part", f"{part}/2"], self.folder)[1].encode())
+        whole = json.loads(run([*words, "--json"], self.folder)[1])
+        self.assertEqual(json.loads(run(["power", "--join", "reward1.json", "reward2.json", "--json"], self.folder)[1]), whole)
+        text = run(["power", "--join", "reward1.json", "reward2.json"], self.folder)[1]
+        self.assertEqual([one["block"] for one in whole["rewards"]], ["main, penalty 0 s", "main, penalty 1.5 s"])
+        for one in whole["rewards"]:
+            self.assertLess(0.9 * one["own"]["points_per_minute"], one["best"]["points_per_minute"])
+            self.assertIn(f"  {one['block']}: ", text)
+        self.refused_in_one_sentence(["power", "--join", "reward1.json", "reward2.json", "--reward"], "--reward cannot be used with --join")
+        self.refused_in_one_sentence(["power", "boundary-constant", "--reward"], "gives no points")
 
     def part(self, name, number, *more):
         status, out, err = run([*STUDY, "--part", number, *more], self.folder)

@@ -27,15 +27,14 @@ TEST_CASE("the console names the command that goes on after a fault", "[cli][con
   session::Page page;
   page.kind = session::PageKind::fault;
   page.text = "The self-test found a fault";
-  page.detail = "gate: it stays open";
-  page.fault = session::FaultKind::self_test;
+  page.fault = {session::FaultKind::self_test, "gate: it stays open"};
   // only a note goes on, because the reason is stored with the session
   CHECK(printed(page) ==
         "fault: The self-test found a fault (gate: it stays open); note REASON continues, stop ends the "
         "session");
-  page.fault = session::FaultKind::limits;
+  page.fault.kind = session::FaultKind::limits;
   CHECK_THAT(printed(page), EndsWith("; next ends the session"));
-  page.fault = session::FaultKind::capture;
+  page.fault.kind = session::FaultKind::capture;
   CHECK_THAT(printed(page), EndsWith("; next continues"));
   page.amplifier = "faulted";
   CHECK_THAT(printed(page), EndsWith("; amplifier faulted: arm or stop"));

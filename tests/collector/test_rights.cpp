@@ -224,7 +224,6 @@ TEST_CASE(
   };
   const auto session =
       row("session", R"({"session_id":"forged", "station_id":"bench-b", "participant":"P09"})");
-  const std::string participant = "participant VALUES ('P09')";
   const auto enrolment = row("enrolment", R"({"station_id":"bench-b", "participant":"P09"})");
   const auto protocol = row("protocol"), rig = row("rig"), calibration = row("calibration");
   const std::vector<ForgedRows> refused = {
@@ -237,19 +236,19 @@ TEST_CASE(
       {protocol, rig, calibration, row("protocol", R"({"protocol_key":"x"})")},
       {protocol, rig, calibration, row("rig", R"({"rig_key":"x"})")},
       {protocol, rig, calibration, row("calibration", R"({"calibration_id":"x"})")},
-      {protocol, rig, calibration, "participant VALUES ('P99')"},
+      {protocol, rig, calibration, row("enrolment", R"({"station_id":"bench-b", "participant":"P99"})")},
       {protocol, rig, calibration},  // correct, but the session has no checksum
   };
   // Nothing is on the server with which the forged rows could be compared.
-  for (const auto* table : {"session", "protocol", "rig", "calibration", "enrolment", "participant"})
+  for (const auto* table : {"session", "protocol", "rig", "calibration", "enrolment"})
     postgres.admin().query(std::string("DELETE FROM turnpoint.") + table);
   for (std::size_t i = 0; i < refused.size(); ++i) {
     INFO(i);
     auto rows = refused[i];
-    rows.insert(rows.end(), {session, participant, enrolment});
+    rows.insert(rows.end(), {session, enrolment});
     CHECK(state_of_forged(postgres, rows) == "TP004");
   }
-  for (const auto* table : {"session", "participant", "protocol", "rig", "calibration"})
+  for (const auto* table : {"session", "enrolment", "protocol", "rig", "calibration"})
     CHECK(count(postgres, table) == 0);
   // The honest session with this protocol, rig and calibration is stored.
   CHECK(collector::push({db, postgres.as("station_a"), "", "", {}, {}}).complete());

@@ -74,7 +74,8 @@ Quoted quoted() {
   };
   for (const auto& entry :
        std::filesystem::recursive_directory_iterator(std::string(TURNPOINT_SOURCE_DIR) + "/station")) {
-    if (entry.path().extension() != ".cpp" && entry.path().extension() != ".qml") continue;
+    const auto kind = entry.path().extension();
+    if (kind != ".cpp" && kind != ".hpp" && kind != ".qml") continue;
     const auto source = core::read_file(entry.path().string());
     add(word, source, all.words), add(use, source, all.asked_for);
   }

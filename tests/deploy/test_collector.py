@@ -17,6 +17,10 @@ if os.geteuid() != 0:
     print("skipped: only root can set up a server; sudo tests/run")
     sys.exit(77)
 PROGRAM = os.path.realpath(sys.argv[1])
+BUILD = os.path.dirname(os.path.dirname(PROGRAM))
+LOCALES = os.path.join(BUILD, "locales")
+# gives the program a locale with a decimal comma, which it would not set itself
+COMMA = {"LD_PRELOAD": os.path.join(BUILD, "tests/faults/libfaulty_system.so"), "USE_LOCALE": "1", "LC_ALL": "de_DE.UTF-8", "LOCPATH": LOCALES}
 AS_POSTGRES = ["setpriv", "--reuid=postgres", "--regid=postgres", "--init-groups", "--"]
 
 
@@ -69,10 +73,11 @@ class Collector:
                        env=self.environment, check=True, stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL, cwd="/")
 
     def collector(self, *words, status=0):
-        return self.run(os.path.join(SOURCE, "deploy", "collector"), *words, status=status)
+        # in a locale whose letters and order are not those of C
+        return self.run(os.path.join(SOURCE, "deploy", "collector"), *words, status=status, LC_ALL="tr_TR.UTF-8", LOCPATH=LOCALES)
 
     def push(self, status=0, to="service=collector", **changes):
-        return self.run(PROGRAM, "push", "--db", "lab.sqlite", "--to", to, status=status, **changes)
+        return self.run(PROGRAM, "push", "--db", "lab.sqlite", "--to", to, status=status, **COMMA, **changes)
 
     def sql(self, text, database="lab"):
         return self.run(*AS_POSTGRES, "psql", "-XqAt", "-d", database, "-c", text).strip()
@@ -84,6 +89,8 @@ def main(work):
     try:
         steps(lab)
         two_collectors(lab)
+        half_made(lab)
+        one_dropped(lab)
         roles(lab)
         certificates(lab)
         full_disk(lab)
@@ -221,6 +228,53 @@ def two_collectors(lab):
         check("and its list of withdrawals", os.path.exists(lab.at(f"shared/{database}.withdrawn")))
     check("no list has what is the other's", open(lab.at("shared/lab-b.withdrawn"), encoding="utf-8").read() == "")
     lab.collector("backup", "lab", lab.at("shared"), "0", status=1)
+
+
+def half_made(lab):
+    """`create` completes what an interrupted one, or a hand, has left."""
+    def public(words):
+        return lab.run("openssl", *words)
+
+    def complete(what):
+        lab.collector("create", "lab")
+        key, certificate = public(["pkey", "-in", lab.at("keys/server.key"), "-pubout"]), public(
+            ["x509", "-in", lab.at("keys/server.crt"), "-noout", "-pubkey"])
+        check(f"{what}: the certificate is that of the key", key == certificate)
+        check(f"{what}: the server can read its key", os.stat(lab.at("keys/server.key")).st_uid == os.stat(lab.data).st_uid)
+        lab.server("restart")
+        check(f"{what}: the station goes on", lab.push().count(" unchanged ") == 1)
+
+    lab.run("openssl", "genrsa", "-out", lab.at("keys/server.key"), "2048")  # ended between the new key and its certificate
+    complete("another key")
+    shutil.chown(lab.at("keys/server.key"), "root")  # ended before the key was given to the server
+    complete("a key of root")
+    os.remove(lab.at("keys/server.crt"))
+    complete("no certificate")
+    os.rename(lab.at("keys/hosts"), lab.at("hosts"))
+    check("no file for a station without a host", "no host" in lab.collector("station", "lab", "hostless", status=1))
+    check("and no such station", lab.sql("SELECT count(*) FROM turnpoint.station WHERE station_id = 'hostless'") == "0")
+    os.rename(lab.at("hosts"), lab.at("keys/hosts"))
+    lab.sql("CREATE DATABASE half", "postgres")  # ended before it had a schema
+    lab.collector("create", "half", "localhost")
+    check("a database without a schema gets one", lab.sql("SELECT count(*) FROM turnpoint.session", "half") == "0")
+    lab.sql("DROP DATABASE half", "postgres")
+
+
+def one_dropped(lab):
+    """If one of two collectors is dropped, the other goes on, and a new one of its name lets nobody in whom the first one knew."""
+    station = lab.sql("SELECT station_id FROM turnpoint.station", "lab-b")
+    role = lab.sql("SELECT role FROM turnpoint.station", "lab-b")
+    lab.sql("DROP DATABASE \"lab-b\"", "postgres")
+    lab.collector("backup", "lab-b", lab.at("shared"), status=1)
+    lab.collector("certificates")
+    check("the other one goes on", lab.push().count(" unchanged ") == 1)
+    lab.collector("create", "lab-b", "localhost")
+    check("the new one knows nobody", lab.sql("SELECT count(*) FROM turnpoint.station", "lab-b") == "0")
+    check("and lets nobody in", lab.sql(f"SELECT has_database_privilege('{role}', 'lab-b', 'CONNECT')") == "f")
+    file = dict(line.split("=", 1) for line in lab.collector("station", "lab-b", station + "-new").splitlines() if "=" in line)
+    lab.server("reload")
+    lab.run("psql", "-XAtq", "-c", "SELECT 1 FROM turnpoint.hello()", f"host=localhost user={file['user']} sslmode=verify-full"
+            f" sslrootcert={lab.at('keys/root.crt')} dbname=lab-b", PGPASSWORD=file["password"])
 
 
 def roles(lab):

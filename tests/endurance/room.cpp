@@ -10,7 +10,7 @@ using namespace turnpoint;
 using audio::AmplifierState;
 using session::FaultKind;
 using session::Input;
-using session::InputKind;
+namespace input = session::input;
 
 namespace {
 
@@ -51,14 +51,8 @@ void Room::plan(std::int64_t in_ns, std::function<void()> happens) {
                    [](const auto& a, const auto& b) { return a.time_ns < b.time_ns; });
 }
 
-void Room::push(InputKind kind, FaultKind fault, const std::string& text) {
-  Input input;
-  input.time_ns = now_ns();
-  input.kind = kind;
-  input.fault = fault;
-  input.text = text;
-  input.quality = session::TimeQuality::simulated;
-  inputs_.push_back(std::move(input));
+void Room::push(input::Any content) {
+  inputs_.push_back({now_ns(), std::move(content), session::TimeQuality::simulated});
 }
 
 /// With real devices, the thread of the amplifier's guard and the session do this
@@ -134,10 +128,10 @@ std::int64_t Room::silence(bool awaits_heard) {
 /// stimulus that is being presented.
 void Room::strike_underrun() {
   const auto now = now_ns();
-  push(InputKind::xrun, {}, "960 frames lost");
-  inputs_.back().value = std::any_of(stimuli_.begin(), stimuli_.end(), [now](const auto& stimulus) {
+  const bool in_stimulus = std::any_of(stimuli_.begin(), stimuli_.end(), [now](const auto& stimulus) {
     return stimulus.first <= now && now < stimulus.second;
   });
+  push(input::Xrun{in_stimulus, "960 frames lost"});
 }
 
 Room::Refusal Room::arm() {
@@ -187,7 +181,7 @@ void Room::show(const session::Page& page) {
   if (!wanted || std::exchange(arm_planned_, true)) return;
   plan(world_.course.seconds(1, 8), [this] {
     arm_planned_ = false;
-    push(InputKind::arm);
+    push(input::Arm{});
   });
 }
 
@@ -195,7 +189,7 @@ void Room::show(const session::Page& page) {
 void Room::tell_guard_fault() {
   line();
   if (guard_.state() != AmplifierState::faulted || std::exchange(fault_told_, true)) return;
-  push(InputKind::fault, guard_.fault().kind, guard_.fault().detail);
+  push(session::Fault{guard_.fault().kind, guard_.fault().detail});
 }
 
 void Room::strike_line(const char* what, void (io::Guard::*change)(std::int64_t, bool) noexcept) {
@@ -213,7 +207,7 @@ void Room::strike_device() {
   world_.amplifier.cause(world_ns(), "converter gone");
   guard_.trip(now_ns(), FaultKind::converter_gone);
   tell_guard_fault();
-  plan(world_.course.seconds(0.5, 10), [this] { push(InputKind::notice, {}, "the converter is back"); });
+  plan(world_.course.seconds(0.5, 10), [this] { push(input::Notice{"the converter is back"}); });
 }
 
 /// Simulates the loss of the GPIO chip. Buttons and amplifier are both on it, so its loss is reported twice.
@@ -222,13 +216,13 @@ void Room::strike_chip() {
   world_.amplifier.cause(world_ns(), "lines gone");
   world_.amplifier.lasts("lines gone");
   missing_ = "the chip is gone";
-  push(InputKind::fault, FaultKind::lines_gone, "panel: " + missing_);
+  push(session::Fault{FaultKind::lines_gone, "panel: " + missing_});
   guard_.trip(now_ns(), FaultKind::lines_gone);
   tell_guard_fault();
   plan(world_.course.seconds(0.1, 20), [this] {
     world_.amplifier.over("lines gone");
     missing_.clear();
-    push(InputKind::notice, {}, "panel: the lost device is connected again");
+    push(input::Notice{"panel: the lost device is connected again"});
   });
 }
 
@@ -251,19 +245,19 @@ void Room::strike(Fault fault) {
     case Fault::underrun:
       return strike_underrun();
     case Fault::touch_gone:
-      return push(InputKind::fault, FaultKind::touch_gone, "panel: it was unplugged");
+      return push(session::Fault{FaultKind::touch_gone, "panel: it was unplugged"});
     case Fault::disarm:
-      return push(InputKind::disarm);
+      return push(input::Disarm{});
     case Fault::repeat:
-      return push(InputKind::repeat);
+      return push(input::Repeat{});
     case Fault::pause:
-      return push(InputKind::pause);
+      return push(input::Pause{});
     case Fault::end_session:
-      return push(InputKind::stop);
+      return push(input::Stop{});
     case Fault::clock_jump: {
       const auto by_ns = world_.course.between(-3 * kDay_ns, 3 * kDay_ns);
       world_.wall_offset_ns += by_ns;
-      return push(InputKind::notice, {}, "the wall clock was set");
+      return push(input::Notice{"the wall clock was set"});
     }
     case Fault::disk_full:
       return disk_.bytes_left(world_.course.between(0, 40'000));

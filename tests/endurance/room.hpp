@@ -57,7 +57,6 @@ struct Disk {
 class Room : public turnpoint::session::Stage, public turnpoint::session::Display {
  public:
   using Input = turnpoint::session::Input;
-  using InputKind = turnpoint::session::InputKind;
 
   Room(World& world, Disk disk, std::unique_ptr<turnpoint::session::Stage> inner, int rate_Hz);
   ~Room() override;
@@ -98,7 +97,7 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
   void attend();
   void line();
   void plan(std::int64_t in_ns, std::function<void()> happens);
-  void push(InputKind kind, turnpoint::session::FaultKind fault = {}, const std::string& text = "");
+  void push(turnpoint::session::input::Any content);
   void strike(Fault fault);
   void strike_line(const char* what, void (turnpoint::io::Guard::*change)(std::int64_t, bool) noexcept);
   void strike_device();

@@ -12,6 +12,7 @@
 #include "station/store/error.hpp"
 #include "station/store/read.hpp"
 #include "station/store/sqlite.hpp"
+#include "tests/support/simulated_run.hpp"
 
 namespace endurance {
 
@@ -26,13 +27,7 @@ constexpr std::int64_t kRest_ns =
     2'400'000'000'000;  // longer than the half hour without stimuli that ends a period of exposure
 
 session::Setup prepare(const std::string& protocol, const std::string& database, std::uint64_t seed) {
-  session::RunRequest request;
-  request.protocol = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol;
-  request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
-  request.participant = "P01";
-  request.database = database;
-  request.observer = "sim";
-  request.seed = seed;
+  auto request = simulated_run(TURNPOINT_SOURCE_DIR "/protocols/" + protocol, database, seed);
   request.headless = true;
   return session::prepare(request);
 }
@@ -76,8 +71,6 @@ struct Acknowledgements : session::Monitor {
 
   Acknowledgements(World& w, const Room& r, std::string id, const bool& d)
       : world(w), room(r), session_id(std::move(id)), dead(d) {}
-  void trial_begins(const trial::TrialSpec&, const protocol::Block&,
-                    const session::PlanAhead::Plans&) override {}
   void trial_ended(const trial::TrialSpec&, const core::TrialRow& row) override {
     if (dead) return;  // the simulated process is dead, so ignore its reports
     world.trials.acknowledged(session_id, row);

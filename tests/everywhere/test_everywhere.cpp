@@ -7,6 +7,7 @@
 #include "station/session/prepare.hpp"
 #include "station/store/read.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/simulated_run.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 // Hashes of everything that must not depend on the machine. They were recorded on amd64 with g++ 12, and
@@ -57,13 +58,8 @@ std::string rendered(const audio::Burst& burst) {
 /// Runs a simulated session of a shipped protocol, with its files in `folder`, and returns its trials.
 std::vector<core::TrialRow> session_of(const std::string& protocol, const TemporaryFolder& folder,
                                        const std::string& output) {
-  session::RunRequest request;
-  request.protocol = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol + ".toml";
-  request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
-  request.participant = "P01";
-  request.database = folder / "a.sqlite";
-  request.observer = "sim";
-  request.seed = 20240229;
+  auto request =
+      simulated_run(TURNPOINT_SOURCE_DIR "/protocols/" + protocol + ".toml", folder / "a.sqlite", 20240229);
   request.headless = true;
   auto setup = session::prepare(request);
   setup.rig.output.uri = output;
@@ -155,6 +151,10 @@ constexpr Recorded kSessions[] = {
     {"response-signal-flash", "ef371dbbfaebe6ce", "5d99f9739e94ada6"},
     {"friction-rating", "293a46da12ce06a1", "4932411790c12386"},
     {"two-spots-oddity", "d84ae5fc63983e76", "b2d2fee42b03d1aa"},
+    {"bisection", "ae550ca70047cc3d", "8bff4d2e1e217462"},
+    {"matching", "671daafb56301337", "6b2912f4e02cfe2d"},
+    {"cross-modal-matching", "0c39d187fabe8c6d", "58ae8ed91a523391"},
+    {"magnitude-production", "1d495d0acb183b2d", "91e68fcc91fcfc60"},
 };
 
 }  // namespace

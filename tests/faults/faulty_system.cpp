@@ -13,6 +13,7 @@
 //                        calls fail with this number, as on some network and FUSE mounts and on FAT; none
 //                        counts as one of the calls above
 //   CLOCK_OFFSET_S=S     the wall clock is ahead by S seconds (negative: behind)
+//   USE_LOCALE=1         the program has the locale of its environment, as a program of Qt has
 //   CLOCK_SET_AFTER=N    this begins after the program has read the wall clock N times, as if it was set then
 #include <dirent.h>
 #include <dlfcn.h>
@@ -28,6 +29,7 @@
 #include <atomic>
 #include <cerrno>
 #include <climits>
+#include <clocale>
 #include <csignal>
 #include <cstdarg>
 #include <cstdio>
@@ -36,6 +38,10 @@
 #include <string>
 
 namespace {
+
+[[gnu::constructor]] void use_locale() {
+  if (std::getenv("USE_LOCALE") != nullptr) std::setlocale(LC_ALL, "");
+}
 
 struct Settings {
   std::string under;

@@ -49,6 +49,14 @@ class Folders(unittest.TestCase):
                 os.mkdir(disk)
                 yield os.path.join(folder, "station"), disk, {"FAULT_UNDER": disk, "NOT_OFFERED": str(getattr(errno, name))}
 
+    def test_negative_control_such_a_disk_refuses(self):
+        for _, disk, little in self.each():
+            for call in ("os.chmod(disk, 0o700)", "os.fsync(os.open(disk, os.O_RDONLY))", "fcntl.flock(os.open(disk, os.O_RDONLY), fcntl.LOCK_EX)"):
+                done = subprocess.run([sys.executable, "-c", f"import fcntl, os; disk = {disk!r}; {call}"], capture_output=True, text=True,
+                                      check=False, env={**os.environ, "LD_PRELOAD": FAULTY_SYSTEM, **little})
+                self.assertEqual(done.returncode, 1, call)
+                self.assertIn(os.strerror(int(little["NOT_OFFERED"])), done.stderr, call)
+
     def test_backups_live_on_such_a_disk(self):
         for station, disk, little in self.each():
             for _ in range(3):

@@ -356,7 +356,7 @@ class Push(Withdraw):
         server = self.sweep.collector()
         if int(server.sql("SELECT count(*) FROM turnpoint.trial")) not in (10, 20):
             wrong("the server has a part of a session")
-        if server.sql("SELECT 1 FROM turnpoint.participant WHERE code = 'QX9'"):
+        if server.sql("SELECT 1 FROM turnpoint.enrolment WHERE participant = 'QX9'"):
             wrong("a withdrawn participant came back to the server")
 
 
@@ -474,6 +474,7 @@ class Sweep:
                 self.point(operation, before, number, kind)
             except Wrong as found:
                 failures.append(f"{name}: {kind} at call {number} ({what.replace(self.work, '...')}): {found}")
+                print(failures[-1], flush=True)
         print(f"{name}: {tried} of {len(points)} points, {len(failures)} wrong", flush=True)
         return failures
 
@@ -511,8 +512,6 @@ def main():
         finally:
             if sweep.server:
                 sweep.server.stop()
-    for failure in failures:
-        print(failure)
     sys.exit(1 if bool(failures) != options.careless else 0)
 
 

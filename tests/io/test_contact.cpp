@@ -17,4 +17,5 @@ TEST_CASE("touch, movement and lift of a finger are reported once per kernel rep
   CHECK(reader.take(5'020'000'000, true, 600)->position.value() == Approx(0.5));
   CHECK_FALSE(reader.take(5'030'000'000, false, 600)->on);
   CHECK_FALSE(reader.take(5'040'000'000, false, 900));
+  CHECK(reader.take(5'050'000'000, true, 1250)->position.value() == 1);  // outside of the stated range
 }

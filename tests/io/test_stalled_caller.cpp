@@ -12,6 +12,7 @@
 #include "station/io/simulated_lines.hpp"
 #include "station/system/clocks.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/number_from.hpp"
 #include "tests/support/shared_lines.hpp"
 
 using namespace turnpoint;
@@ -144,10 +145,7 @@ struct Bench {
   }
 };
 
-int rounds() {
-  const char* wanted = std::getenv("TURNPOINT_STALLS");
-  return wanted != nullptr ? std::atoi(wanted) : 20'000;
-}
+int rounds() { return number_from("TURNPOINT_STALLS", 20'000); }
 
 }  // namespace
 

@@ -177,7 +177,7 @@ TEST_CASE("force cells on a converter with its own clock are weighed, and a live
   std::function<void()> during_first = [] {};
   card.reacts = [&](const session::Page& page) {
     board.finger.touched_ns = -1;
-    if (page.kind == PageKind::fault && page.fault == FaultKind::capture) {
+    if (page.kind == PageKind::fault && page.fault.kind == FaultKind::capture) {
       const int before = board.opened;
       board.gone = false;
       while (board.opened == before) std::this_thread::yield();
@@ -243,8 +243,9 @@ TEST_CASE("the calibration of cells on a converter names a wire that is off and 
   }
   SECTION("samples without any noise") {
     room.converter->dead = true;
-    CHECK_THROWS_WITH(reader.read(weight), Catch::Matchers::ContainsSubstring(
-                                               "cell a on captured channel voltage0: the samples do not change at all"));
+    CHECK_THROWS_WITH(reader.read(weight),
+                      Catch::Matchers::ContainsSubstring(
+                          "cell a on captured channel voltage0: the samples do not change at all"));
   }
   SECTION("lost samples, which do not matter for the next reading") {
     room.converter->until_gap = 100;

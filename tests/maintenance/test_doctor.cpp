@@ -1,7 +1,11 @@
+#include <sys/mount.h>
+
+#include <filesystem>
 #include <fstream>
 #include <regex>
 
 #include "station/maintenance/doctor.hpp"
+#include "station/system/condition.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -76,6 +80,85 @@ TEST_CASE("the doctor names the file system of the data folder, and what is wron
     CHECK_THAT(mend(remote), Catch::Matchers::ContainsSubstring("on a disk of this machine"));
   for (const auto* plain : {"vfat", "exfat", "ntfs"})
     CHECK_THAT(mend(plain), Catch::Matchers::ContainsSubstring("ext4"));
+  for (const auto* in_memory : {"tmpfs", "ramfs", "overlay"}) {
+    const auto finding = maintenance::check_file_system(in_memory);
+    CHECK(finding.status == Status::failed);
+    CHECK_THAT(english(finding.mend), Catch::Matchers::ContainsSubstring("switched off"));
+  }
+}
+
+TEST_CASE("the doctor reads the name of a file system from the folder itself", "[maintenance][doctor]") {
+  const TemporaryFolder folder;
+  const auto mounted = [&](const char* type, const std::string& options) {
+    const auto place = folder / type;
+    std::filesystem::create_directory(place);
+    if (::mount(type, place.c_str(), type, 0, options.empty() ? nullptr : options.c_str()) != 0)
+      return std::string();
+    const auto found = system::read_disk(place + "/folder/that/is/not/there").file_system;
+    ::umount2(place.c_str(), MNT_DETACH);
+    return found;
+  };
+  const auto memory = mounted("tmpfs", "");
+  if (memory.empty()) {
+    WARN("skipped: only root can mount; sudo tests/run");
+    return;
+  }
+  CHECK(memory == "tmpfs");
+  CHECK(mounted("ramfs", "") == "ramfs");
+  const auto lower = folder / "lower", upper = folder / "upper", work = folder / "work";
+  for (const auto& part : {lower, upper, work}) std::filesystem::create_directory(part);
+  const auto overlay = mounted("overlay", "lowerdir=" + lower + ",upperdir=" + upper + ",workdir=" + work);
+  if (!overlay.empty()) CHECK(overlay == "overlay");
+}
+
+TEST_CASE("the doctor warns of a sound card that has a number instead of a name, or neither",
+          "[maintenance][doctor]") {
+  for (const auto* uri : {"alsa:hw:0",
+                          "alsa:hw:0,0",
+                          "alsa:hw:1,0,2",
+                          "alsa:hw",
+                          "alsa:hw:",
+                          "alsa:hw:CARD=0",
+                          "alsa:hw:CARD=12,DEV=0",
+                          "alsa:hw:DEV=0,CARD=1",
+                          "alsa:hw:DEV=0",
+                          "alsa:plughw:0",
+                          "alsa:plughw:CARD=0,DEV=0",
+                          "alsa:default",
+                          "alsa:default:0",
+                          "alsa:default:CARD=1",
+                          "alsa:sysdefault",
+                          "alsa:sysdefault:1",
+                          "alsa:front:0",
+                          "alsa:surround51:CARD=2",
+                          "alsa:dmix:0",
+                          "alsa:plug:hw:0",
+                          "alsa:plug:'hw:0'",
+                          "alsa:hdmi:CARD=0,DEV=1"}) {
+    INFO(uri);
+    CHECK_FALSE(maintenance::names_a_card(uri));
+  }
+  for (const auto* uri :
+       {"alsa:hw:CARD=sndrpihifiberry", "alsa:hw:CARD=sndrpihifiberry,DEV=0", "alsa:hw:DEV=0,CARD=Loopback",
+        "alsa:hw:Loopback,0", "alsa:hw:Loopback", "alsa:plughw:CARD=U192k,DEV=0", "alsa:plughw:U192k",
+        "alsa:hw:CARD=0ab", "alsa:hw:2i2", "alsa:sysdefault:CARD=PCH", "alsa:default:CARD=PCH", "alsa:looped",
+        "alsa:mixed", "alsa:plug:hw:CARD=PCH", "alsa:plug:'hw:PCH,0'", "sim:", "null:", "wav:hw:0"}) {
+    INFO(uri);
+    CHECK(maintenance::names_a_card(uri));
+  }
+  const TemporaryFolder folder;
+  auto rig = rig::load(TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated.toml");
+  for (const auto* uri : {"alsa:hw:31", "alsa:hw:CARD=nosuchcard"}) {
+    rig.output.uri = uri;
+    int warnings = 0;
+    for (const auto& finding : maintenance::examine(rig, folder.path))
+      if (finding.mend.key == "doctor.card_number_mend") {
+        ++warnings;
+        CHECK(finding.status == Status::warning);
+        CHECK(english(finding.what) == uri);
+      }
+    CHECK(warnings == (std::string(uri) == "alsa:hw:31" ? 1 : 0));
+  }
 }
 
 TEST_CASE("the doctor fails if the machine swaps, and says how to switch swapping off",

@@ -11,6 +11,7 @@
 #include "station/simulation/cells.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/simulated_run.hpp"
 
 using namespace turnpoint;
 using maintenance::open_bridges;
@@ -267,14 +268,10 @@ TEST_CASE("a session measures forces with the calibration that dead weights gave
       for (double& value : row) value *= factor;
     const auto file = folder / "forces.toml";
     std::ofstream(file) << rig::to_toml(changed);
-    session::RunRequest request;
-    request.protocol = measured::shipped("demo");
+    auto request =
+        simulated_run(measured::shipped("demo"), folder / ("a" + std::to_string(factor) + ".sqlite"), 7);
     request.rig = path;
     request.calibration = file;
-    request.participant = "P01";
-    request.database = folder / ("a" + std::to_string(factor) + ".sqlite");
-    request.observer = "sim";
-    request.seed = 7;
     session::Inputs inputs;
     const auto summary = session::run(session::prepare(request), nullptr, inputs);
     double sum = 0, count = 0;

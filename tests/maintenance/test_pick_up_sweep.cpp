@@ -8,6 +8,7 @@
 #include "station/session/simulated_room.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/simulated_run.hpp"
 
 using namespace turnpoint;
 using maintenance::calibrate_pick_ups;
@@ -48,14 +49,9 @@ std::string refusal(const rig::Rig& rig, const PickUpOptions& options) {
 /// Runs the demo with a calibration file.
 session::Summary run_with(const TemporaryFolder& folder, const std::string& rig,
                           const std::string& calibration, std::vector<core::TrialRow>& trials) {
-  session::RunRequest request;
-  request.protocol = measured::shipped("demo");
+  auto request = simulated_run(measured::shipped("demo"), folder / "a.sqlite", 7);
   request.rig = rig;
   request.calibration = calibration;
-  request.participant = "P01";
-  request.database = folder / "a.sqlite";
-  request.observer = "sim";
-  request.seed = 7;
   session::Inputs inputs;
   measured::Pages pages;
   const auto summary = session::run(session::prepare(request), &pages, inputs);

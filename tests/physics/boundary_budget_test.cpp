@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "physics/centre_line.hpp"
 #include "physics/edge_feature.hpp"
 #include "tests/support/catch.hpp"
 
@@ -154,6 +155,77 @@ TEST_CASE("the first-order uncertainty of thick plates agrees with the scatter o
     CHECK(boundary_budget(nominal, f, x).total_m ==
           Approx(std::sqrt((square - sum * sum / count) / (count - 1))).epsilon(0.08));
   }
+}
+
+TEST_CASE("the uncertainty of a level agrees with the scatter of random surfaces", "[physics]") {
+  std::mt19937_64 random(13);
+  std::normal_distribution<double> normal;
+  Surface thick = plate(), lossy = plate();
+  thick.theory = PlateTheory::mindlin;
+  thick.thickness_m = 3e-3;
+  lossy.sd = {};
+  lossy.sd.quality_factor = 0.2 * lossy.quality_factor;
+  Surface fitted = plate();
+  fitted.sd.thickness_m = 0.15e-3;
+  fitted.sd.modulus_Pa = 7e9;
+  fitted.correlations = {{Parameter::modulus, Parameter::thickness, -0.98}};
+  int inside = 0, all = 0;
+  for (const Surface& nominal : {plate(), thick, membrane(LinearTaper{0.03, 0.1}), lossy, fitted}) {
+    const bool pair = !nominal.correlations.empty();
+    for (const double f : {24e3, 30e3, 38e3}) {
+      const auto level_dB = [&](const Surface& s, double x) {
+        const auto line = make_centre_line(s, f, Model::mode);
+        return 8.685889638 * (line->value(x).ln_magnitude() - line->value(0).ln_magnitude());
+      };
+      const double x = make_centre_line(nominal, f, Model::mode)->last_peak_m().value();
+      const LevelBudget budget = level_budget(nominal, f, x);
+      constexpr int count = 400;
+      double sum = 0, square = 0;
+      for (int i = 0; i < count; ++i) {
+        Surface s = nominal;
+        double thickness = 0;
+        for (const Parameter p : parameters(nominal)) {
+          double z = normal(random);
+          if (p == Parameter::thickness) thickness = z;
+          if (p == Parameter::modulus && pair) z = -0.98 * thickness + std::sqrt(1 - 0.98 * 0.98) * z;
+          if (p == Parameter::quality_factor)
+            s.quality_factor *= std::exp(z * standard_deviation(nominal, p) / nominal.quality_factor);
+          else
+            s = changed(s, p, standard_deviation(nominal, p) * z);
+        }
+        const double moved = level_dB(s, x) - level_dB(nominal, x);
+        sum += moved;
+        square += moved * moved;
+        inside += budget.low_dB <= moved && moved <= budget.high_dB;
+        ++all;
+      }
+      const double sampled = std::sqrt((square - sum * sum / count) / (count - 1));
+      CAPTURE(f, x, sampled, budget.total_dB);
+      CHECK(budget.total_dB == Approx(sampled).epsilon(0.15));
+      for (const auto& part : budget.parts) CHECK(part.level_dB <= budget.parts.front().level_dB);
+    }
+  }
+  CAPTURE(inside, all);
+  CHECK(inside > 0.93 * all);
+  CHECK(inside < 0.97 * all);
+  Surface known = plate();
+  known.sd = {};
+  CHECK(level_budget(known, 30e3, 0.1).total_dB == 0);
+  CHECK(level_budget(known, 30e3, 0.1).parts.empty());
+}
+
+TEST_CASE("the quality factor moves a boundary by less than a twentieth of what the other parameters do",
+          "[physics]") {
+  Surface thick = plate();
+  thick.theory = PlateTheory::mindlin;
+  for (const Surface& s : {plate(), thick, membrane(LinearTaper{0.03, 0.1})})
+    for (const char* text : {"peak", "p50", "p10", "friction=0.7"}) {
+      const double x = solved_m(s, text, 30e3);
+      CAPTURE(text, s.quality_factor, x);
+      for (const double by : {-0.25, 0.25})
+        CHECK(std::abs(solved_m(changed(s, Parameter::quality_factor, by * s.quality_factor), text, 30e3) -
+                       x) < 0.05 * boundary_budget(s, 30e3, x).total_m);
+    }
 }
 
 TEST_CASE("a budget lists first the parameter whose measurement helps most", "[physics]") {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <string>
 #include <vector>
+
+#include "tests/support/number_from.hpp"
 
 namespace turnpoint::physics_test {
 
@@ -35,16 +35,10 @@ inline constexpr int share = 1;
 #endif
 
 // Number of random scenes: `usual`, or the value of TURNPOINT_SCENES, for example 5000 for a long run.
-inline int scenes(int usual) {
-  const char* const asked = std::getenv("TURNPOINT_SCENES");
-  return asked ? std::stoi(asked) : usual / share;
-}
+inline int scenes(int usual) { return number_from("TURNPOINT_SCENES", usual / share); }
 
 // Number of the first scene, to make a long run in parts: 0, or the value of TURNPOINT_FIRST_SCENE.
-inline int first_scene() {
-  const char* const asked = std::getenv("TURNPOINT_FIRST_SCENE");
-  return asked ? std::stoi(asked) : 0;
-}
+inline int first_scene() { return number_from("TURNPOINT_FIRST_SCENE", 0); }
 
 inline double median(std::vector<double> list) {
   const auto middle = list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2);

@@ -177,6 +177,10 @@ void surface_calls(Calls& calls, const std::string& what, const Surface& s, doub
     return all;
   });
   on("boundary_budget", [&] { return Numbers{boundary_budget(s, f, 0.5 * s.length_m).total_m}; });
+  on("level_budget", [&] {
+    const LevelBudget budget = level_budget(s, f, 0.5 * s.length_m);
+    return Numbers{budget.total_dB, budget.low_dB, budget.high_dB};
+  });
   on("boundary_derivative", [&] {
     Numbers all;
     for (const Parameter p : parameters(s)) all.push_back(boundary_derivative(s, p, f, 0.5 * s.length_m));
@@ -304,6 +308,8 @@ TEST_CASE("unusual values: every function refuses a surface that has one, or ans
       {"expansion", [](Surface& s, double v) { s.expansion_per_K = v; }},
       {"modulus per kelvin", [](Surface& s, double v) { s.modulus_per_K = v; }},
       {"sd of thickness", [](Surface& s, double v) { s.sd.thickness_m = v; }},
+      {"sd of half-width", [](Surface& s, double v) { s.sd.half_width_m = v; }},
+      {"sd of the quality factor", [](Surface& s, double v) { s.sd.quality_factor = v; }},
       {"correlation",
        [](Surface& s, double v) {
          s.correlations = {{Parameter::thickness, Parameter::density, v}};

@@ -67,6 +67,61 @@ TEST_CASE("a weighted staircase balances at its target", "[procedure]") {
   CHECK(*trace(spec, {}, "1110").next == Approx(14));
 }
 
+TEST_CASE("after \"unsure\" a weighted staircase steps as it would, on average, after a guess",
+          "[procedure]") {
+  Spec spec;
+  spec.name = "unforced";
+  spec.level = "contrast_dB";
+  spec.kind = Kind::weighted_up_down;
+  spec.start = 20;
+  spec.min = -40;
+  spec.max = 40;
+  spec.step_down = {2, 1};
+  spec.target = 0.75;
+  spec.stop.trials = 4000;
+  spec.guess_rate = 0.5;
+  const auto start = [&] {
+    return make_procedure(spec, {}, {1, turnpoint::core::Stream::level_order, 0, 0, 0});
+  };
+  const auto level = [](const Procedure& procedure) { return procedure.next()->level; };
+  auto steps = start();
+  steps->record(Answer::one);
+  CHECK(level(*steps) == 18);
+  steps->record(Answer::unsure);  // up, which is a reversal, so that the second size follows
+  CHECK(level(*steps) == 19);
+  steps->record(Answer::unsure);
+  CHECK(level(*steps) == 20);
+  steps->record(Answer::zero);
+  CHECK(level(*steps) == 23);
+
+  // With one of three right by chance and a target of 0.8: the mean of 2/3 of 4 up and 1/3 of 1 down.
+  spec.guess_rate = 1.0 / 3;
+  spec.target = 0.8, spec.step_down = {1};
+  steps = start();
+  steps->record(Answer::unsure);
+  CHECK(level(*steps) == Approx(20 + 8.0 / 3 - 1.0 / 3));
+
+  // Whether people guess or not, the level settles where 75 % would be right. They know the answer with the
+  // probability 1 - exp(-e), e = 10^(level / 20), and otherwise guess or say that they would.
+  spec.guess_rate = 0.5, spec.target = 0.75, spec.step_down = {2, 1};
+  for (const double admits : {0.0, 0.5, 1.0}) {
+    auto track = start();
+    turnpoint::core::Draws draws({5, turnpoint::core::Stream::observer, 0, 0, static_cast<int>(10 * admits)});
+    double sum = 0;
+    int counted = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const double at = level(*track);
+      const double known = 1 - std::exp(-std::pow(10, at / 20));
+      sum += known + 0.5 * (1 - known), ++counted;
+      const bool knows = draws.uniform() < known;
+      const bool admitted = draws.uniform() < admits, lucky = draws.uniform() < 0.5;
+      track->record(knows ? Answer::one : admitted ? Answer::unsure : lucky ? Answer::one : Answer::zero);
+    }
+    INFO("admits " << admits << " of the guesses");
+    CHECK(sum / counted == Approx(0.75).margin(0.02));
+  }
+}
+
 TEST_CASE("a staircase stays inside its limits and stops by its rules", "[procedure]") {
   auto spec = two_down_one_up();
   spec.initial_down.reset();

@@ -5,6 +5,7 @@
 #include "station/protocol/combinations.hpp"
 #include "station/protocol/resolve.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/replaced.hpp"
 
 using namespace turnpoint;
 using protocol::AnswerKind;
@@ -16,11 +17,6 @@ std::string source_of(const std::string& name) {
 }
 
 protocol::Protocol shipped(const std::string& name) { return protocol::parse(source_of(name), name); }
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  REQUIRE(text.find(from) != std::string::npos);
-  return text.replace(text.find(from), from.size(), to);
-}
 
 /// The shipped speed-accuracy protocol, changed to a yes/no task in which `change` is never negative.
 protocol::Protocol yes_no() {

@@ -193,6 +193,19 @@ TEST_CASE("a probable mistake gives a warning at its place", "[protocol]") {
     CHECK(contains(advice(replaced(rating, "en = \"surely not\"", "en = \"surely\"")),
                    "two answers have the label \"surely\""));
   }
+  SECTION("standards that are felt after the last trial") {
+    const auto source_of = source("bisection.toml");
+    const std::string what = "the examples of \"standards\" come after the last block";
+    CHECK_FALSE(contains(advice(source_of), what));
+    const auto from = source_of.find("[[explanation]]"), to = source_of.find("[[block]]");
+    REQUIRE(from < to);
+    const auto moved =
+        source_of.substr(0, from) + source_of.substr(to) + "\n" + source_of.substr(from, to - from);
+    CHECK(contains(advice(moved), what));
+    CHECK_FALSE(contains(
+        advice(replaced(moved, "name = \"standards\"", "name = \"standards\"\nafter_each = \"main\"")),
+        what));
+  }
   SECTION("levels finer than four times the tolerance") {
     CHECK(contains(advice(replaced(constant, "boundary_mm = 0.5,", "boundary_mm = 1.0,")),
                    "the scene's tolerance is 1 mm"));

@@ -3,6 +3,7 @@ import ast
 import copy
 import inspect
 import json
+import locale
 import math
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import unittest
 import numpy as np
 from turnpoint import physics
 
+locale.setlocale(locale.LC_ALL, "")  # as a program with windows does; a decimal comma changes nothing
 TURNPOINT, STUBS = sys.argv.pop(1), sys.argv.pop(1)
 
 

@@ -1,5 +1,6 @@
 """test_read.py MAKE_SAMPLE TURNPOINT README RIG: the readers against exports, the database itself, and the examples."""
 import json
+import locale
 import re
 import shutil
 import sqlite3
@@ -13,6 +14,7 @@ import numpy as np
 import pandas as pd
 import turnpoint
 
+locale.setlocale(locale.LC_ALL, "")  # as a program with windows does; a decimal comma changes nothing
 MAKE_SAMPLE, TURNPOINT, README, RIG = (sys.argv.pop(1) for _ in range(4))
 TABLES = ("trials", "intervals", "events", "sessions", "self_tests", "answers", "friction_tables",
           "programs", "estimates")
@@ -72,6 +74,31 @@ class Reading(unittest.TestCase):
                        stdout=subprocess.DEVNULL)
         for source in (database, self.folder / "digits"):
             self.assertEqual(set(turnpoint.read(source).trials.participant_id), {"007"})
+
+    def test_levels_that_look_like_numbers_or_like_nothing(self):
+        head = ('format = "friction-protocol/1"\n[protocol]\nid = "levels"\nversion = "1.0.0"\ntitle = "Levels"\n'
+                'languages = ["en"]\n[[factor]]\nname = "amount"\nrange = [0, 0.5]\n')
+        factors = {"cloth": ["007", "010"], "oil": ["nan", "inf"], "kind": [1.0, 2.0],
+                   "word": ["n/a", "NA", "None", " a, b", "=1"]}
+        rest = ('[scene.reference]\nboundary_mm = 185.0\nedge = "p50"\ndisplacement_um = 1.0\n[scene.comparison]\n'
+                'base = "reference"\ndisplacement_um = "1 - amount"\n[task]\nkind = "2ifc"\n'
+                'intervals = ["reference", "comparison"]\nduration_s = 0.6\ngap_s = 0.4\ndevice = "touch"\n'
+                'question = { en = "?" }\nchoices = [ { id = "1", label = { en = "1" } }, { id = "2", label = { en = "2" } } ]\n'
+                'correct = "comparison"\n[timing]\nresponse_zero = "interval_off"\ndeadline_s = 6.0\n'
+                'iti_s = { uniform = [0.8, 1.2] }\n[[procedure]]\nname = "fixed"\nkind = "constant-stimuli"\nlevel = "amount"\n'
+                'values = [0.1, 0.4]\nrepeats = 10\nbalance = ["word", "cloth"]\n[[block]]\nname = "main"\nprocedures = ["fixed"]\n')
+        protocol, database = self.folder / "levels.toml", self.folder / "levels.sqlite"
+        protocol.write_text(head + "".join(f'[[factor]]\nname = "{name}"\nlevels = {json.dumps(levels)}\n'
+                                           for name, levels in factors.items()) + rest)
+        subprocess.run([TURNPOINT, "run", protocol, "--participant", "NA", "--db", database, "--headless", "--observer", "sim"],
+                       check=True, stdout=subprocess.DEVNULL)
+        for number, options in enumerate(([], ["--separator", ";", "--decimal", ","])):
+            out = self.folder / f"levels{number}"
+            subprocess.run([TURNPOINT, "export", "--db", database, "--out", out, *options], check=True, stdout=subprocess.DEVNULL)
+            self.same(turnpoint.read(database), turnpoint.read(out))
+            trials = turnpoint.read(out).trials
+            for name, levels in factors.items():
+                self.assertEqual(set(trials[name]), set(levels), name)
 
     def test_sessions_are_chosen(self):
         whole = turnpoint.read(self.database)

@@ -93,6 +93,89 @@ TEST_CASE("a protocol that nobody can answer in time does not end, and check say
   CHECK(core::say(check.problems[0].what, "en").find("a.toml") == std::string::npos);
 }
 
+namespace {
+
+/// Checks a protocol that comes with the program, in which the first `from` is replaced.
+rehearsal::Check checked_with(const std::string& name, const std::string& from, const std::string& to) {
+  const std::string root = TURNPOINT_SOURCE_DIR;
+  auto text = core::read_file(root + "/protocols/" + name + ".toml");
+  const auto at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  text.replace(at, from.size(), to);
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.toml";
+  std::ofstream(path) << text;
+  return rehearsal::check(path, root + "/tests/support/thin_plate.toml", {3});
+}
+
+/// What the notes say of the simulated observer, each with its line.
+std::vector<std::string> of_observer(const rehearsal::Check& check) {
+  std::vector<std::string> all;
+  for (const auto& note : check.notes)
+    if (core::say(note.what, "en").find("the simulated observer") != std::string::npos)
+      all.push_back(std::to_string(note.place.line) + ": " + core::say(core::phrase_of(note), "en"));
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("times that do not suit the simulated observer are facts about the observer, and no bad protocol",
+          "[check]") {
+  const auto usual = checked_with("friction-rating", "deadline_s = 4.0", "deadline_s = 4.0");
+  CHECK(of_observer(usual).empty());
+  const struct {
+    const char *usual, *times, *said;
+  } cases[] = {
+      {"deadline_s = 4.0", "deadline_s = 0.3",
+       "needs 0.5 s outside its decision (its residual and travel), so a deadline of "
+       "0.3 s leaves it no time to decide"},
+      {"deadline_s = 4.0", "deadline_s = 0.5", "a deadline of 0.5 s leaves it no time"},
+      {"deadline_s = 4.0", "deadline_s = 0.55", "a deadline of 0.55 s leaves it only 0.05 s to decide"},
+      {"deadline_s = 4.0", "deadline_s = 0.6", nullptr},
+      {"anticipation_s = 0.0", "anticipation_s = 0.5", nullptr},
+      {"anticipation_s = 0.0", "anticipation_s = 0.9",
+       "may answer after 0.5 s (its residual and travel), and answers before 0.9 s count as too early"}};
+  for (const auto& [before, times, said] : cases) {
+    INFO(times);
+    const auto check = checked_with("friction-rating", before, times);
+    CHECK(check.problems.empty());
+    CHECK(check.trials.median < 1.1 * usual.trials.median);
+    CHECK(check.trials.median > 0.9 * usual.trials.median);
+    const auto notes = of_observer(check);
+    REQUIRE(notes.size() == (said == nullptr ? 0 : 1));
+    if (said == nullptr) continue;
+    INFO(notes[0]);
+    CHECK(notes[0].find(said) != std::string::npos);
+    CHECK(notes[0].find("--observer sim:residual=...,travel=...") != std::string::npos);
+    CHECK(notes[0].substr(0, 2) != "0:");
+  }
+  // the deadline of an instruction; that of the other instruction suits the observer
+  const auto instructed = checked_with("speed-accuracy", "deadline_s = 0.8", "deadline_s = 0.5");
+  REQUIRE(of_observer(instructed).size() == 1);
+  CHECK(of_observer(instructed)[0].find("a deadline of 0.5 s") != std::string::npos);
+  CHECK(of_observer(checked_with("speed-accuracy", "deadline_s = 0.8", "deadline_s = 0.8")).empty());
+  // answers are not taken before 1.5 s, so that none is too early
+  const std::string times = "\ndeadline_s = 3.0\niti_s = { uniform = [0.8, 1.2] }\nanticipation_s = ";
+  for (const auto& [early, notes] : {std::pair{"0.9", 0}, {"1.6", 1}})
+    CHECK(of_observer(checked_with("friction-2ifc", "response_zero = \"interval_off\"" + times + "0.0",
+                                   "response_zero = \"go_cue\"" + times + early))
+              .size() == static_cast<std::size_t>(notes));
+  // answers are not taken before the deadline
+  for (const std::string zero : {"go_cue", "first_contact"}) {
+    const auto closed = checked_with("friction-2ifc", "response_zero = \"interval_off\"\ndeadline_s = 3.0",
+                                     "response_zero = \"" + zero + "\"\ndeadline_s = 0.4");
+    REQUIRE(of_observer(closed).size() == 1);
+    CHECK(of_observer(closed)[0].find("can answer only when the last interval has ended") !=
+          std::string::npos);
+    CHECK(std::any_of(closed.warnings.begin(), closed.warnings.end(), [](const auto& warning) {
+      return core::say(warning.what, "en").find("answers are accepted when the last interval") !=
+             std::string::npos;
+    }));
+  }
+  // after a signal the observer is as quick as it has to be
+  CHECK(of_observer(checked_with("response-signal", "window_s = 0.4", "window_s = 0.2")).empty());
+}
+
 TEST_CASE("check says in which languages the station's own words are, and refuses what cannot be drawn",
           "[check]") {
   const std::string root = TURNPOINT_SOURCE_DIR, rig = root + "/tests/support/thin_plate.toml";
@@ -242,10 +325,10 @@ TEST_CASE("simulated settings are around the place where the two scenes of the i
           "[check]") {
   const std::string root = TURNPOINT_SOURCE_DIR;
   const TemporaryFolder folder;
-  const auto mean_of =
-      [&](const std::string& standard, const std::string& intervals, const std::string& zero) {
-        const auto path = folder / "settings.toml";
-        std::ofstream(path) << R"(format = "friction-protocol/1"
+  const auto mean_of = [&](const std::string& standard, const std::string& intervals, const std::string& zero,
+                           const std::string& times = "explore_s = 28.0\ndeadline_s = 30.0\n") {
+    const auto path = folder / "settings.toml";
+    std::ofstream(path) << R"(format = "friction-protocol/1"
 protocol = { id = "settings", version = "1.0.0", title = "Settings", languages = ["en"] }
 factor = [ { name = "strength", range = [0.4, 1.6] } ]
 procedure = [ { name = "settings", kind = "adjustment", level = "strength", start = [0.5, 1.5], repeats = 20 } ]
@@ -254,15 +337,14 @@ block = [ { name = "main", procedures = ["settings"] } ]
 boundary_mm = 158.0
 edge = "p50"
 displacement_um = )" << standard
-                            << R"(
+                        << R"(
 [scene.strip]
 base = "standard"
 displacement_um = "strength"
 [timing]
-response_zero = ")" << zero << R"("
-explore_s = 28.0
-deadline_s = 30.0
-iti_s = 2.0
+response_zero = ")" << zero
+                        << "\"\n"
+                        << times << R"(iti_s = 2.0
 [task]
 kind = "adjustment"
 adjusts = "strength"
@@ -271,20 +353,20 @@ device = "touch"
 question = { en = "?" }
 choices = [ { id = "done", label = { en = "Done" } } ]
 )" << intervals;
-        std::vector<double> settings;
-        for (const auto& block :
-             rehearsal::rehearse(
-                 protocol::load(path), 0, 3,
-                 rehearsal::rehearser(simulation::Observer(simulation::parse("sim:threshold=0.02,lapse=0"))))
-                 .blocks)
-          for (const auto& row : block.trials) {
-            CHECK(row.outcome == core::Outcome::answered);
-            settings.push_back(std::stod(row.response.value()));
-          }
-        double sum = 0;
-        for (const double setting : settings) sum += setting;
-        return sum / static_cast<double>(settings.size());
-      };
+    std::vector<double> settings;
+    for (const auto& block :
+         rehearsal::rehearse(
+             protocol::load(path), 0, 3,
+             rehearsal::rehearser(simulation::Observer(simulation::parse("sim:threshold=0.02,lapse=0"))))
+             .blocks)
+      for (const auto& row : block.trials) {
+        CHECK(row.outcome == core::Outcome::answered);
+        settings.push_back(std::stod(row.response.value()));
+      }
+    double sum = 0;
+    for (const double setting : settings) sum += setting;
+    return sum / static_cast<double>(settings.size());
+  };
   const std::string two =
       "intervals = [[\"standard\", \"strip\"]]\nforeperiod_s = { uniform = [1.0, 1.5] }\ntransition_ms = "
       "50\n";
@@ -292,4 +374,12 @@ choices = [ { id = "done", label = { en = "Done" } } ]
   CHECK(mean_of("1.3", two, "go_cue") == Approx(1.3).margin(0.03));
   CHECK(mean_of("0.7", "intervals = [\"strip\"]\n", "first_contact") == Approx(1.0).margin(0.03));
   CHECK(mean_of("0.7", "intervals = [\"strip\"]\n", "interval_off") == Approx(1.0).margin(0.03));
+  // the observer hurries if there is little time
+  CHECK(mean_of("0.7", two, "change", "explore_s = 4.0\ndeadline_s = 30.0\n") == Approx(0.7).margin(0.03));
+  CHECK(mean_of("0.7", two, "change", "explore_s = 8.0\ndeadline_s = 3.0\n") == Approx(0.7).margin(0.03));
+  CHECK(mean_of("1.3", two, "go_cue", "explore_s = 3.0\ndeadline_s = 2.5\n") == Approx(1.3).margin(0.03));
+  for (const std::string zero : {"interval_off", "lift_off"})
+    CHECK(mean_of("0.7", two, zero, "explore_s = 3.0\ndeadline_s = 0.4\n") == Approx(0.7).margin(0.03));
+  CHECK(mean_of("0.7", two, "go_cue", "explore_s = 20.0\ndeadline_s = 25.0\nanticipation_s = 9.5\n") ==
+        Approx(0.7).margin(0.03));
 }

@@ -4,13 +4,18 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string_view>
 
 #include "station/core/usage_error.hpp"
 #include "station/rehearsal/parallel.hpp"
 #include "station/rehearsal/rehearsal.hpp"
+#include "station/rehearsal/reward.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/number_from.hpp"
+#include "tests/support/replaced.hpp"
 
 using namespace turnpoint;
 
@@ -92,12 +97,12 @@ TEST_CASE("the true values are the observer's own parameters, never estimates", 
       CHECK(recovery.truth == find(power, recovery.source, recovery.parameter).truth);
 }
 
-TEST_CASE("the diffusion's parameters in each condition are recovered, as the report prints them", "[power]") {
+TEST_CASE("the diffusion's parameters in each condition are recovered, as the report prints them",
+          "[power]") {
   // TURNPOINT_POWER_SESSIONS=200 for more
-  const char* given = std::getenv("TURNPOINT_POWER_SESSIONS");
-  const int sessions = given == nullptr ? 12 : std::atoi(given);
-  const auto power = rehearsal::power(shipped("speed-accuracy"),
-                                      options("sim:threshold=0.15,lapse=0", sessions, sessions));
+  const int sessions = number_from("TURNPOINT_POWER_SESSIONS", 12);
+  const auto power =
+      rehearsal::power(shipped("speed-accuracy"), options("sim:threshold=0.15,lapse=0", sessions, sessions));
   const double hurried = 0.2 * std::sqrt(0.35 * 0.3);
   CHECK(*find(power, "diffusion speed", "boundary").truth == Approx(hurried));
   CHECK(*find(power, "diffusion accuracy", "time outside the decision").truth == 0.5);
@@ -111,8 +116,8 @@ TEST_CASE("the diffusion's parameters in each condition are recovered, as the re
       CHECK(found.coverage->right >= 0.75 * sessions);
       CHECK_FALSE(found.claimed);  // only differences can be claimed
     }
-  // the accuracy instruction raises the boundary, which most sessions claim; drift is the same, so a claim would
-  // be a false alarm
+  // the accuracy instruction raises the boundary, which most sessions claim; drift is the same, so a claim
+  // would be a false alarm
   CHECK(find(power, "accuracy - speed", "boundary").claimed->value > 0.9);
   REQUIRE(find(power, "accuracy - speed", "drift").claimed);
   CHECK(find(power, "accuracy - speed", "drift").claimed->value < 0.4);
@@ -121,8 +126,9 @@ TEST_CASE("the diffusion's parameters in each condition are recovered, as the re
   CHECK(power.misfits->value < 0.4);
 }
 
-TEST_CASE("curves at a response signal are planned: the truth is the best curve through the observer's answers",
-          "[power]") {
+TEST_CASE(
+    "curves at a response signal are planned: the truth is the best curve through the observer's answers",
+    "[power]") {
   const auto power = rehearsal::power(shipped("response-signal"), options("sim:lapse=0", 8, 8));
   for (const auto* parameter : {"asymptote of d'", "rate of d'", "intercept of d'"}) {
     const auto& found = find(power, "signal", parameter);
@@ -162,8 +168,8 @@ TEST_CASE("studies of several people are planned with the effects that their rep
   // someone who differs in nothing is the observer; the more people differ, the more uncertain a study is
   auto alike = wanted;
   alike.between = simulation::parse_spread("residual=1e-9");
-  CHECK(*find(rehearsal::power(shipped("speed-accuracy"), alike), "mean speed", "time outside the decision").truth ==
-        Approx(0.5));
+  CHECK(*find(rehearsal::power(shipped("speed-accuracy"), alike), "mean speed", "time outside the decision")
+             .truth == Approx(0.5));
   auto uneven = wanted;
   uneven.observers = 10;
   CHECK_THROWS_AS(rehearsal::power(shipped("speed-accuracy"), uneven), std::invalid_argument);
@@ -191,8 +197,9 @@ TEST_CASE("people are drawn around the observer, each parameter by itself", "[po
   }
   CHECK(std::sqrt(squares) == Approx(0.2).epsilon(0.15));
   core::Draws draws({});
-  CHECK_THROWS_WITH(simulation::draw_person(simulation::parse("sim"), simulation::parse_spread("threshold=1"), draws),
-                    Catch::Matchers::ContainsSubstring("write sim:threshold="));
+  CHECK_THROWS_WITH(
+      simulation::draw_person(simulation::parse("sim"), simulation::parse_spread("threshold=1"), draws),
+      Catch::Matchers::ContainsSubstring("write sim:threshold="));
   for (const auto* wrong : {"", "bound", "bound=", "bound=-1", "bound=0", "bounds=1", "bound=0.1;slope=1"})
     CHECK_THROWS_AS(simulation::parse_spread(wrong), core::UsageError);
 }
@@ -206,6 +213,17 @@ TEST_CASE("a fit finds the observer's own threshold and slope", "[power]") {
   const auto sides = rehearsal::power(shipped("boundary-constant"), options("sim:threshold=6,lapse=0.02", 3));
   CHECK(*find(sides, "fit", "PSE").truth == 0);
   CHECK(*find(sides, "fit", "spread").truth == Approx(6 / 0.6744897501960817));
+}
+
+TEST_CASE("the fits of every group have a truth", "[power]") {
+  std::ifstream file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/friction-2ifc.toml");
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  text +=
+      "\n[[factor]]\nname = \"training\"\nlevels = [\"trained\", \"none\"]\ndraw = \"per-participant\"\n"
+      "\n[analysis]\nby = \"training\"\n";
+  const auto power = rehearsal::power(protocol::parse(text, "groups.toml"), options("sim:threshold=-18", 4));
+  REQUIRE(find(power, "fit trained", "threshold").truth);
+  CHECK(find(power, "fit trained", "threshold").truth == find(power, "fit none", "threshold").truth);
 }
 
 TEST_CASE("slopes and spreads are summarised by median and quartiles, and their bias is that of the median",
@@ -430,4 +448,72 @@ TEST_CASE("a procedure with a criterion recovers the observer's criterion, where
     }
     CHECK(find(power, "fit", "threshold").estimates.size() > 20);
   }
+}
+
+// Bogacz et al. 2006: with drift v and bounds b away from the start, a decision takes (b / v) tanh(v b) s and
+// is right with probability 1 / (1 + exp(-2 v b)).
+TEST_CASE("the observer who maximises the reward has the boundaries of the closed form", "[power][reward]") {
+  const auto slow = replaced(shipped("reward-rate").source, "deadline_s = 2.0", "deadline_s = 30.0");
+  const auto protocol =
+      protocol::parse(replaced(slow, "explore_s = 4.0", "explore_s = 32.0"), "reward-rate.toml");
+  for (const double threshold : {0.1, 0.25}) {
+    const auto study = options("sim:lapse=0,threshold=" + std::to_string(threshold), 1);
+    const auto rewards = rehearsal::best_rewards(protocol, study);
+    REQUIRE(rewards.size() == 2);
+    simulation::Question question;
+    question.decides = simulation::Decides::side, question.level = 0.2;
+    const simulation::Observer observer(study.observer);
+    const double drift = observer.drift(question), own_bound = study.observer.bound;
+    for (const auto& reward : rewards) {
+      const double delay_s = reward.block.find("1.5") == std::string::npos ? 0 : 1.5;
+      const auto right = [&](double bound) { return 1 / (1 + std::exp(-2 * drift * bound)); };
+      const auto decision_s = [&](double bound) { return bound / drift * std::tanh(drift * bound); };
+      // what a trial takes besides the decision and the delay, from what the observer's own boundaries earn
+      const double rest_s = 60 * right(own_bound) / reward.own.points_per_minute - decision_s(own_bound) -
+                            delay_s * (1 - right(own_bound));
+      const auto rate = [&](double bound) {
+        return 60 * right(bound) / (rest_s + decision_s(bound) + delay_s * (1 - right(bound)));
+      };
+      double best = 0.01;
+      for (double bound = 0.01; bound < 4; bound += 0.001)
+        if (rate(bound) > rate(best)) best = bound;
+      CAPTURE(threshold, reward.block, rest_s, best / own_bound);
+      CHECK_FALSE(reward.at_end);
+      CHECK(reward.caution == Approx(best / own_bound).epsilon(0.2));
+      CHECK(rate(reward.caution * own_bound) > 0.99 * rate(best));
+      CHECK(reward.best.points_per_minute == Approx(rate(best)).epsilon(0.03));
+      CHECK(reward.own.right == Approx(right(own_bound)).margin(0.02));
+      CHECK(reward.best.right == Approx(right(reward.caution * own_bound)).margin(0.02));
+    }
+    CHECK(rewards[1].caution > rewards[0].caution);  // delays make care pay
+    // the study's observer has these boundaries, and his sessions earn more
+    auto maximises = study;
+    maximises.observers = maximises.interval_sessions = 8;
+    maximises.cautions = rehearsal::cautions_of(rewards);
+    const auto power = rehearsal::power(protocol, maximises);
+    const auto& boundary = find(power, "diffusion penalty 1.5 s", "boundary");
+    CHECK(*boundary.truth == Approx(0.2 * rewards[1].caution * own_bound));
+    CHECK(boundary.mean == Approx(*boundary.truth).epsilon(0.15));
+  }
+}
+
+TEST_CASE(
+    "where guessing at once or endless care pays, the search says that it ended there, and without points it "
+    "refuses",
+    "[power][reward]") {
+  const auto with = [&](const std::string& points) {
+    const auto text = replaced(shipped("reward-rate").source, "right = 1\n", points + "\n");
+    return rehearsal::best_rewards(protocol::parse(text, "reward-rate.toml"),
+                                   options("sim:threshold=0.1", 1));
+  };
+  const auto equal = with("right = 1\nwrong = 1\nlate = -5");
+  REQUIRE(equal.size() == 2);
+  CHECK(equal[0].at_end);
+  CHECK(equal[0].caution == Approx(rehearsal::kLeastCaution));
+  CHECK_FALSE(equal[1].at_end);  // here a wrong answer costs time
+  for (const auto& reward : with("right = 0\nwrong = -100\nlate = 0")) {
+    CHECK(reward.at_end);
+    CHECK(reward.caution == Approx(rehearsal::kMostCaution));
+  }
+  CHECK_THROWS_AS(rehearsal::best_rewards(shipped("friction-2ifc"), options("sim", 1)), core::UsageError);
 }

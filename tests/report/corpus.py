@@ -5,8 +5,8 @@ the study from trials.csv, and this program compares them.
 
     tests/report/corpus.py TURNPOINT [--each NUMBER] [--first SEED] [KIND...]
 
-NUMBER protocols of each kind (default 2). With more than two, the posterior of the diffusion model is sampled as well,
-which takes longer. Figures that are not computed again are counted and named at the end. As a
+NUMBER protocols of each kind (default 2). With more than two, the posterior of the diffusion model is sampled and study.R
+is run as well, which takes longer. Figures that are not computed again are counted and named at the end. As a
 negative control, the CSV of one session is changed in one answer, which must be noticed.
 """
 import collections
@@ -16,6 +16,7 @@ import math
 import pathlib
 import random
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -107,6 +108,12 @@ class Kind:
         return TWO_SCENES + single(f'{{ first = "amount < {cut}", second = "amount > {cut}" }}') + \
             constant(values, self.draw.randint(8, 14))
 
+    def choice(self):
+        """Two answers, none of them right."""
+        self.people(threshold=(0.1, 0.3), bias=(-0.1, 0.1))
+        self.fit, self.positive = {"function": "normal", "guess": "tied"}, "second"
+        return TWO_SCENES + single("").replace("correct = \n", "") + constant(self.signed(), self.draw.randint(8, 14))
+
     def pse_2ifc(self):
         self.people(threshold=(0.1, 0.3), bias=(-0.1, 0.1))
         self.fit, self.positive = {"function": "normal", "guess": "tied"}, "comparison"
@@ -121,6 +128,12 @@ class Kind:
         return TWO_SCENES + '[task]\nkind = "2ifc"\nintervals = ["reference", "comparison"]\nduration_s = 0.6\ngap_s = 0.4\n' + \
             QUESTION + CHOICES + 'correct = "comparison"\n' + TIMES.replace("ZERO", zero) + \
             constant(geometric(self.draw, 0.05, 0.7, self.draw.randint(4, 6)), self.draw.randint(12, 20))
+
+    def unforced(self):
+        """People who may say that they would only guess, and mostly do."""
+        body = self.threshold_2ifc()
+        self.people(threshold=(0.1, 0.3), slope=(0.8, 2.5), unsure=(0.5, 1))
+        return body.replace("correct = ", 'unsure = { en = "?" }\ncorrect = ')
 
     def interval(self, kind, names, alternatives):
         self.people(threshold=(0.1, 0.3), slope=(0.8, 2.0), lapse=(0, 0.04))
@@ -137,6 +150,10 @@ class Kind:
     def abx(self):
         self.models = [("independent observations", 2), ("differencing", 2)]
         return self.interval("abx", ["first", "second"], 2)
+
+    def match_to_sample(self):
+        self.models = [("independent observations", 2), ("differencing", 2)]
+        return self.interval("match-to-sample", ["second", "third"], 2)
 
     def oddity(self):
         return self.interval("oddity", ["1", "2", "3"], 3)
@@ -263,8 +280,9 @@ class Kind:
             'show = ["psychometric", "ez", "bis", "lisas", "caf"]\nresponse_time_exclude = { below_s = 0.150, mad = 3.5 }\n'
 
 
-KINDS = ["pse", "bisection", "pse_2ifc", "threshold_2ifc", "mafc", "abx", "oddity", "same_different", "yes_no", "confusion",
-         "rating", "magnitude", "line", "setting", "staircase", "quest_plus", "response_signal", "diffusion"]
+KINDS = ["pse", "bisection", "choice", "pse_2ifc", "threshold_2ifc", "unforced", "mafc", "abx", "match_to_sample", "oddity",
+         "same_different", "yes_no", "confusion", "rating", "magnitude", "line", "setting", "staircase", "quest_plus",
+         "response_signal", "diffusion"]
 
 # ------------------------------------------------------------------------------------------------ computed again
 
@@ -355,6 +373,7 @@ class Function:
 
     def __init__(self, spec, levels, trials, positive, log_scale):
         self.name, self.guess, self.log = spec["function"], spec["guess"], log_scale
+        self.weight = 1.0  # how often each answer counts
         self.n, self.k = numpy.array(trials, float), numpy.array(positive, float)
         self.u = numpy.array([-numpy.inf if level is None else self.axis(level) for level in levels])
         signal = self.u[numpy.isfinite(self.u)]
@@ -401,10 +420,19 @@ class Function:
         if 1 in fixed:  # a steep function has a maximum between each pair of levels
             starts = [[u, fixed[1], 0.01, 0.2][:len(self.bounds)] for u in numpy.linspace(self.low, self.low + self.range, 25)]
             starts = sorted(starts, key=lambda start: self.nll(whole(numpy.array(start)[free])))[:5]
+        if 0 in fixed:  # and a threshold at a level may be best with the steepest one
+            more = [[fixed[0], rate, 0.01, 0.2][:len(self.bounds)] for rate in numpy.linspace(*self.bounds[1], 25)]
+            starts += sorted(more, key=lambda start: self.nll(whole(numpy.array(start)[free])))[:3]
         found = [optimize.minimize(lambda part: self.nll(whole(part)), numpy.array(start)[free], method=method,
                                    bounds=[self.bounds[i] for i in free]) for start in starts for method in ("L-BFGS-B", "Nelder-Mead")]
         best = min(found, key=lambda result: result.fun)
         return best.fun, whole(best.x)
+
+    def weigh(self, theta, unsure):
+        """Quasi-likelihood: the variance of forced answers, divided by what is left of it without the admitted guesses."""
+        p = self.probability(theta, self.u)
+        spared = unsure * self.guess * (1 - self.guess) / numpy.sum(self.n * p * (1 - p)) if unsure else 0
+        self.weight = 1 / max(1 - spared, 0.05)
 
     def saturated(self):
         return -numpy.sum(special.xlogy(self.k, self.k / self.n) + special.xlogy(self.n - self.k, (self.n - self.k) / self.n))
@@ -507,7 +535,7 @@ class Diffusion:
                 total += early * math.log(max(1e-300, (1 - c) * begun + c * self.anticipation / span))
         return total
 
-    def draws(self, count=6000):
+    def draws(self, count):
         start = numpy.array([math.log(0.12), 0.8 * self.shortest, 0.03] + [0.1] * len(self.names))
         found = optimize.minimize(lambda p: min(1e9, -self.log_posterior(p)), start, method="Nelder-Mead",
                                   options={"maxiter": 1500, "xatol": 1e-4, "fatol": 1e-3})
@@ -612,6 +640,8 @@ def compare_counts(report, session):
     rows = session.all
     report.same("trials", {"presented": len(rows), **{name: sum(r["outcome"] == one for r in rows) for name, one in (
         ("answered", "answered"), ("timeouts", "timeout"), ("anticipations", "anticipation"), ("aborted", "aborted"), ("faults", "fault"))}})
+    if session.kind.name == "unforced":
+        report.same("trials.unsure", sum(r["response"] == "unsure" for r in rows))
     timed = [((r["level"], r["instruction"]), int(r["trial_index"]), float(r["response_time"])) for r in session.answered]
     report.same("trend_response_time_s", within_groups(timed))
     scored = [((r["level"], r["instruction"]), int(r["trial_index"]), float(r["correct"])) for r in session.answered if r["correct"] != "n/a"]
@@ -646,6 +676,45 @@ def trade_measures(cells, session_times, session_error):
     mean = numpy.mean(right) if len(right) else math.nan
     lisas = mean if sd_error == 0 else mean + (1 - p) * numpy.std(session_times, ddof=1) / sd_error
     return p, numpy.median(times), lisas, mean / p if p else math.nan
+
+
+QUANTILES = {"low": (".interval.low", 0.025), "value": (".value", 0.5), "high": (".interval.high", 0.975)}
+REPLICATES = 1000  # of the report's bootstrap
+
+
+def effective(values):
+    """How many independent draws a chain is worth: its length over the sum of its autocorrelations until they fall below 0.05."""
+    deviations = values - values.mean()
+    spectrum = numpy.fft.rfft(deviations, 2 * len(values))
+    correlation = numpy.fft.irfft(numpy.abs(spectrum) ** 2)[:len(values)]
+    correlation /= correlation[0]
+    end = int(numpy.argmax(correlation < 0.05))
+    return len(values) / (1 + 2 * correlation[1:max(1, end)].sum())
+
+
+def same_quantiles(report, path, values, draws, names=tuple(QUANTILES)):
+    """Quantiles of the report's `draws` draws and of those of this program. How many draws lie below the true quantile is a
+    binomial number, in both; so the report's lies between two other quantiles of this program's draws, except in one case of
+    50 000."""
+    values = values[numpy.isfinite(values)]
+    both = int(1 / (1 / draws + 1 / effective(values))) if numpy.ptp(values) > 0 else draws
+    for name, share in (QUANTILES[name] for name in names):
+        low, high = numpy.quantile(values, [stats.binom.ppf(1e-5, both, share) / both, stats.binom.isf(1e-5, both, share) / both])
+        theirs = report.numbers.get(path + name)
+        report.check(path + name, theirs is not None and low - 1e-9 <= theirs <= high + 1e-9,
+                     f"expected between {low:.6g} and {high:.6g}, of {both} draws")
+
+
+def unnoticed_changes():
+    """Negative control of same_quantiles(): numbers that are moved by half an SD, or an interval of half or twice the width."""
+    values, unnoticed = stats.norm.rvs(size=4000, random_state=5), []
+    for what, shift, stretch, wrong in (("nothing", 0, 1, False), ("moved", 0.5, 1, True), ("narrow", 0, 0.5, True), ("wide", 0, 2, True)):
+        numbers = {"value": shift, "interval": {"low": shift - stretch * Z95, "high": shift + stretch * Z95}}
+        report = Compared({"x": numbers}, "control")
+        same_quantiles(report, "x", values, 600)
+        if bool(report.wrong) != wrong:
+            unnoticed.append(f"negative control of quantiles: {what}: {report.wrong}")
+    return unnoticed
 
 
 def compare_trade(report, session, deep):
@@ -720,9 +789,7 @@ def compare_trade(report, session, deep):
             if f"{path}.value" not in report.numbers:
                 continue
             report.same(path + ".value", found[at][which])
-            ends = numpy.nanquantile(again[:, at, which], [0.025, 0.975])
-            # a median jumps from one time to the next
-            report.same(path + ".interval", {"low": ends[0], "high": ends[1]}, 0.5 if which == 1 else 0.2, ends[1] - ends[0])
+            same_quantiles(report, path, again[:, at, which], REPLICATES, ("low", "high"))
     gaps = {"proportion correct": 0, "median response time": 1, "LISAS": 2, "inverse efficiency": 3}
     for i, entry in enumerate(report.document["differences"]):
         if entry["measure"] not in gaps or entry["estimate"] is None:
@@ -737,8 +804,7 @@ def compare_trade(report, session, deep):
             report.same(path + ".interval", {"low": gap - math.hypot(q - ends_q["low"], ends_p["high"] - p),
                                              "high": gap + math.hypot(ends_q["high"] - q, p - ends_p["low"])})
         else:
-            ends = numpy.nanquantile(again[:, b, which] - again[:, a, which], [0.025, 0.975])
-            report.same(path + ".interval", {"low": ends[0], "high": ends[1]}, 0.2, ends[1] - ends[0])
+            same_quantiles(report, path, again[:, b, which] - again[:, a, which], REPLICATES, ("low", "high"))
     for at, condition in enumerate(session.conditions):  # none with a response signal
         compare_predicted(report, session, at, condition, 0.150 if session.kind.name == "diffusion" else 0.0)
     if deep:
@@ -794,23 +860,23 @@ def compare_diffusion(report, session):
         late = collections.Counter(difficulty(r) for r in rows if r["outcome"] == "timeout")
         early = collections.Counter(difficulty(r) for r in rows if r["outcome"] == "anticipation")
         model = Diffusion(answers, late, early, float(rows[0]["deadline"]), 0.150)
-        chain = model.draws()
+        chain = model.draws(20000)
+        worth = report.document["instructions"][at]["effective_draws"]
+        report.check(f"instructions[{at}].effective_draws", 30 <= worth <= 1000, "fewer draws would not be reported")
         named = {"boundary": numpy.exp(chain[:, 0]), "nondecision_s": chain[:, 1], "contaminants": chain[:, 2],
                  "drift": chain[:, 3:].mean(axis=1)}
         draws.append(named)
         for name, values in named.items():
-            low, middle, high = numpy.quantile(values, [0.025, 0.5, 0.975])
-            report.same(f"instructions[{at}].{name}", {"value": middle, "interval": {"low": low, "high": high}}, 0.15, high - low)
+            same_quantiles(report, f"instructions[{at}].{name}", values, worth)
         for i in range(len(model.names)):
-            low, middle, high = numpy.quantile(chain[:, 3 + i], [0.025, 0.5, 0.975])
-            report.same(f"instructions[{at}].difficulties[{i}].drift", {"value": middle, "interval": {"low": low, "high": high}}, 0.15, high - low)
+            same_quantiles(report, f"instructions[{at}].difficulties[{i}].drift", chain[:, 3 + i], worth)
     names = {"boundary": "boundary", "time outside the decision": "nondecision_s", "drift": "drift"}
     for i, entry in enumerate(report.document["differences"]):
         if entry["measure"] in names and entry["estimate"]:
             a, b = session.conditions.index(entry["first"]), session.conditions.index(entry["second"])
             gap = draws[b][names[entry["measure"]]] - draws[a][names[entry["measure"]]]
-            low, middle, high = numpy.quantile(gap, [0.025, 0.5, 0.975])
-            report.same(f"differences[{i}].estimate", {"value": middle, "interval": {"low": low, "high": high}}, 0.15, high - low)
+            worth = [report.document["instructions"][k]["effective_draws"] for k in (a, b)]
+            same_quantiles(report, f"differences[{i}].estimate", gap, min(worth))
 
 
 def counted(session, condition, log_scale):
@@ -824,7 +890,7 @@ def counted(session, condition, log_scale):
             hit = r["response"] == kind.positive
             level = level if r["correct_response"] == kind.positive else None
         else:
-            hit = r["correct"] == "1"
+            hit = kind.fit["guess"] if r["response"] == "unsure" else r["correct"] == "1"
         entry = table.setdefault(level, [0, 0])
         entry[0] += 1
         entry[1] += hit
@@ -848,19 +914,29 @@ def compare_fits(report, session):
         if isinstance(session.kind.fit["guess"], float):
             report.same(path + ".guess", session.kind.fit["guess"])
         if fit["prior"] is None:
-            compare_maximum(report, path, fit, function, function.theta(fit["threshold"], fit["slope"], fit["lapse"], fit["guess"]))
+            theirs = reported_theta(fit, function)
+            function.weigh(theirs, sum(r["response"] == "unsure" for r in session.of(condition)))
+            compare_maximum(report, path, fit, function, theirs)
         else:
             compare_posterior(report, path, fit, function)
+
+
+def reported_theta(fit, function):
+    """The reported parameters. A slope that the answers do not determine is not reported; it lies at an end of its range."""
+    if fit["slope"] is not None:
+        return function.theta(fit["threshold"], fit["slope"], fit["lapse"], fit["guess"])
+    theta = function.theta(fit["threshold"], 1.0, fit["lapse"], fit["guess"])
+    return min(([theta[0], end, *theta[2:]] for end in function.bounds[1]), key=function.nll)
 
 
 def compare_maximum(report, path, fit, function, theirs):
     mine, best = function.best()
     reported = function.nll(theirs)
-    report.same(path + ".negative_log_likelihood", reported, 1e-8)
+    report.same(path + ".negative_log_likelihood", function.weight * reported, 1e-8)
     report.check(path + ".negative_log_likelihood", reported <= mine + 1e-4, f"SciPy finds {mine:.7f}")
     for name in ("threshold", "slope", "lapse", "guess"):
         report.check(f"{path}.{name}", reported <= mine + 1e-4, f"SciPy finds a higher likelihood at {best}")
-    report.same(path + ".deviance", 2 * (reported - function.saturated()), 1e-6)
+    report.same(path + ".deviance", 2 * function.weight * (reported - function.saturated()), 1e-6)
     if fit.get("level_75") is not None:
         inside = (0.75 - (theirs[2] if function.guess == "tied" else theirs[3] if function.guess == "false alarms" else function.guess))
         guess = theirs[2] if function.guess == "tied" else theirs[3] if function.guess == "false alarms" else function.guess
@@ -878,10 +954,16 @@ def compare_maximum(report, path, fit, function, theirs):
             if interval[end] is None or interval[f"touches_{end}"]:
                 continue
             value = function.axis(interval[end]) if index == 0 else math.log(function.rate(interval[end]))
-            drops.append(2 * (function.best({index: value})[0] - reported))
+            drops.append(2 * function.weight * (function.best({index: value})[0] - reported))
             report.check(f"{path}.{name}_interval.{end}", 3.8 <= drops[-1] <= 9.0, f"the likelihood ratio there is {drops[-1]:.3f}")
         if len(drops) == 2:
-            report.check(f"{path}.{name}_interval.low", abs(drops[0] - drops[1]) < 0.05 * max(drops), f"likelihood ratios {drops}")
+            alike = abs(drops[0] - drops[1]) < 0.05 * max(drops)
+            if not alike:  # where the likelihood falls off a cliff, the end is right to a hundredth of the interval
+                ends = [function.axis(interval[end]) if index == 0 else math.log(function.rate(interval[end])) for end in ("low", "high")]
+                steep = drops.index(max(drops))
+                inside = ends[steep] + 0.01 * (ends[1 - steep] - ends[steep])
+                alike = 2 * function.weight * (function.best({index: inside})[0] - reported) <= min(drops)
+            report.check(f"{path}.{name}_interval.low", alike, f"likelihood ratios {drops}")
 
 
 def compare_posterior(report, path, fit, function):
@@ -1182,7 +1264,8 @@ def compare_session(report, session, deep):
     compare_counts(report, session)
     if kind.design in ("binary", "confusion"):
         compare_binary_bias(report, session)
-        compare_trade(report, session, deep and getattr(kind, "trade", False))
+        if kind.name != "choice":  # no answer is right
+            compare_trade(report, session, deep and getattr(kind, "trade", False))
     if kind.fit:
         compare_fits(report, session)
     if getattr(kind, "detection", None):
@@ -1294,12 +1377,16 @@ def compare_groups(study, sessions):
         fit = group["fit"]
         if not fit:
             continue
-        path, people = f"groups[{i}].fit", []
+        path, people, counts = f"groups[{i}].fit", [], []
         for session in sessions.values():
             condition = group["condition"] or session.conditions[0]
             levels, trials, positive = counted(session, condition, log_scale)
             function = Function(kind.fit, levels, trials, positive, log_scale)
-            people.append((function.u, function.n, function.k))
+            counts.append(function.n.sum())
+            unsure = sum(r["response"] == "unsure" for r in session.of(condition))
+            if unsure:
+                function.weigh(function.best()[1], unsure)
+            people.append((function.u, function.weight * function.n, function.weight * function.k))
         model = Mixed(kind.fit, people, fit["lapse"])
         names = ("intercept", "rate", "intercept_sd", "rate_sd", "correlation")
         at = [fit[name] for name in names]
@@ -1308,7 +1395,7 @@ def compare_groups(study, sessions):
         modes = model.modes
         for j, (effects, person) in enumerate(zip(modes, people)):
             u = -effects[0] / effects[1]
-            study.same(f"{path}.participants[{j}].trials", person[1].sum())
+            study.same(f"{path}.participants[{j}].trials", round(counts[j]))
             study.same(f"{path}.participants[{j}].threshold.value", 10 ** (u / 20) if function.log else u, 1e-3)
             study.same(f"{path}.participants[{j}].slope", math.exp(math.log(effects[1])) / (math.log(10) / 20) if log_scale else 1 / effects[1], 2e-3)
         u = -fit["intercept"] / fit["rate"]
@@ -1348,6 +1435,34 @@ def compare_tables(study, folder):
         if effects[key]["difference"]:
             study.check("study.py", math.isclose(float(difference), effects[key]["difference"]["value"], rel_tol=2e-5, abs_tol=1e-9),
                         f"{key}: {difference}, {effects[key]['difference']}")
+
+
+def compare_r(study, folder, kind):
+    """study.R prints the labels, signs and figures of the report, and lme4 finds no better fit of a group."""
+    if not shutil.which("Rscript"):
+        return
+    document = study.document
+    printed = subprocess.run(["Rscript", SCRIPT.with_suffix(".R"), folder], capture_output=True, text=True, check=True).stdout
+    lines = list(csv.reader(printed.splitlines()))
+    groups = {group["condition"] or "all trials": group["fit"] for group in document["groups"] if group["fit"]}
+    if kind.name == "unforced":
+        groups = {}  # lme4 knows no answers that count as fractions
+    for what in ("threshold", "rate", "log_likelihood"):
+        study.check("study.R", [row[1] for row in lines if row[0] == what] == list(groups), f"{what}: {lines}, {list(groups)}")
+    for name, fit in groups.items():
+        found = {row[0]: (float(row[2] or "-inf"), float(row[3])) for row in lines if row[0] != "log_response_time" and row[1] == name}
+        reported = {"threshold": -fit["intercept"] / fit["rate"], "rate": fit["rate"], "log_likelihood": fit["log_likelihood"]}
+        for what, (theirs, ours) in found.items():
+            study.check("study.R", math.isclose(ours, reported[what], rel_tol=1e-5, abs_tol=1e-9), f"{what}: {ours}, {reported[what]}")
+        theirs, ours = found["log_likelihood"]
+        shared = kind.fit and kind.fit["guess"] != "false alarms"  # lme4 has one guess rate for all
+        study.check("study.R", not shared or theirs < ours + 0.02, f"{name}: lme4 finds a more likely fit: {theirs}, {ours}")
+    effects = {(e["first"], e["second"]): e for e in document["effects"] if e["measure"] == "mean time of right answers"}
+    for _, first, second, value, error in (row for row in lines if row[0] == "log_response_time"):
+        effect = effects.get((first, second))
+        study.check("study.R", effect is not None, f"log_response_time: {first}, {second}: no such effect in the report")
+        if effect and effect["difference"] and abs(float(value)) > 5 * float(error):
+            study.check("study.R", (float(value) > 0) == (effect["difference"]["value"] > 0), f"{first}, {second}: another sign")
 
 
 def measure_of(entry, own, session):
@@ -1436,6 +1551,8 @@ def one(turnpoint, name, seed, deep, spoil=False):
         study = Compared(document, f"{name} {seed} study")
         compare_study(study, sessions, reports)
         compare_tables(study, folder / "tables")
+        if deep:
+            compare_r(study, folder / "tables", kind)
         compare_groups(study, sessions)
         return reports[codes[0]], study
 
@@ -1461,6 +1578,7 @@ def main():
                 compared += len(part.seen & set(part.numbers))
                 left.update(part.left())
         print(f"{name}: {each} protocols, {len(wrong)} differences so far", flush=True)
+    wrong += unnoticed_changes()
     if not one(turnpoint, "pse", first, deep=False, spoil=True)[0].wrong:
         wrong.append("negative control: a changed answer was not noticed")
     for line in wrong:

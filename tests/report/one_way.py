@@ -18,7 +18,8 @@ def reply(kind, question):
         choice = 0
     else:
         choice = right if kind == "right" else (right + 1) % answers
-    return {"choice": choice, "response_time_s": 0.6, "confidence": 1, "confidence_time_s": 0.3}
+    time_s = 0.6 if question["signal_s"] is None else question["signal_s"] + 0.2
+    return {"choice": choice, "response_time_s": time_s, "confidence": 1, "confidence_time_s": 0.5}
 
 
 def main():

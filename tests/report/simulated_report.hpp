@@ -4,21 +4,17 @@
 
 #include "station/core/read_file.hpp"
 #include "station/rehearsal/rehearsal.hpp"
-#include "station/report/html.hpp"
+#include "station/report/document.hpp"
 #include "station/report/stored_estimates.hpp"
 #include "station/report/stored_trials.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/replaced.hpp"
 
 namespace turnpoint {
 
 /// The text of a shipped protocol.
 inline std::string shipped(const std::string& name) {
   return core::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
-}
-
-inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  REQUIRE(text.find(from) != std::string::npos);
-  return text.replace(text.find(from), from.size(), to);
 }
 
 /// The data of a simulated session, for a report.

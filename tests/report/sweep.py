@@ -6,8 +6,8 @@ be empty without a reason, and the Python package reads the same trials from dat
     tests/report/sweep.py TURNPOINT [--all] [PROTOCOL...]
 
 Without --all, a few protocols and studies of one person; with it, every shipped protocol and every protocol of
-tests/report/extreme, with studies of one, two and three people. PYTHONPATH says where the package is
-(build/release/python).
+tests/report/extreme, with studies of one, two and three people, and study.py and study.R read the tables of each study.
+PYTHONPATH says where the package is (build/release/python).
 """
 import html.parser
 import json
@@ -25,7 +25,9 @@ except ImportError:
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HERE = pathlib.Path(__file__).resolve().parent
 RIGS = ROOT / "deploy/rigs"
-KINDS = ["right", "wrong", "key", "silent"]
+SCRIPTS = ROOT / "station/report/scripts"
+# After each of these people, what there is until then is a study of its own.
+STUDIES = [["right", "sim", "sim"], ["wrong"], ["key"], ["silent", "key"]]
 FEW = ["friction-2ifc", "staircase-to-zero", "two-factors"]
 
 
@@ -53,8 +55,8 @@ class Tables(html.parser.HTMLParser):
 
 
 class Sweep:
-    def __init__(self, turnpoint):
-        self.turnpoint, self.failures, self.commands = turnpoint, [], 0
+    def __init__(self, turnpoint, everything):
+        self.turnpoint, self.everything, self.failures, self.commands = turnpoint, everything, [], 0
 
     def call(self, *arguments, stop_after_s=None):
         """Calls the program. With stop_after_s it is asked to end after that time: a session in which nobody answers
@@ -62,12 +64,12 @@ class Sweep:
         self.commands += 1
         program = subprocess.Popen([self.turnpoint, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         try:
-            out, error = program.communicate(timeout=stop_after_s or 300)
+            out, error = program.communicate(timeout=stop_after_s or 1800)
         except subprocess.TimeoutExpired:
             program.terminate()
             out, error = program.communicate(timeout=30)
             if stop_after_s is None:
-                self.failures.append(f"{' '.join(map(str, arguments))}: takes more than 300 s")
+                self.failures.append(f"{' '.join(map(str, arguments))}: takes more than 1800 s")
         if program.returncode not in (0, 1, 2) and not (stop_after_s and program.returncode in (130, 143, -15)):
             self.failures.append(f"{' '.join(map(str, arguments))}: status {program.returncode}: {error.strip()[-300:]}")
         self.expect(program.returncode == 0 or stop_after_s or error.strip() or out.strip(),
@@ -88,43 +90,49 @@ class Sweep:
         for fit in document["fits"]:
             self.expect(fit["threshold"] is not None or fit["statements"], f"{what}: neither a threshold nor a reason")
 
-    def people(self, folder, protocol, kinds):
+    def session(self, folder, protocol, kind, person):
+        """One more person; false if the session could not be run."""
+        text = protocol.read_text()
+        rig = RIGS / ("simulated-forces.toml" if "\n[sensing]" in text or 'by = "tone"' in text else "simulated.toml")
+        observer = "sim" if kind == "sim" else f"program:{HERE}/one_way.py,kind={kind}"
+        for wait_s in (3, 30):  # a session that was asked to end before it began is begun again
+            run = self.call("run", protocol, "--rig", rig, "--participant", person, "--db", folder / "lab.sqlite",
+                            "--headless", "--observer", observer, stop_after_s=wait_s if kind == "silent" else None)
+            if run.returncode != -15:
+                break
+        if "Traceback" in run.stderr or run.returncode == 2 or (run.returncode and kind != "silent"):
+            self.failures.append(f"{protocol.stem}, {kind}: run: status {run.returncode}: {run.stderr.strip()[-300:]}")
+            return False
+        return True
+
+    def study(self, folder, protocol, kinds):
         what = f"{protocol.stem}, {'+'.join(kinds)}"
-        database = folder / "lab.sqlite"
-        rig = RIGS / ("simulated-forces.toml" if "\n[sensing]" in protocol.read_text() else "simulated.toml")
-        for number, kind in enumerate(kinds):
-            observer = "sim" if kind == "sim" else f"program:{HERE}/one_way.py,kind={kind}"
-            for wait_s in (3, 30):  # a session that was asked to end before it began is begun again
-                run = self.call("run", protocol, "--rig", rig, "--participant", f"P{number + 1:02}", "--db", database,
-                                "--headless", "--observer", observer, stop_after_s=wait_s if kind == "silent" else None)
-                if run.returncode != -15:
-                    break
-            if "Traceback" in run.stderr or (run.returncode == 2):
-                self.failures.append(f"{what}: run: {run.stderr.strip()[-300:]}")
-                return
+        database, tables = folder / "lab.sqlite", folder / f"tables{len(kinds)}"
         page, study = folder / "report.html", folder / "study.html"
-        report = self.call("report", "--db", database, "--out", page)
+        report = self.call("report", "--db", database, "--out", page, "--json")
         if report.returncode == 0:
             self.page(page, what)
-            document = json.loads(self.call("report", "--db", database, "--json").stdout)
+            document = json.loads(report.stdout)
             self.fits(document, what)
             if protocol.stem == "staircase-to-zero" and kinds == ["right"]:
                 self.expect(document["early_ends"], f"{what}: the report does not say that the staircase ended early")
         else:
             self.expect("no session with trials" in report.stderr, f"{what}: report: {report.stderr.strip()[-300:]}")
-        done = self.call("report", "--study", "--db", database, "--out", study, "--tables", folder / "tables")
+        done = self.call("report", "--study", "--db", database, "--out", study, "--tables", tables, "--json")
+        self.expect(done.returncode == report.returncode, f"{what}: study: {done.stderr.strip()[-300:]}")
         if done.returncode == 0:
             self.page(study, what + ", study")
-            document = json.loads(self.call("report", "--study", "--db", database, "--json").stdout)
+            document = json.loads(done.stdout)
             for group in document["groups"]:
                 self.expect(group["fit"] or group["statements"], f"{what}: a group with neither a fit nor a reason")
             if protocol.stem == "staircase-to-zero" and kinds == ["right"]:
-                self.expect(document["participants"][0]["early_ends"] and
-                            "steps in a row" in (folder / "tables/participants.csv").read_text(),
+                self.expect(document["participants"][0]["early_ends"] and "steps in a row" in (tables / "participants.csv").read_text(),
                             f"{what}: the study does not say that the staircase ended early")
+            self.expect(document["means"] or document["statements"], f"{what}: a study without measures and without a reason")
             counts = document["sessions"]
             self.expect(sum(len(p["sessions"]) for p in document["participants"]) == counts["counted"],
                         f"{what}: the number of counted sessions is wrong")
+            self.scripts(tables, what)
         exported = self.call("export", "--db", database, "--out", folder / "csv")
         self.call("export", "--db", database, "--out", folder / "bids", "--format", "bids")
         if reader and exported.returncode == 0:
@@ -136,14 +144,14 @@ class Sweep:
             self.expect(set(trials[0].participant_id) <= {f"P{n + 1:02}" for n in range(len(kinds))},
                         f"{what}: the Python package reads other participants")
 
-
-def studies(everything):
-    for kind in KINDS:
-        yield [kind]
-    if everything:
-        yield ["right", "sim"]
-        yield ["right", "sim", "sim"]
-        yield ["silent", "key"]
+    def scripts(self, tables, what):
+        if not self.everything:
+            return
+        for program, script in ((sys.executable, "study.py"), ("Rscript", "study.R")):
+            done = subprocess.run([program, SCRIPTS / script, tables], capture_output=True, text=True)
+            self.commands += 1
+            self.expect(done.returncode == 0, f"{what}: {script}: {done.stderr.strip()[-300:]}")
+            self.expect("nan" not in done.stdout.lower(), f"{what}: {script}: {done.stdout}")
 
 
 def main():
@@ -152,13 +160,19 @@ def main():
     turnpoint, *names = [word for word in arguments if word != "--all"]
     protocols = sorted((ROOT / "protocols").glob("*.toml")) + sorted((HERE / "extreme").glob("*.toml"))
     wanted = names or (None if everything else FEW)
-    sweep = Sweep(turnpoint)
+    sweep = Sweep(turnpoint, everything)
     for protocol in protocols:
         if wanted is not None and protocol.stem not in wanted:
             continue
-        for kinds in studies(everything):
-            with tempfile.TemporaryDirectory() as folder:
-                sweep.people(pathlib.Path(folder), protocol, kinds)
+        for people in STUDIES:
+            with tempfile.TemporaryDirectory() as name:
+                folder = pathlib.Path(name)
+                for number, kind in enumerate(people if everything else people[:1]):
+                    if not sweep.session(folder, protocol, kind, f"P{number + 1:02}"):
+                        break
+                    sweep.study(folder, protocol, people[:number + 1])
+        if everything:
+            print(f"{protocol.stem}: {sweep.commands} commands, {len(sweep.failures)} failures so far", *sweep.failures, sep="\n", flush=True)
     for failure in sweep.failures:
         print(failure)
     print(f"{sweep.commands} commands, {len(sweep.failures)} failures, " +

@@ -168,6 +168,31 @@ TEST_CASE("A figure laid out for a given size fills it, in the arrangement that 
   CHECK_NOTHROW(render(tiny));
 }
 
+TEST_CASE(
+    "A figure that is scrolled keeps its text's size: charts stand below each other, and the caption below "
+    "them",
+    "[plot]") {
+  auto figure = example();
+  figure.charts.resize(3, figure.charts[0]);
+  figure.caption = "Bars show what nineteen of twenty repetitions would lie between.";
+  for (int i = 0; i < 3; ++i) figure.caption += " " + figure.caption;
+  // the same charts in a figure that is not scrolled: the document is wider than the view, and is scaled down
+  // to it
+  CHECK(size_px(laid_out(figure, 360, 200)).first > 500);
+  const auto scrolled = laid_out_to_scroll(figure, 360, 200);
+  CHECK(scrolled.columns == 1);
+  CHECK(size_px(scrolled).first == 360);
+  CHECK(scrolled.chart_height_px == 200);
+  CHECK(scrolled.caption == figure.caption);
+  CHECK(size_px(scrolled).second == 3 * 200 + caption_height_px(scrolled));
+  CHECK_NOTHROW(render(scrolled));
+  // in a large view all of it is seen at once
+  figure.caption = "Bars show intervals.";
+  const auto large = laid_out_to_scroll(figure, 1200, 500);
+  CHECK(large.columns == 2);
+  CHECK(size_px(large) == Point(1200, 500));
+}
+
 TEST_CASE("Lists whose lengths differ are refused", "[plot]") {
   auto figure = example();
   figure.charts[0].layers = {Line{{1, 2}, {1}, 0, ""}};
@@ -317,7 +342,8 @@ TEST_CASE("An axis of names shows each of them, turned upright if they are many"
   }
 }
 
-TEST_CASE("The files of a figure are as wide as one and two columns, and have its data and caption", "[plot]") {
+TEST_CASE("The files of a figure are as wide as one and two columns, and have its data and caption",
+          "[plot]") {
   auto figure = example();
   figure.caption = "Participant P01, 70 trials.";
   const NamedFigure named{"example", figure};

@@ -1,13 +1,14 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "station/core/number.hpp"
 #include "station/report/chart.hpp"
-#include "station/report/figures.hpp"
+#include "station/report/document.hpp"
 #include "station/report/figure_files.hpp"
-#include "station/report/html.hpp"
+#include "station/report/figures.hpp"
 #include "station/report/words.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/diffusion.hpp"
@@ -26,7 +27,7 @@ SessionData head() {
   data.status = "completed";
   data.facts = {{"Protocol", "speed-accuracy-change 1.0.0"}};
   data.health = {{core::plain("Underruns"), core::plain("0")}};
-  data.level_label = "Change of friction";
+  data.level_label = core::plain("Change of friction");
   data.choices = {"Smoother", "Rougher"};
   data.replicates = 200;
   return data;
@@ -58,7 +59,7 @@ SessionData speed_accuracy(int per_level) {
 
 SessionData staircase_session() {
   auto data = head();
-  data.level_label = "Friction contrast (dB)";
+  data.level_label = core::plain("Friction contrast (dB)");
   data.level_unit = "dB";
   data.choices = {"First", "Second"};
   core::Draws draws({4, core::Stream::observer, 0, 0, 0});
@@ -84,6 +85,14 @@ void keep(const std::string& name, const std::string& text) {
     std::ofstream(std::string(folder) + "/" + name) << text;
 }
 
+/// The words of a text, in English.
+std::string said(const Text& text) {
+  std::string all;
+  for (const auto& run : text.runs)
+    if (const auto* phrase = std::get_if<core::Phrase>(&run.what)) all += core::say(*phrase, "en");
+  return all;
+}
+
 std::string shown(const std::optional<report::Figure>& figure) {
   REQUIRE(figure);
   const auto svg = report::render(*figure);
@@ -104,6 +113,11 @@ TEST_CASE("A speed-accuracy session gives fits, the trade with intervals, and al
   keep("trace.svg", shown(trace_figure(summary)));
   keep("times.svg", shown(response_time_figure(summary)));
   keep("trade.svg", shown(trade_figure(summary)));
+  // on a panel of 800 x 480 px its charts stand below each other
+  const auto scrolled = laid_out_to_scroll(*trade_figure(summary), 360, 200);
+  CHECK(size_px(scrolled).first == 360);
+  CHECK(scrolled.columns == 1);
+  keep("trade-scrolled.svg", shown(scrolled));
   const auto html = to_html(summary);
   keep("report.html", html);
   CHECK(html == to_html(summarise(speed_accuracy(28))));
@@ -115,13 +129,15 @@ TEST_CASE("A speed-accuracy session gives fits, the trade with intervals, and al
   CHECK(html.find("The boundary was higher (more caution); the drift did not change detectably.") !=
         std::string::npos);
   CHECK(html.find("class=\"mode\">simulated") != std::string::npos);
+  CHECK(html.find("Trials of practice are left out.") != std::string::npos);
   const auto json = nlohmann::json::parse(to_json(summary));
   CHECK(json["instructions"].size() == 2);
   CHECK(json["differences"][2]["estimate"]["value"].get<double>() > 0.03);
 }
 
-TEST_CASE("The macro trade has d' and time of each condition with their intervals, as figure and in the table",
-          "[report]") {
+TEST_CASE(
+    "The macro trade has d' and time of each condition with their intervals, as figure and in the table",
+    "[report]") {
   const auto data = speed_accuracy(28);
   const auto summary = summarise(data);
   const auto figure = macro_figure(summary);
@@ -143,13 +159,44 @@ TEST_CASE("The macro trade has d' and time of each condition with their interval
   CHECK(points == 2);
   const auto& gap = summary.trade.differences.back();
   CHECK(gap.measure == "d'");
-  CHECK(gap.estimate->value == Approx(summary.trade.instructions[1].d_prime->value -
-                                      summary.trade.instructions[0].d_prime->value));
+  CHECK(gap.estimate->value ==
+        Approx(summary.trade.instructions[1].d_prime->value - summary.trade.instructions[0].d_prime->value));
   CHECK((*gap.estimate->p < 0.05) == (gap.estimate->interval.low > 0 || gap.estimate->interval.high < 0));
   CHECK(to_html(summary).find("Sensitivity d\u2032 over all levels") != std::string::npos);
   auto signalled = data;
   signalled.signalled = true;  // the lags are the macro trade then
   CHECK_FALSE(macro_figure(summarise(signalled)));
+}
+
+TEST_CASE("A difference that could not be estimated leaves the others under their own pairs of conditions",
+          "[report]") {
+  Summary summary;
+  summary.data = head();
+  summary.data.payoff = true;
+  const char* names[] = {"fast", "even", "slow"};
+  for (const auto* name : names) summary.trade.instructions.emplace_back().instruction = name;
+  for (int a = 0; a < 3; ++a)
+    for (int b = a + 1; b < 3; ++b)
+      summary.trade.differences.push_back({names[a], names[b], "proportion correct", "proportion", {}});
+  const analysis::Estimate points{7, {6, 8}};
+  summary.trade.differences.push_back({"fast", "slow", "points a trial", "points", points});
+  const Table* found = nullptr;
+  const auto all = document(summary);
+  for (const auto& part : all.parts)
+    if (const auto* table = std::get_if<Table>(&part); table && table->columns.size() == 4) {
+      if (said(table->columns[2].title) == "slow \u2212 fast") found = table;
+    }
+  REQUIRE(found);
+  bool points_found = false;
+  for (const auto& row : found->rows) {
+    REQUIRE(row.size() == 4);
+    if (said(row[0].text) != "Points a trial") continue;
+    points_found = true;
+    CHECK(row[1].kind == Cell::Kind::missing);
+    CHECK(row[2].kind == Cell::Kind::number);
+    CHECK(row[3].kind == Cell::Kind::missing);
+  }
+  CHECK(points_found);
 }
 
 TEST_CASE("Comparisons are corrected for their number only if the protocol asks for it", "[report]") {
@@ -233,6 +280,17 @@ TEST_CASE("A forced-choice session in dB has its threshold and 75 % point in the
   keep("staircase.svg", shown(trace_figure(summary)));
 }
 
+TEST_CASE("A participant of a group has the threshold of that condition", "[report]") {
+  auto data = staircase_session();
+  data.conditions = {"trained", "untrained"};
+  for (auto& trial : data.trials) trial.instruction = "untrained";
+  const auto fits = fits_of(data);
+  REQUIRE(fits.size() == 1);
+  CHECK(fits[0].name == "untrained");
+  data.conditions = {"untrained"};
+  CHECK(fits_of(data).at(0).name.empty());
+}
+
 TEST_CASE("If the answers determined the levels, the report states the posterior and its prior", "[report]") {
   auto data = staircase_session();
   data.prior = analysis::Prior{-40, 3, 0.25, 16, 0.25};
@@ -260,12 +318,14 @@ TEST_CASE("If the answers determined the levels, the report states the posterior
   const auto& layers = figure->charts[0].layers;
   const double threshold = summary.fits[0].fit.parameters->threshold;
   const auto& fitted = summary.fits[0].fit;
-  const auto height = core::number(std::round(
-      100 * analysis::probability(fitted.options.function, fitted.options.scale, *fitted.parameters, threshold)));
+  const auto height =
+      core::number(std::round(100 * analysis::probability(fitted.options.function, fitted.options.scale,
+                                                          *fitted.parameters, threshold)));
   CHECK(std::any_of(layers.begin(), layers.end(), [&](const auto& layer) {
     const auto* rule = std::get_if<report::Rule>(&layer);
     return rule != nullptr && rule->direction == report::Rule::Direction::vertical && rule->at == threshold &&
-           rule->label == "threshold " + in_digits(threshold, &found.threshold->interval) + " dB (" + height + " %)";
+           rule->label ==
+               "threshold " + in_digits(threshold, &found.threshold->interval) + " dB (" + height + " %)";
   }));
   CHECK(std::any_of(layers.begin(), layers.end(), [&](const auto& layer) {
     const auto* span = std::get_if<report::Span>(&layer);
@@ -369,7 +429,8 @@ TEST_CASE("The report has the finger's force, speed and friction only if force c
   CHECK(unfelt.find("Friction along the strip") == std::string::npos);
 }
 
-TEST_CASE("The label of a threshold has the digits of the table and the height of the curve there", "[report]") {
+TEST_CASE("The label of a threshold has the digits of the table and the height of the curve there",
+          "[report]") {
   const auto summary = summarise(speed_accuracy(28));
   const auto svg = render(*psychometric_figure(summary));
   const auto html = to_html(summary);
@@ -378,8 +439,9 @@ TEST_CASE("The label of a threshold has the digits of the table and the height o
     const double at = named.fit.parameters->threshold;
     const auto digits = in_digits(at, &named.intervals.threshold->interval);
     CHECK(html.find(digits + " <span class=\"soft\">[") != std::string::npos);
-    const auto height = core::number(std::round(100 * analysis::probability(
-                            named.fit.options.function, named.fit.options.scale, *named.fit.parameters, at)));
+    const auto height = core::number(
+        std::round(100 * analysis::probability(named.fit.options.function, named.fit.options.scale,
+                                               *named.fit.parameters, at)));
     CHECK(svg.find(named.name + " " + digits) != std::string::npos);
     CHECK(svg.find("(" + height + " %)") != std::string::npos);
   }
@@ -387,7 +449,7 @@ TEST_CASE("The label of a threshold has the digits of the table and the height o
 
 TEST_CASE("Every figure of a report has a caption that says whose trials it shows and how many", "[report]") {
   const auto summary = summarise(speed_accuracy(28));
-  const auto figures = figures_of(summary);
+  const auto figures = figures_of(document(summary));
   REQUIRE(figures.size() >= 4);
   for (const auto& [name, figure] : figures) {
     INFO(name << ": " << figure.caption);
@@ -395,6 +457,21 @@ TEST_CASE("Every figure of a report has a caption that says whose trials it show
     CHECK(figure.caption.find(" trials.") != std::string::npos);
   }
   CHECK(psychometric_figure(summary)->caption.find("95 %") != std::string::npos);
+}
+
+TEST_CASE("A number of a report has the digits that its interval determines, and says what is not determined",
+          "[report]") {
+  const auto shown = [](const Number& number, const char* language = "en") {
+    const auto [value, interval] = in_known_digits(number);
+    return core::say(value, language) + " " + core::say(interval, language);
+  };
+  const double endless = std::numeric_limits<double>::infinity();
+  CHECK(shown({-0.51234}) == "\u22120.512 ");
+  CHECK(shown({-0.51234, analysis::Interval{-0.71, -0.31}}) == "\u22120.512 [\u22120.710, \u22120.310]");
+  CHECK(shown({2, analysis::Interval{1, 3}, 3, true, true}) == "2.00 [\u2264 1.00, \u2265 3.00]");
+  CHECK(shown({2, analysis::Interval{1, endless}}) == "2.00 [1.00, not determined]");
+  CHECK(shown({2, analysis::Interval{1, endless}}, "de") == "2.00 [1.00, nicht bestimmt]");
+  CHECK(shown({2, analysis::Interval{1, endless}, 3, false, false, true}) == "2 [1, \u221e]");
 }
 
 TEST_CASE("A curve ends where its band ends", "[report]") {

@@ -19,7 +19,7 @@ TEST_CASE("a report has each procedure's own estimate, as it was at the end of t
     data.replicates = 40;
     REQUIRE_FALSE(data.estimates.empty());
     const auto html = report::to_html(report::summarise(data));
-    CHECK(html.find("The procedure's own estimate") != std::string::npos);
+    CHECK(html.find("The procedure\u2019s own estimate") != std::string::npos);
     CHECK((html.find("staircase settles where") != std::string::npos) ==
           (name == "friction-staircase" || name == "boundary-adaptive"));
     CHECK((html.find("a posterior estimates") != std::string::npos) == (name != "friction-staircase"));
@@ -38,7 +38,7 @@ TEST_CASE("a report has the ids of answers, and the reversals that a staircase a
                                "discard_reversals = 4\ninitial_down = 1 ");
   const auto data = data_of(source, "sim:threshold=-16");
   CHECK(data.choices == std::vector<std::string>{"first", "second"});
-  CHECK(data.level_label == "Contrast (dB)");
+  CHECK(core::say(data.level_label, "en") == "Contrast (dB)");
   REQUIRE(data.estimates.size() == 2);
   CHECK(data.estimates[0].basis == "reversals 5 to 10 of 10");
   const auto html = report::to_html(report::summarise(data));
@@ -102,7 +102,7 @@ TEST_CASE("the threshold along the second dimension is reported, and no curve ov
   CHECK(data.thresholds_differ);
   REQUIRE(data.threshold_curves.size() == 1);
   const auto& curve = data.threshold_curves[0];
-  CHECK(curve.label == "End (mm)");
+  CHECK(core::say(curve.label, "en") == "End (mm)");
   CHECK(curve.trials.size() == 96);
   REQUIRE(curve.points.size() == 7);
   CHECK(curve.points.front().second == 120);
@@ -125,7 +125,7 @@ TEST_CASE("the threshold along the second dimension is reported, and no curve ov
   CHECK(gradient);
   const auto html = report::to_html(report::summarise(data));
   CHECK(html.find("Threshold along the second dimension") != std::string::npos);
-  CHECK(html.find("gradient (dB/mm)") != std::string::npos);
+  CHECK(html.find("change of the threshold (dB/mm)") != std::string::npos);
   CHECK(html.find("<h2>Psychometric function</h2>") == std::string::npos);
   // by the levels of the second factor there is one curve for each of them
   const auto by = data_of(source + "\n[analysis]\nby = \"end_mm\"\n");

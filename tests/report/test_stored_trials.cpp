@@ -6,7 +6,7 @@
 
 #include "station/core/toml.hpp"
 #include "station/protocol/conditions.hpp"
-#include "station/report/html.hpp"
+#include "station/report/document.hpp"
 #include "tests/report/simulated_report.hpp"
 #include "tests/support/catch.hpp"
 
@@ -170,6 +170,24 @@ TEST_CASE("same-different counts pairs that are the same as false alarms", "[rep
   const auto report = report_of(data);
   CHECK(report["fits"][0]["levels"][0]["level"].is_null());
   CHECK(report["fits"][0]["guess"].get<double>() == Approx(0.25).margin(0.12));
+}
+
+TEST_CASE("The trial before of same-different has stimulus 0 where nothing differed, and names its answer",
+          "[report]") {
+  auto data = data_of(shipped("friction-same-different"), "sim:threshold=-14,lapse=0");
+  const auto before = report_of(data)["trial_before"][0];
+  CHECK(before["answer"] == "different");
+  CHECK(before["model"] == "choices");
+  CHECK(before["level_unit"] == "dB");
+  CHECK(before["ratios"] == true);
+  REQUIRE_FALSE(before["stimulus"].is_null());
+  CHECK(before["stimulus"]["interval"]["low"] > 0);
+  const auto page = report::to_html(report::summarise(data));
+  CHECK(page.find("log odds of the answer \u201cdifferent\u201d. A stimulus counts as a ratio (1 for 0 dB), "
+                  "and is 0") != std::string::npos);
+  for (auto& trial : data.trials)
+    if (trial.right_choice == 1 - data.positive) trial.level = 12;
+  CHECK(report_of(data)["trial_before"][0] == before);
 }
 
 TEST_CASE("each value of the key show adds a part to the report", "[report]") {
@@ -462,4 +480,77 @@ TEST_CASE("one key, always right and always wrong: there is a report with reason
       for (const auto& fit : report["fits"])
         if (fit["threshold"].is_null()) CHECK_FALSE(fit["statements"].empty());
     }
+}
+
+TEST_CASE("A report of a payoff has the points a trial and a minute of each condition, and their differences",
+          "[report]") {
+  const auto paid = replaced(replaced(shipped("speed-accuracy"), "[timing]\n",
+                                      "[payoff]\nright = 10\nwrong = -10\nlate = -20\n\n[timing]\n"),
+                             "anticipation_s = 0.150", "anticipation_s = 0.150\ndelay_s = { wrong = 2.0 }");
+  const auto data = data_of(paid);
+  const auto json = report_of(data);
+  REQUIRE(json["instructions"].size() == 2);
+  for (const auto& entry : json["instructions"]) {
+    double points = 0, minutes = 0, trials = 0;
+    for (const auto& trial : data.trials)
+      if (trial.type == analysis::TrialType::experimental && trial.instruction == entry["instruction"])
+        points += trial.points.value(), minutes += trial.duration_s / 60, ++trials;
+    CHECK(entry["points"]["value"].get<double>() == Approx(points / trials));
+    CHECK(entry["points_per_minute"]["value"].get<double>() == Approx(points / minutes));
+    CHECK(entry["points_per_minute"]["interval"]["low"].get<double>() < points / minutes);
+  }
+  int differences = 0;
+  for (const auto& difference : json["differences"]) {
+    if (difference["measure"] != "points a minute") continue;
+    ++differences;
+    CHECK(difference["estimate"]["value"].get<double>() ==
+          Approx(json["instructions"][1]["points_per_minute"]["value"].get<double>() -
+                 json["instructions"][0]["points_per_minute"]["value"].get<double>()));
+  }
+  CHECK(differences == 1);
+  const auto html = report::to_html(report::summarise(data));
+  CHECK(html.find("Points a minute, of trials with their pauses") != std::string::npos);
+  const auto unpaid = report::to_html(report::summarise(data_of(shipped("speed-accuracy"))));
+  CHECK(unpaid.find("Points a") == std::string::npos);
+}
+
+TEST_CASE("Whoever is always right has points a trial, and counts in the study's mean", "[report]") {
+  const auto paid =
+      replaced(shipped("speed-accuracy"), "[timing]\n", "[payoff]\nright = 10\nwrong = -10\n\n[timing]\n");
+  const auto right = answered_by(paid, [](const auto& q) { return q.correct.value_or(0); });
+  const auto json = report_of(right);
+  REQUIRE(json["instructions"].size() == 2);
+  for (const auto& entry : json["instructions"]) CHECK(entry["points"]["value"] == 10);
+  report::Study study;
+  study.settings.scored = true;
+  for (const auto* name : {"P01", "P02", "P03"}) {
+    auto data = name == std::string("P01") ? right : data_of(paid);
+    data.participant = name;
+    study.persons.push_back(report::study_person(data, {}, false));
+  }
+  report::finish_study(study);
+  int means = 0;
+  for (const auto& mean : study.means)
+    if (mean.measure == "points a trial") {
+      ++means;
+      CHECK(mean.persons == 3);
+    }
+  CHECK(means == 2);
+}
+
+TEST_CASE("A report of an unforced choice counts unsure answers and fits no diffusion", "[report]") {
+  const auto data = data_of(shipped("friction-unforced"), "sim:lapse=0,unsure=0.9");
+  double unsure = 0, right = 0;
+  for (const auto& trial : data.trials)
+    if (trial.type == analysis::TrialType::experimental)
+      unsure += trial.unsure ? 1 : 0, right += trial.correct.value_or(false) ? 1 : 0;
+  REQUIRE(unsure > 3);
+  const auto json = report_of(data);
+  CHECK(json["trials"]["unsure"] == unsure);
+  double positive = 0;
+  for (const auto& level : json["fits"][0]["levels"]) positive += level["positive"].get<double>();
+  CHECK(positive == Approx(right + 0.5 * unsure));
+  CHECK(json["instructions"][0]["boundary"].is_null());
+  const auto html = report::to_html(report::summarise(data));
+  CHECK(html.find("<tr><th>Unsure</th>") != std::string::npos);
 }

@@ -13,6 +13,7 @@
 #include "station/store/read.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/simulated_run.hpp"
 
 using namespace turnpoint;
 
@@ -114,13 +115,7 @@ std::string written(const Case& wanted, const TemporaryFolder& folder) {
 }
 
 session::Setup prepared(const std::string& protocol, const Case& wanted, const std::string& db) {
-  session::RunRequest request;
-  request.protocol = protocol;
-  request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
-  request.participant = "P01";
-  request.database = db;
-  request.observer = "sim";
-  request.seed = 42;
+  auto request = simulated_run(protocol, db, 42);
   request.headless = true;
   request.planned_session = wanted.planned_session;
   return session::prepare(request);

@@ -5,6 +5,7 @@
 #include "station/core/toml.hpp"
 #include "station/rig/rig.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/replaced.hpp"
 
 namespace turnpoint::rig_sample {
 
@@ -13,12 +14,6 @@ inline const std::string simulated = std::string(TURNPOINT_SOURCE_DIR) + "/deplo
 /// Returns a rig file into which the tests put mistakes.
 inline std::string source() {
   return core::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml");
-}
-
-inline std::string replaced(std::string where, const std::string& from, const std::string& to) {
-  const auto at = where.find(from);
-  REQUIRE(at != std::string::npos);
-  return where.replace(at, from.size(), to);
 }
 
 /// Replaces `from` by `to` in the rig file, and returns the problems that are reported, one per line.

@@ -29,12 +29,15 @@ rig::Rig plate() { return rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/
 }  // namespace
 
 TEST_CASE("a calibrated rig has the measured response, band, loss and friction", "[calibration][apply]") {
-  const auto rig = applied(measured(), plate());
+  auto before = plate();
+  before.surface.quality_factor = 30, before.surface.quality_factor_sd = 6;
+  const auto rig = applied(measured(), before);
   CHECK_FALSE(rig.transducers.at(0).m_per_full_scale.has_value());
   CHECK(rig.transducers[0].response.size() == 3);
   CHECK(rig.transducers[0].low_Hz == 20000);
   CHECK(rig.transducers[0].high_Hz == 40000);
   CHECK(rig.surface.quality_factor == 41);
+  CHECK(rig.surface.quality_factor_sd == Approx(41.0 * 6 / 30));
   CHECK(rig.friction.measured);
   CHECK(rig.friction.table.size() == 2);
   CHECK(rig.sha256 == plate().sha256);

@@ -134,6 +134,8 @@ TEST_CASE("invalid values in a rig file are refused, with what is allowed", "[ri
                  "no line \"enable\""));
   CHECK(contains(problems("[surface]", "[surface"), "not valid TOML"));
   CHECK(problems("quality_factor = 30", "quality_factor = inf").empty());
+  CHECK(contains(problems("quality_factor = 30", "quality_factor = inf\nquality_factor_sd = 8"),
+                 "the surface is lossless"));
   const std::string thick = "quality_factor = 30\nplate_theory = \"mindlin\"";
   CHECK(problems("quality_factor = 30", thick).empty());
   CHECK(contains(problems("tension_Pa = 0 ", "plate_theory = \"elastic\"\ntension_Pa = 1e8 "),

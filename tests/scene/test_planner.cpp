@@ -271,3 +271,43 @@ TEST_CASE(
   CHECK(std::abs(line->level_m(0.5).value() - 0.150) < 0.03e-3);
   CHECK(planner.profile(fine, 50).displacement_m.size() == 50);
 }
+
+TEST_CASE("the tones of a plan have the uncertainty of their level, if the rig states standard deviations",
+          "[scene]") {
+  auto rig = simulated();
+  Planner planner(rig);
+  auto plan = planner.plan(edge_at(0.15, "p50"));
+  REQUIRE(plan.tones.size() == 1);
+  const auto& tone = plan.tones.front();
+  CHECK_FALSE(tone.level_sd_dB);
+  planner.add_level_uncertainty(plan);
+  const double here_dB =
+      physics::level_uncertainty(planner.surface(), tone.frequency_Hz, tone.last_peak_m.value()).total_dB;
+  CHECK(here_dB > 0.5);
+  CHECK(tone.level_sd_dB.value() == Approx(here_dB).epsilon(0.05));
+  const auto under = planner.under_finger(plan);
+  REQUIRE(under.level);
+  CHECK(under.friction_low < under.friction);
+  CHECK(under.friction_high > under.friction);
+  auto& surface = rig.surface;
+  // the largest values that a rig file may have: some surface could not exist, so the level is not known
+  const auto stated = surface;
+  for (const auto& [sd, largest] : {std::pair(&rig::Surface::half_width_sd_m, 1.0),
+                                    {&rig::Surface::slope_sd, 1.0},
+                                    {&rig::Surface::quality_factor_sd, 1e6},
+                                    {&rig::Surface::thickness_sd_m, 0.1}}) {
+    surface = stated;
+    surface.*sd = largest;
+    Planner vague(rig);
+    vague.add_level_uncertainty(plan);
+    CHECK_FALSE(plan.tones.front().level_sd_dB);
+    CHECK_FALSE(vague.under_finger(plan).level);
+    CHECK_FALSE(finger_shares(rig, {plan.tones.front().frequency_Hz})->level_sd_dB);
+  }
+  surface.thickness_sd_m = surface.modulus_sd_Pa = surface.density_sd_kg_m3 = surface.temperature_sd_K = 0;
+  surface.half_width_sd_m = surface.slope_sd = surface.clamp_line_sd_m = surface.quality_factor_sd = 0;
+  Planner exact(rig);
+  exact.add_level_uncertainty(plan);
+  CHECK_FALSE(plan.tones.front().level_sd_dB);
+  CHECK_FALSE(exact.under_finger(plan).level);
+}

@@ -79,7 +79,8 @@ TEST_CASE("a force of 0 to 2 N is measured without a constant error", "[sensing]
   const auto without = complete(demodulated(bridge_options(), 0, signal.frames(0, second / 8)));
   auto options = bridge_options();
   for (std::size_t i = 0; i < bridge_count; ++i)
-    options.rotation_rad[i] = bridge_rotation_rad(without.back(), with.back(), i);
+    options.rotation_rad[i] = std::atan2(with.back().quadrature[i] - without.back().quadrature[i],
+                                         with.back().ratio[i] - without.back().ratio[i]);
   CHECK(options.rotation_rad[2] == Approx(0.09).epsilon(1e-3));
   signal.force_N = [](double) { return 2; };
   CHECK(std::abs(mean(measured_N(signal, second / 8, 0, options)) - 2) < 1e-5);
@@ -222,7 +223,8 @@ TEST_CASE("a wire that is off is a fault with a name", "[sensing]") {
 
 TEST_CASE("a bridge whose samples stop to change is a fault from then on, and one that only reads 0 is none",
           "[sensing]") {
-  const auto [band, stuck] = GENERATE(std::pair{Band::force, 0}, std::pair{Band::force, -12345}, std::pair{Band::wide, 0});
+  const auto [band, stuck] =
+      GENERATE(std::pair{Band::force, 0}, std::pair{Band::force, -12345}, std::pair{Band::wide, 0});
   BridgeSignal signal;
   signal.force_N = [](double) { return 0; };
   signal.noise_V_rtHz = 4e-9;
@@ -239,6 +241,69 @@ TEST_CASE("a bridge whose samples stop to change is a fault from then on, and on
       CHECK(point.bridge == 2);
     }
     if (frame < dead - 3400) CHECK(point.fault == WireFault::none);
+  }
+}
+
+TEST_CASE("a carrier that repeats within a few frames is no bridge that repeats a block",
+          "[sensing][carrier]") {
+  BridgeOptions options;
+  options.carrier_Hz = 32000;  // a period of 6 frames, here without any noise
+  BridgeDemodulator demodulator(options);
+  CaptureBlock block;
+  block.rate_Hz = options.rate_Hz, block.channels = options.channels;
+  std::vector<std::int32_t> samples;
+  for (int n = 0; n < 40'000; ++n)
+    for (int channel = 0; channel < options.channels; ++channel) {
+      const double amplitude = channel == options.reference ? options.reference_amplitude : 0.01;
+      const double wave = std::sin(2 * std::numbers::pi * (n % 6) / 6 + 0.3);
+      samples.push_back(static_cast<std::int32_t>(std::lround(0x1p31 * amplitude * wave)));
+    }
+  block.samples = samples;
+  int points = 0;
+  demodulator.push(block, [&](const BridgePoint& point) {
+    if (++points > 20) CHECK(point.fault == WireFault::none);
+  });
+  CHECK(points > 40);
+}
+
+TEST_CASE(
+    "a bridge that repeats a block of samples is a fault, and one with half the noise of the others is none",
+    "[sensing]") {
+  // The frames at which the bridge gets stuck, and the length of the block that it repeats.
+  const auto [stuck, length] = GENERATE(table<std::int64_t, std::int64_t>(
+      {{24000, 64}, {24000, 256}, {30011, 441}, {24000, 1024}, {24000, 4096}, {0, 0}}));
+  BridgeSignal signal;
+  signal.force_N = [](double) { return 0.0; };
+  signal.noise_V_rtHz = 4e-9;
+  auto samples = signal.frames(0, second / 2);
+  for (std::size_t n = 0; length == 0 && n < second / 2; ++n) samples[4 * n + 3] /= 2;
+  for (std::size_t n = static_cast<std::size_t>(stuck + length); length > 0 && n < second / 2; ++n)
+    samples[4 * n + 3] = samples[4 * (n - static_cast<std::size_t>(length)) + 3];
+  // It is known at the latest after the old row of samples, a new one, and its repetition.
+  const auto known = stuck + 2 * 4480 + 2 * length;
+  CAPTURE(length);
+  for (const auto& point : complete(demodulated(bridge_options(), 0, samples))) {
+    const std::int64_t frame = point.index * 192000 / points_per_second(Band::force);
+    if (length == 0 || frame < stuck - 3400) CHECK(point.fault == WireFault::none);
+    if (length == 0 || frame < known) continue;
+    CHECK(point.fault == WireFault::silent);
+    CHECK(point.bridge == 2);
+  }
+}
+
+TEST_CASE("a bridge whose converter is at its limits is a fault", "[sensing]") {
+  const auto levels =
+      GENERATE(std::pair{0x7fffff00, 0x7fffff00}, std::pair{-0x7fffff00 - 256, -0x7fffff00 - 256},
+               std::pair{0x7fffff00, -0x7fffff00 - 256});
+  BridgeSignal signal;
+  signal.noise_V_rtHz = 4e-9;
+  auto samples = signal.frames(0, second / 4);
+  // The last one: the carrier, so strong that the converter only ever reads its two limits.
+  for (std::size_t n = 0; n < second / 4; ++n)
+    samples[4 * n + 3] = samples[4 * n] > 0 ? levels.first : levels.second;
+  for (const auto& point : complete(demodulated(bridge_options(), 0, samples))) {
+    CHECK(point.fault != WireFault::none);
+    CHECK(point.bridge == 2);
   }
 }
 

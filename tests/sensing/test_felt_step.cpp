@@ -124,6 +124,22 @@ TEST_CASE("a felt step is where friction changes, and its standard error is righ
   REQUIRE(wrong);
   CHECK(std::abs(wrong->boundary_mm - 80) > 1);
 
+  // Without noise of friction all strokes agree, and what is left is the error of the fit's shape, which the
+  // interval must hold as well. It is then too wide, but not by much.
+  for (const double width_mm : {4.0, 10.0, 16.0})
+    for (const double noise : {0.0, 0.02}) {
+      Finger quiet;
+      quiet.strokes = 6, quiet.friction_noise = noise, quiet.width_mm = width_mm;
+      const Study exact = study(quiet, many ? trials : 12, 5);
+      print(("friction noise " + std::to_string(noise) + ", width " + std::to_string(width_mm)).c_str(),
+            exact);
+      CHECK(exact.missing == 0);
+      CHECK(exact.covered > (many ? 0.9 : 0.8));
+      CHECK(exact.mean_se_mm < (noise > 0 ? 3 * exact.sd_mm : 0.2));
+      // negative control: the scatter of strokes that agree says nothing, so this error is that of the shape
+      if (noise == 0) CHECK(exact.mean_se_mm > exact.sd_mm);
+    }
+
   if (wanted_studies == nullptr) return;
   Finger finger;
   for (const double above : {0.4, 0.64, 0.8})
@@ -167,6 +183,10 @@ TEST_CASE("a boundary at a level of friction is where a plate's friction crosses
       const auto felt = felt_step(profile, level);
       REQUIRE(felt);
       CHECK(felt->boundary_mm == Approx(crossing_mm).margin(level < 0.7 ? 0.15 : 0.3));
+      // these strokes agree exactly, so the whole error is that of the shape
+      CHECK(std::abs(felt->boundary_mm - crossing_mm) < felt->half_interval_mm);
+      CHECK(felt->half_interval_mm < 3);
+      CHECK(felt->se_mm > 0.01);
       // negative control: the boundary half-way up the step is at a different place
       if (level == 0.8) CHECK(std::abs(felt_step(profile)->boundary_mm - crossing_mm) > 2);
     }

@@ -154,6 +154,33 @@ TEST_CASE("amplitude and phase are measured to 0.01 dB and 0.1 degrees", "[sensi
     }
 }
 
+TEST_CASE(
+    "a last ramp that breaks off is seen at whatever level, and so is a pulse of 0.1 ms at whatever time",
+    "[sensing][proof]") {
+  const auto burst = three_tones();
+  Room room;
+  SECTION("ramp") {
+    const double share = GENERATE(0.35, 0.5, 0.65, 0.8, 0.95, 1.0);
+    const double ramp_frames = std::acos(2 * share - 1) / M_PI * 960;
+    const double stop_s = (static_cast<double>(burst.length_frames) - 960 + ramp_frames) / 192000;
+    room.gain_at = [=](double t) { return t < stop_s ? 1.0 : 0.0; };
+    const auto proof = proven(room, burst);
+    CAPTURE(share, proof.offset_error_us.value_or(0));
+    CHECK(proof.verdict != Proof::ok);
+    CHECK(proof.cause == ProofCause::offset);
+  }
+  SECTION("pulse") {
+    // The first ramp and the 5 ms in which the plate settles after it are not judged.
+    const double at_s = GENERATE(0.0123, 0.05, 0.2, 0.3456, 0.38, 0.3938), level = GENERATE(0.05, 0.5);
+    room.extra = [=](double t) {
+      return t > at_s && t < at_s + 1e-4 ? level * std::sin(2 * M_PI * 33000 * t) : 0.0;
+    };
+    const auto proof = proven(room, burst);
+    CAPTURE(at_s, level, proof.brief_dB);
+    CHECK((proof.verdict == Proof::refused || proof.verdict == Proof::stopped));
+  }
+}
+
 TEST_CASE("the onset is measured to 30 us for ramps of 5 ms, and to 150 us for ramps of 50 ms",
           "[sensing][proof]") {
   std::mt19937_64 random(12);

@@ -33,7 +33,7 @@ inline void use_card(rig::Rig& rig, const Buffer& buffer) {
 }
 
 using core::FaultKind;
-using session::InputKind;
+namespace input = session::input;
 using session::PageKind;
 
 constexpr std::int64_t kRate_Hz = 192000;
@@ -191,9 +191,10 @@ struct CardSession {
     };
     room.reacts = [this](const session::Page& page) {
       reacts(page);
-      if (page.kind == PageKind::fault) faults.push_back(page.fault), details.push_back(page.detail);
+      if (page.kind == PageKind::fault)
+        faults.push_back(page.fault.kind), details.push_back(page.fault.detail);
       if (page.kind == PageKind::stimulus && (first_answered || room.stimuli > 1))
-        later(0.3, [this] { room.push(InputKind::answer); });
+        later(0.3, [this] { room.push(input::Answer{}); });
       if (page.kind == PageKind::fault) return later(repair_s, [this, page] { room.cooperate(page); });
       if (page.kind == PageKind::stimulus) return;
       if (reading_s <= 0) return room.cooperate(page);

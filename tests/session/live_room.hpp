@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "station/session/session.hpp"
@@ -13,7 +14,7 @@
 
 namespace turnpoint::live_room {
 
-using session::InputKind;
+namespace input = session::input;
 using session::PageKind;
 
 inline std::string protocol_text(const std::string& device) {
@@ -71,14 +72,10 @@ struct Room : session::Display {
   int stimuli = 0;
 
   /// `after_ns` is the time of the input, counted from now.
-  void push(InputKind kind, int value = 0, std::int64_t after_ns = 0) {
-    session::Input input;
-    input.time_ns = system::monotonic_ns() + after_ns;
-    input.kind = kind;
-    input.value = value;
-    inputs.push(input);
+  void push(input::Any content, std::int64_t after_ns = 0) {
+    inputs.push({system::monotonic_ns() + after_ns, std::move(content)});
   }
-  void press(int button) { push(InputKind::button, button); }
+  void press(int button) { push(input::Button{button}); }
 
   void show(const session::Page& page) override {
     pages.push_back(page);
@@ -88,9 +85,9 @@ struct Room : session::Display {
 
   /// Reacts like a cooperative participant, and like an operator who clears every fault.
   void cooperate(const session::Page& page) {
-    if (page.kind == PageKind::instructions || page.kind == PageKind::paused) push(InputKind::next);
+    if (page.kind == PageKind::instructions || page.kind == PageKind::paused) push(input::Next{});
     if (page.kind == PageKind::stimulus) press(0);
-    if (page.kind == PageKind::fault) push(page.amplifier.empty() ? InputKind::next : InputKind::arm);
+    if (page.kind == PageKind::fault) push(page.amplifier.empty() ? input::Any(input::Next{}) : input::Arm{});
   }
 
   session::Devices devices() {

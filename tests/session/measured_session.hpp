@@ -11,6 +11,7 @@
 #include "station/session/simulated_room.hpp"
 #include "station/store/read.hpp"
 #include "station/store/stored_signals.hpp"
+#include "tests/support/simulated_run.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 // Helpers for tests: simulated sessions on a rig with capture channels, and faults in the simulated room.
@@ -49,7 +50,7 @@ struct Saboteur : session::Monitor {
 struct Pages : session::Display {
   std::vector<std::string> faults, messages;
   void show(const session::Page& page) override {
-    if (page.kind == session::PageKind::fault) faults.push_back(page.detail);
+    if (page.kind == session::PageKind::fault) faults.push_back(page.fault.detail);
     if (page.kind == session::PageKind::feedback && !page.correct && !page.text.empty())
       messages.push_back(page.text);
   }
@@ -79,13 +80,9 @@ struct How {
 inline session::RunRequest request_in(const TemporaryFolder& folder, const std::string& protocol,
                                       const std::string& capture = kCells,
                                       const std::string& observer = "sim") {
-  session::RunRequest request;
-  request.protocol = protocol;
+  auto request = simulated_run(protocol, folder / "a.sqlite", 7);
   request.rig = with_capture(folder, capture);
-  request.participant = "P01";
-  request.database = folder / "a.sqlite";
   request.observer = observer;
-  request.seed = 7;
   return request;
 }
 

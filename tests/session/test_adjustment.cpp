@@ -1,8 +1,6 @@
-#include <unistd.h>
-
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <limits>
 #include <mutex>
 #include <set>
@@ -21,41 +19,29 @@
 #include "tests/session/faulty_stream.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/simulated_run.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
-namespace fs = std::filesystem;
 
 namespace {
 
-struct Folder {
-  fs::path path;
-  Folder() : path(fs::temp_directory_path() / ("turnpoint-adjustment-" + std::to_string(::getpid()))) {
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  ~Folder() { fs::remove_all(path); }
-};
-
-/// Records the pages with a slider. It can simulate a crash after a number of pages.
+/// Records the pages, and those with a slider. It can simulate a crash after a number of pages.
 struct Pages : session::Display {
   int left = std::numeric_limits<int>::max();
-  std::vector<session::Page> sliders;
+  std::vector<session::Page> all, sliders;
   void show(const session::Page& page) override {
+    all.push_back(page);
     if (page.kind == session::PageKind::adjust) sliders.push_back(page);
     if (--left == 0) throw std::runtime_error("the plug was pulled");
   }
 };
 
-session::Setup setup_in(const Folder& folder, const std::string& observer) {
-  const std::string source = TURNPOINT_SOURCE_DIR;
-  session::RunRequest request;
-  request.protocol = source + "/protocols/boundary-adjustment.toml";
-  request.rig = source + "/tests/support/thin_plate.toml";
-  request.participant = "P01";
-  request.database = (folder.path / "a.sqlite").string();
+session::Setup setup_in(const TemporaryFolder& folder, const std::string& observer,
+                        const std::string& protocol = "boundary-adjustment") {
+  auto request =
+      simulated_run(TURNPOINT_SOURCE_DIR "/protocols/" + protocol + ".toml", folder / "a.sqlite", 7);
   request.observer = observer;
-  request.seed = 7;
   return session::prepare(request);
 }
 
@@ -88,7 +74,7 @@ TEST_CASE("a slider stays on its steps and in its range, and the surface follows
 
 TEST_CASE("a protocol file with a slider gives rows with each setting and the movements of the surface",
           "[session]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto setup = setup_in(folder, "sim:threshold=2,bias=4,lapse=0");
   session::Inputs inputs;
   Pages pages;
@@ -121,24 +107,58 @@ TEST_CASE("a protocol file with a slider gives rows with each setting and the mo
   CHECK(*trials.back().threshold_est == Approx(sum / 18));
 }
 
+TEST_CASE("a question shows the value that a factor has in its trial", "[session]") {
+  const TemporaryFolder folder;
+  for (const auto& [protocol, language] : {std::pair{"magnitude-production", "en"},
+                                           {"magnitude-production", "de"},
+                                           {"cross-modal-matching", "en"}}) {
+    auto setup = setup_in(folder, "sim", protocol);
+    setup.language = language;
+    const auto& shown = setup.protocol.task.question_shows;
+    session::Inputs inputs;
+    Pages pages;
+    const auto summary = session::run(setup, &pages, inputs);
+    std::vector<std::string> expected, found;
+    for (const auto& trial : trials_of(setup, summary.session_id)) {
+      const auto& value = trial.factors.at(shown);
+      const auto* number = std::get_if<double>(&value);
+      auto text = setup.protocol.task.question.at(language);
+      auto written = number ? core::number(*number) : std::get<std::string>(value);
+      if (written == "2.5" && setup.language == "de") written = "2,5";
+      text.replace(text.find("%1"), 2, written);
+      if (expected.empty() || expected.back() != text) expected.push_back(text);
+    }
+    for (const auto& page : pages.sliders)
+      if (found.empty() || found.back() != page.text) found.push_back(page.text);
+    CHECK(found.size() > 4);
+    CHECK(found == expected);
+    const auto about = std::find_if(pages.all.begin(), pages.all.end(), [](const auto& page) {
+      return page.kind == session::PageKind::instructions;
+    });
+    REQUIRE(about != pages.all.end());
+    CHECK(about->text.find("\u2026") != std::string::npos);
+    CHECK(about->text.find("%1") == std::string::npos);
+  }
+}
+
 TEST_CASE("the same setting has a different place on the screen from trial to trial", "[session]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   session::Inputs inputs;
   Pages pages;
   session::run(setup_in(folder, "sim"), &pages, inputs);
   std::set<double> lows;
   for (const auto& page : pages.sliders) {
-    CHECK(page.slider_min <= -25);
-    CHECK(page.slider_max >= 25);
-    CHECK(page.slider_max - page.slider_min == Approx(60));
+    CHECK(page.slider.low <= -25);
+    CHECK(page.slider.high >= 25);
+    CHECK(page.slider.high - page.slider.low == Approx(60));
     CHECK(page.answers.empty());
-    lows.insert(page.slider_min);
+    lows.insert(page.slider.low);
   }
   CHECK(lows.size() > 5);
 }
 
 TEST_CASE("an interrupted adjustment continues with the same settings", "[session]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto setup = setup_in(folder, "sim:bias=3");
   session::Inputs inputs;
   Pages cut;
@@ -193,7 +213,6 @@ struct Operator : session::Monitor {
     expect(Awaited::follow);
     view.surface_follows(spec, plan);
   }
-  void trial_ended(const trial::TrialSpec&, const core::TrialRow&) override {}
 
   /// Makes the first move of a trial, as soon as the view has shown its beginning.
   void begin_moving() {
@@ -242,13 +261,11 @@ TEST_CASE("while the slider moves, the operator's page shows the tone that is pl
   const std::vector<double> moves{-15, -3.5, 8, 20, 2};
   std::size_t moved = 0;
   const auto move = [&] {
-    session::Input input;
-    input.time_ns = system::monotonic_ns();
-    const bool done = moved % (moves.size() + 1) == moves.size();
-    input.kind = done ? session::InputKind::next : session::InputKind::slider;
-    if (!done) input.number = moves[moved % (moves.size() + 1)];
-    ++moved;
-    room.inputs.push(input);
+    const auto at = moved++ % (moves.size() + 1);
+    if (at == moves.size())
+      room.push(session::input::Next{});
+    else
+      room.push(session::input::Slider{moves[at]});
   };
   sees.next_move = move;
   room.reacts = [&](const session::Page& page) {

@@ -243,7 +243,7 @@ TEST_CASE("late reports about a repeated trial do not count for the next one", "
   card.reacts = [&](const session::Page& page) {
     if (page.kind == PageKind::stimulus && card.room.stimuli == 1) {
       card.holding = true;
-      card.room.push(InputKind::repeat);
+      card.room.push(input::Repeat{});
     }
     if (page.kind == PageKind::cue && card.room.stimuli == 1) card.holding = false;
     // From the second stimulus on, the card no longer reports its playback position, so the station cannot

@@ -85,7 +85,7 @@ TEST_CASE("if the pilot is not heard, no stimulus is presented, and the page nam
   card.add_capture(12'345);
   card.wired = false;
   card.reacts = [&](const session::Page& page) {
-    if (page.kind == PageKind::fault && page.fault == FaultKind::capture) card.wired = true;
+    if (page.kind == PageKind::fault && page.fault.kind == FaultKind::capture) card.wired = true;
   };
   const auto trials = card.runs();
   REQUIRE(trials.size() == 3);
@@ -176,7 +176,7 @@ TEST_CASE("a surface that vibrates while the amplifier is off trips the guard, a
       captured[1] += static_cast<std::int32_t>(0x1p31 * level * std::sin(2 * M_PI * cycles));
   };
   card.reacts = [&](const session::Page& page) {
-    if (page.kind == PageKind::fault && page.fault == FaultKind::sounding) stays_on = false;
+    if (page.kind == PageKind::fault && page.fault.kind == FaultKind::sounding) stays_on = false;
   };
   const auto trials = card.runs();
   CHECK(std::count(card.faults.begin(), card.faults.end(), FaultKind::sounding) == (loud ? 1 : 0));

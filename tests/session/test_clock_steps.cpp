@@ -55,8 +55,8 @@ struct SetClock {
     const auto summary = session::run(setup, &room, room.inputs, std::move(devices));
     for (const auto& page : room.pages)
       if (page.kind == PageKind::fault &&
-          page.fault != core::FaultKind::disarmed)  // before the session is armed
-        CHECK(machine_was_busy(page.fault));
+          page.fault.kind != core::FaultKind::disarmed)  // before the session is armed
+        CHECK(machine_was_busy(page.fault.kind));
     const auto trials = trials_of(setup.database, summary);
     if (!trials.empty() && trials.front().outcome == core::Outcome::fault) return std::nullopt;
     check(summary);

@@ -7,6 +7,7 @@
 #include "station/system/thermometer.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/simulated_run.hpp"
 
 using namespace turnpoint;
 using namespace measured;
@@ -50,13 +51,8 @@ struct DriftRun {
 /// Runs the demo protocol in a simulated room that is warmer by `warmth_K` from the third trial on.
 DriftRun run_warm(double warmth_K, Sensors& sensors, const std::string& extra = "") {
   TemporaryFolder folder;
-  session::RunRequest request;
-  request.protocol = shipped("demo");
+  auto request = simulated_run(shipped("demo"), folder / "a.sqlite", 7);
   request.rig = with_capture(folder, kPickUps + extra);
-  request.participant = "P01";
-  request.database = folder / "a.sqlite";
-  request.observer = "sim";
-  request.seed = 7;
   auto setup = session::prepare(request);
   setup.thermometers = sensors.folder.path;
   auto room = std::make_unique<session::SimulatedRoom>(setup.rig);

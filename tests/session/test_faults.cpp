@@ -85,8 +85,8 @@ struct Mishap {
     return std::ranges::count_if(room.pages, [&](const session::Page& page) {
       if (page.kind == PageKind::stimulus) ++stimuli;
       if (page.kind != PageKind::fault || stimuli < 2) return false;
-      INFO(core::name(page.fault) << ": " << page.detail);
-      CHECK(machine_was_busy(page.fault));
+      INFO(core::name(page.fault.kind) << ": " << page.fault.detail);
+      CHECK(machine_was_busy(page.fault.kind));
       return true;
     });
   }
@@ -108,7 +108,7 @@ struct Mishap {
     CHECK(low_when_shown == static_cast<int>(faults.size()));
     const auto logged = events_of(setup.database, summary, "fault");
     REQUIRE_FALSE(logged.empty());
-    CHECK(logged.front().value.find(core::name(faults.front().fault)) == 0);
+    CHECK(logged.front().value.find(core::name(faults.front().fault.kind)) == 0);
     return faults.front();
   }
   session::Page runs() { return runs(devices()); }
@@ -130,15 +130,15 @@ TEST_CASE("the amplifier's own fault causes a fault page", "[session][live][faul
     mishap.room.lines->set(SharedLines::fault, false, system::monotonic_ns());
   };
   const auto page = mishap.runs();
-  CHECK(page.fault == FaultKind::amplifier);
-  CHECK(page.detail.find("the amplifier was switched off after") == 0);
+  CHECK(page.fault.kind == FaultKind::amplifier);
+  CHECK(page.fault.detail.find("the amplifier was switched off after") == 0);
 }
 
 TEST_CASE("a pressed stop causes a fault page", "[session][live][fault]") {
   Mishap mishap;
   mishap.strikes = [&] { mishap.room.lines->set(SharedLines::stop, true, system::monotonic_ns()); };
   mishap.operator_repairs = [&] { mishap.room.lines->set(SharedLines::stop, false, system::monotonic_ns()); };
-  CHECK(mishap.runs().fault == FaultKind::stop_pressed);
+  CHECK(mishap.runs().fault.kind == FaultKind::stop_pressed);
 }
 
 TEST_CASE("an enable line that does not follow causes a fault page", "[session][live][fault]") {
@@ -146,8 +146,8 @@ TEST_CASE("an enable line that does not follow causes a fault page", "[session][
   mishap.strikes = [&] { mishap.enable_broken = true; };
   mishap.operator_repairs = [&] { mishap.enable_broken = false; };
   const auto page = mishap.runs();
-  CHECK(page.fault == FaultKind::enable_line);
-  CHECK(page.detail == "the line was set high but reads low");
+  CHECK(page.fault.kind == FaultKind::enable_line);
+  CHECK(page.fault.detail == "the line was set high but reads low");
 }
 
 TEST_CASE("lost GPIO lines cause a fault page", "[session][live][fault]") {
@@ -158,8 +158,8 @@ TEST_CASE("lost GPIO lines cause a fault page", "[session][live][fault]") {
   };
   mishap.operator_repairs = [&] { mishap.room.lines->put_back(); };
   const auto page = mishap.runs();
-  CHECK(page.fault == FaultKind::lines_gone);
-  CHECK(page.detail == "simulated gpio chip: No such device");
+  CHECK(page.fault.kind == FaultKind::lines_gone);
+  CHECK(page.fault.detail == "simulated gpio chip: No such device");
 }
 
 TEST_CASE("a silent audio thread causes a fault page", "[session][live][fault][threads]") {
@@ -178,13 +178,13 @@ TEST_CASE("a silent audio thread causes a fault page", "[session][live][fault][t
       });
   mishap.strikes = [&] { mishap.audio_lives = false; };
   mishap.operator_repairs = [&] { mishap.audio_lives = true; };
-  CHECK(mishap.runs(std::move(devices)).fault == FaultKind::audio_silent);
+  CHECK(mishap.runs(std::move(devices)).fault.kind == FaultKind::audio_silent);
 }
 
 TEST_CASE("a session that hangs causes a fault page", "[session][live][fault][threads]") {
   Mishap mishap;
   mishap.strikes = [&] { until_low(mishap.room); };  // blocks the session's own thread
-  CHECK(mishap.runs().fault == FaultKind::session_silent);
+  CHECK(mishap.runs().fault.kind == FaultKind::session_silent);
 }
 
 TEST_CASE("a participant's page that hangs causes a fault page", "[session][live][fault]") {
@@ -193,23 +193,23 @@ TEST_CASE("a participant's page that hangs causes a fault page", "[session][live
   inputs.page_alive(system::monotonic_ns() + 3'600'000'000'000);
   mishap.strikes = [&] { inputs.page_alive(system::monotonic_ns() - 1'900'000'000); };
   mishap.operator_repairs = [&] { inputs.page_alive(system::monotonic_ns() + 3'600'000'000'000); };
-  CHECK(mishap.runs().fault == FaultKind::page_silent);
+  CHECK(mishap.runs().fault.kind == FaultKind::page_silent);
 }
 
 TEST_CASE("a suspended machine causes a fault page", "[session][live][fault]") {
   Mishap mishap;
   mishap.strikes = [&] { mishap.slept_ns = 90'000'000'000; };
   const auto page = mishap.runs();
-  CHECK(page.fault == FaultKind::suspended);
-  CHECK(page.detail == "the computer was suspended for 90.0 s");
+  CHECK(page.fault.kind == FaultKind::suspended);
+  CHECK(page.fault.detail == "the computer was suspended for 90.0 s");
 }
 
 TEST_CASE("the loss of the sound device causes a fault page", "[session][live][fault]") {
   Mishap mishap;
   mishap.strikes = [&] { mishap.misfortunes.happen({audio::EventKind::device_lost, 0, 0, 0, -ENODEV}); };
   const auto page = mishap.runs();
-  CHECK(page.fault == FaultKind::converter_gone);
-  CHECK(page.detail == "No such device");
+  CHECK(page.fault.kind == FaultKind::converter_gone);
+  CHECK(page.fault.detail == "No such device");
 }
 
 TEST_CASE("a wrong rate causes a fault page, and arming is refused until the device was reopened",
@@ -220,29 +220,30 @@ TEST_CASE("a wrong rate causes a fault page, and arming is refused until the dev
     if (mishap.faults.size() == 3) mishap.misfortunes.happen({audio::EventKind::device_back, 0, 0, 0, 0});
   };
   const auto page = mishap.runs();
-  CHECK(page.fault == FaultKind::converter_rate);
-  CHECK(page.detail.find("96000.0 Hz instead of ") == 0);
+  CHECK(page.fault.kind == FaultKind::converter_rate);
+  CHECK(page.fault.detail.find("96000.0 Hz instead of ") == 0);
   REQUIRE(mishap.faults.size() >= 3);
-  CHECK(mishap.faults[1].detail.find("refused: sound device running at a wrong rate") == 0);
+  CHECK(mishap.faults[1].fault.detail.find("refused: sound device running at a wrong rate") == 0);
 }
 
 TEST_CASE("clipping causes a fault page", "[session][live][fault]") {
   Mishap mishap;
   mishap.strikes = [&] { mishap.misfortunes.clipped = 384; };
   const auto page = mishap.runs();
-  CHECK(page.fault == FaultKind::converter_saturated);
-  CHECK(page.detail == "384 samples clipped");
+  CHECK(page.fault.kind == FaultKind::converter_saturated);
+  CHECK(page.fault.detail == "384 samples clipped");
 }
 
 TEST_CASE("an amplifier that nobody has armed causes a fault page", "[session][live][fault]") {
   Mishap mishap;
-  mishap.strikes = [&] { mishap.room.push(InputKind::disarm); };
+  mishap.strikes = [&] { mishap.room.push(input::Disarm{}); };
   mishap.room.reacts = [&](const auto& page) { mishap.react(page); };
   const auto summary = session::run(mishap.setup, &mishap.room, mishap.room.inputs, mishap.devices());
   CHECK(summary.status == core::SessionStatus::completed);
-  CHECK(mishap.room.pages.front().fault == FaultKind::disarmed);  // the first page, before the first arming
+  CHECK(mishap.room.pages.front().fault.kind ==
+        FaultKind::disarmed);  // the first page, before the first arming
   REQUIRE_FALSE(mishap.faults.empty());
-  CHECK(mishap.faults.front().fault == FaultKind::disarmed);
+  CHECK(mishap.faults.front().fault.kind == FaultKind::disarmed);
 }
 
 TEST_CASE("a stimulus that came too late causes a fault page", "[session][live][fault]") {
@@ -252,7 +253,7 @@ TEST_CASE("a stimulus that came too late causes a fault page", "[session][live][
   const auto summary = session::run(mishap.setup, &mishap.room, mishap.room.inputs, mishap.devices());
   CHECK(summary.voided == 1);
   REQUIRE_FALSE(mishap.faults.empty());
-  CHECK(mishap.faults.front().fault == FaultKind::stimulus_missed);
+  CHECK(mishap.faults.front().fault.kind == FaultKind::stimulus_missed);
 }
 
 TEST_CASE("an answer to a stimulus that a stalled drive has not begun causes a fault page",
@@ -264,8 +265,8 @@ TEST_CASE("an answer to a stimulus that a stalled drive has not begun causes a f
   };
   mishap.operator_repairs = [&] { mishap.misfortunes.stalled = false; };
   const auto page = mishap.runs();
-  CHECK(page.fault == FaultKind::stimulus_missed);
-  CHECK(page.detail == "the trial was answered before the drive had begun the stimulus");
+  CHECK(page.fault.kind == FaultKind::stimulus_missed);
+  CHECK(page.fault.detail == "the trial was answered before the drive had begun the stimulus");
 }
 
 TEST_CASE("a limit of the rig is shown on a page; the session ends there, with the reason",
@@ -277,9 +278,9 @@ TEST_CASE("a limit of the rig is shown on a page; the session ends there, with t
   CHECK(summary.status == core::SessionStatus::interrupted);
   const auto& pages = mishap.room.pages;
   const auto page = std::find_if(pages.begin(), pages.end(),
-                                 [](const auto& shown) { return shown.fault == FaultKind::limits; });
+                                 [](const auto& shown) { return shown.fault.kind == FaultKind::limits; });
   REQUIRE(page != pages.end());
   CHECK(page->kind == PageKind::fault);
-  CHECK(page->detail == summary.reason);
+  CHECK(page->fault.detail == summary.reason);
   CHECK(events_of(mishap.setup.database, summary, "fault").size() == 1);
 }

@@ -42,7 +42,7 @@ struct Watcher : session::Display {
     if (trials.empty() || !guidance.force || !guidance.force->value) return;
     // What the bars show in the pause counts as part of the first interval; what they show after the second
     // interval counts as part of the second.
-    const bool second = page.interval == 2;
+    const bool second = page.interval.number == 2;
     if (page.kind == session::PageKind::cue || page.kind == session::PageKind::interval) return;
     auto& seen = trials.back();
     seen.force[second] += *guidance.force->value;

@@ -10,7 +10,9 @@
 #include "station/session/resume.hpp"
 #include "station/store/verify.hpp"
 #include "tests/session/live_room.hpp"
+#include "tests/session/screen.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/simulated_run.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
@@ -95,18 +97,14 @@ struct Person : Room {
     reacts = [this](const session::Page& page) { react(page); };
   }
   void react(const session::Page& page) {
-    if (page.kind == PageKind::explanation && !page.playing) return push(InputKind::next);
+    if (page.kind == PageKind::explanation && !page.playing) return push(input::Next{});
     const bool typed = page.kind == PageKind::number || page.kind == PageKind::line;
     if (page.kind != PageKind::question && !typed) return cooperate(page);
-    if (next_reply >= replies.size()) return push(InputKind::stop);
+    if (next_reply >= replies.size()) return push(input::Stop{});
     const double reply = replies[next_reply++];
-    if (reply < 0) return push(InputKind::back);
-    if (!typed) return push(InputKind::answer, static_cast<int>(reply));
-    session::Input input;
-    input.time_ns = system::monotonic_ns();
-    input.kind = InputKind::value;
-    input.number = reply;
-    inputs.push(input);
+    if (reply < 0) return push(input::Back{});
+    if (!typed) return push(input::Answer{static_cast<int>(reply)});
+    push(input::Value{reply});
   }
 };
 
@@ -115,15 +113,6 @@ session::Setup visit(const TemporaryFolder& folder) {
   setup.protocol = protocol::parse(around(protocol_text("buttons")), "live.toml");
   return setup;
 }
-
-/// Simulates a crash: it throws an exception after a number of pages.
-struct Cut : session::Display {
-  int pages;
-  explicit Cut(int n) : pages(n) {}
-  void show(const session::Page&) override {
-    if (--pages == 0) throw std::runtime_error("the plug was pulled");
-  }
-};
 
 }  // namespace
 
@@ -152,10 +141,10 @@ TEST_CASE("an answer that the item does not allow, and a response button, answer
   person.reacts = [&](const session::Page& page) {
     if (page.kind == PageKind::question) {
       person.press(0);
-      person.push(InputKind::answer, 7);
-      if (!page.back) person.push(InputKind::back);
+      person.push(input::Answer{7});
+      if (!page.back) person.push(input::Back{});
     }
-    if (page.kind == PageKind::question && page.back) return person.push(InputKind::stop);
+    if (page.kind == PageKind::question && page.back) return person.push(input::Stop{});
     react(page);
   };
   const auto summary = session::run(setup, &person, person.inputs, person.devices());
@@ -189,8 +178,8 @@ TEST_CASE("an example is presented as often as the participant wishes", "[sessio
   int wishes = 3, back = 1;
   person.reacts = [&](const session::Page& page) {
     const bool explained = page.kind == PageKind::explanation && !page.playing;
-    if (explained && page.text == "Second." && back-- > 0) return person.push(InputKind::back);
-    if (explained && !page.answers.empty() && wishes-- > 0) return person.push(InputKind::answer, 0);
+    if (explained && page.text == "Second." && back-- > 0) return person.push(input::Back{});
+    if (explained && !page.answers.empty() && wishes-- > 0) return person.push(input::Answer{0});
     react(page);
   };
   const auto summary = session::run(setup, &person, person.inputs, person.devices());
@@ -214,13 +203,8 @@ TEST_CASE("a session killed at any question goes on with the next one", "[sessio
   const TemporaryFolder folder;
   const auto path = folder / "visit.toml";
   std::ofstream(path) << around(protocol_text("buttons"));
-  session::RunRequest request;
-  request.protocol = path;
-  request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
-  request.participant = "P01";
-  request.database = folder / "whole.sqlite";
-  request.observer = "sim";
-  request.seed = 3;  // with this seed, the simulated participant gives a mood that passes the screening
+  // With this seed, the simulated participant gives a mood that passes the screening.
+  auto request = simulated_run(path, folder / "whole.sqlite", 3);
   session::Inputs inputs;
   const auto whole = session::run(session::prepare(request), nullptr, inputs);
   REQUIRE(whole.status == core::SessionStatus::completed);
@@ -229,7 +213,7 @@ TEST_CASE("a session killed at any question goes on with the next one", "[sessio
   for (int page = 1; page <= 12; ++page) {
     INFO("killed at page " << page);
     request.database = folder / ("cut" + std::to_string(page) + ".sqlite");
-    Cut cut(page);
+    Screen cut(page);
     try {
       session::run(session::prepare(request), &cut, inputs);
     } catch (const std::runtime_error&) {

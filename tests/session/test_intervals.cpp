@@ -12,6 +12,7 @@
 #include "station/store/read.hpp"
 #include "tests/session/many_tones.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/simulated_run.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 // Tests when intervals reach the surface, for buffers of different lengths. The times come from the records
@@ -34,13 +35,8 @@ std::vector<core::TrialRow> session_of(const std::string& protocol, const Buffer
                                        const std::string& rig = std::string(TURNPOINT_SOURCE_DIR) +
                                                                 "/tests/support/thin_plate.toml") {
   const TemporaryFolder folder;
-  session::RunRequest request;
-  request.protocol = protocol;
+  auto request = simulated_run(protocol, folder / "a.sqlite", 5);
   request.rig = rig;
-  request.participant = "P01";
-  request.database = folder / "a.sqlite";
-  request.observer = "sim";
-  request.seed = 5;
   request.headless = true;
   auto setup = session::prepare(request);
   setup.rig.output.period_frames = buffer.period_frames;
@@ -170,7 +166,7 @@ TEST_CASE("pages of ABX and match-to-sample call the intervals by the letters of
   struct Pages : session::Display {
     std::vector<std::string> names;
     void show(const session::Page& page) override {
-      if (page.kind == session::PageKind::stimulus) names = page.interval_names;
+      if (page.kind == session::PageKind::stimulus) names = page.interval.names;
     }
   };
   using Words = std::vector<std::string>;
@@ -184,12 +180,7 @@ TEST_CASE("pages of ABX and match-to-sample call the intervals by the letters of
       source.replace(source.find("{ id = \"second\""), 0,
                      "{ id = \"x\", label = { en = \"X\", de = \"X\", ja = \"X\" } },\n");
     std::ofstream(folder / "p.toml") << source;
-    session::RunRequest request;
-    request.protocol = folder / "p.toml";
-    request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
-    request.participant = "P01";
-    request.database = folder / "a.sqlite";
-    request.observer = "sim";
+    auto request = simulated_run(folder / "p.toml", folder / "a.sqlite");
     request.headless = true;
     const auto setup = session::prepare(request);
     Pages pages;

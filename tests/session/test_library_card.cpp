@@ -26,7 +26,6 @@
 #include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
-using live_room::InputKind;
 using live_room::PageKind;
 
 namespace turnpoint {
@@ -171,7 +170,7 @@ TEST_CASE("a live session reads its force cells through alsa-lib, and stores wha
   live_room::Room room;
   std::string faults;
   room.reacts = [&](const session::Page& page) {
-    if (page.kind == PageKind::fault) faults += page.text + " " + page.detail + "; ";
+    if (page.kind == PageKind::fault) faults += page.text + " " + page.fault.detail + "; ";
     finger.touches_at = page.kind == PageKind::stimulus ? LibraryCard::frame_now() + 20'000 : -1;
     if (page.kind == PageKind::response) return room.press(0);
     if (page.kind != PageKind::stimulus) room.cooperate(page);
@@ -203,6 +202,64 @@ TEST_CASE("a live session reads its force cells through alsa-lib, and stores wha
     CHECK(*std::max_element(values[0].begin(), values[0].end()) == Approx(kNormal_N).epsilon(0.1));
   }
   CHECK(rows == (finger.wire_off ? 0 : 2));
+}
+
+TEST_CASE(
+    "a level of the mixer that changes during a session stops it at the end of the block, or is stored with "
+    "the reason",
+    "[session][alsa][mixer]") {
+  using Kind = LibraryCard::Control::Kind;
+  const TemporaryFolder folder;
+  use_plugin(folder);
+  auto setup = setup_on(folder);
+  setup.rig.capture.reset();
+  card.played_channels = session::session_stream(setup.rig).output.channels;
+  card.controls = {{Kind::level, "Digital Playback Volume", {207, 207}},
+                   {Kind::toggle, "Speaker Switch", {1, 0}}};
+  setup.rig.mixer = session::mixer_levels(setup.rig);
+  REQUIRE(setup.rig.mixer.size() == 2);
+  // What happens after the first stimulus, and what the operator then says.
+  enum class Change { none, level, muted, renamed, gone, again };
+  const auto [change, continues] = GENERATE(table<Change, bool>({{Change::none, true},
+                                                                 {Change::level, true},
+                                                                 {Change::again, true},
+                                                                 {Change::level, false},
+                                                                 {Change::muted, false},
+                                                                 {Change::renamed, false},
+                                                                 {Change::gone, false}}));
+  live_room::Room room;
+  int asked = 0;
+  room.reacts = [&, change = change, continues = continues](const session::Page& page) {
+    if (page.kind == PageKind::fault && page.fault.kind == core::FaultKind::self_test) {
+      ++asked;
+      if (change == Change::again) card.controls[0].values = {207, 207};
+      return room.push(continues ? live_room::input::Any(live_room::input::Note{"set back by hand"})
+                                 : live_room::input::Stop{});
+    }
+    if (page.kind == PageKind::stimulus && (change == Change::level || change == Change::again))
+      card.controls[0].values = {207, 180};
+    if (page.kind == PageKind::stimulus && change == Change::muted) card.controls[1].values = {0, 0};
+    if (page.kind == PageKind::stimulus && change == Change::renamed)
+      card.controls[0].name = "Master Playback Volume";
+    if (page.kind == PageKind::stimulus && change == Change::gone) card.controls.clear();
+    if (page.kind == PageKind::response) return room.press(0);
+    if (page.kind != PageKind::stimulus) room.cooperate(page);
+  };
+  const auto summary = session::run(setup, &room, room.inputs, room.devices());
+  const auto events = live_room::events_of(setup.database, summary, "mixer");
+  CHECK(asked == (change == Change::none ? 0 : 1));
+  REQUIRE(events.size() == (change == Change::none ? 0 : 1));
+  const bool completes = change == Change::none || continues;
+  CHECK(summary.status == (completes ? core::SessionStatus::completed : core::SessionStatus::interrupted));
+  if (change == Change::level)
+    CHECK(events[0].value ==
+          std::string("the control \"Digital Playback Volume\" of the sound card is at 207, 180; "
+                      "during the calibration it was at 207, 207") +
+              (continues ? "; continued: set back by hand" : ""));
+  if (change == Change::muted)
+    CHECK(events[0].value.find("\"Speaker Switch\" of the sound card is at off") != std::string::npos);
+  if (!completes) CHECK(summary.reason.find("mixer: ") == 0);
+  card.controls.clear();
 }
 
 TEST_CASE("the mixer's levels belong to a calibration", "[session][alsa][mixer]") {
@@ -252,8 +309,9 @@ TEST_CASE("the mixer's levels belong to a calibration", "[session][alsa][mixer]"
   SECTION("a level that was changed is named with both values") {
     card.controls[0].values = {207, 180};
     CHECK(check().verdict == core::Verdict::failed);
-    CHECK(check().what == "the control \"Digital Playback Volume\" of the sound card is at 207, 180; during the "
-                          "calibration it was at 207, 207");
+    CHECK(check().what ==
+          "the control \"Digital Playback Volume\" of the sound card is at 207, 180; during the "
+          "calibration it was at 207, 207");
   }
   SECTION("a switch and a choice that were changed are named too") {
     card.controls[1].values = {1, 0}, card.controls[2].values = {0, 0};
@@ -262,8 +320,9 @@ TEST_CASE("the mixer's levels belong to a calibration", "[session][alsa][mixer]"
   }
   SECTION("a control that is gone is named") {
     card.controls.erase(card.controls.begin());
-    CHECK(check().what == "the control \"Digital Playback Volume\" of the sound card cannot be read; during the "
-                          "calibration it was at 207, 207");
+    CHECK(check().what ==
+          "the control \"Digital Playback Volume\" of the sound card cannot be read; during the "
+          "calibration it was at 207, 207");
   }
   SECTION("a calibration is not continued with other levels") {
     maintenance::write_calibration(made, rig, path);

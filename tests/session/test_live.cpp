@@ -66,9 +66,9 @@ TEST_CASE("the amplifier is never enabled before the operator arms it", "[sessio
   Room room;
   room.reacts = [&room](const auto& page) {
     if (page.kind != PageKind::fault) return;
-    room.push(InputKind::next);  // an impatient participant taps "Next"
+    room.push(input::Next{});  // an impatient participant taps "Next"
     room.press(0);
-    room.push(InputKind::stop);
+    room.push(input::Stop{});
   };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
   CHECK(summary.trials == 0);
@@ -92,10 +92,10 @@ TEST_CASE(
       pressed_ns = system::monotonic_ns();
       return room.lines->set(SharedLines::stop, true, pressed_ns);
     }
-    if (page.kind == PageKind::fault && page.fault == session::FaultKind::stop_pressed &&
+    if (page.kind == PageKind::fault && page.fault.kind == session::FaultKind::stop_pressed &&
         room.lines->level(SharedLines::stop)) {
       // First try to arm while the stop is still pressed: this must be refused.
-      if (page.detail.find("refused") == std::string::npos) return room.push(InputKind::arm);
+      if (page.fault.detail.find("refused") == std::string::npos) return room.push(input::Arm{});
       room.lines->set(SharedLines::stop, false, system::monotonic_ns());
     }
     room.cooperate(page);
@@ -129,8 +129,8 @@ TEST_CASE(
   int refused = 0;
   room.reacts = [&](const auto& page) {
     if (page.kind == PageKind::stimulus && room.stimuli == 1) return room.lines->remove();
-    if (page.kind == PageKind::fault && page.fault == session::FaultKind::lines_gone &&
-        page.detail.find("refused: GPIO lines disconnected") == 0 && ++refused == 2)
+    if (page.kind == PageKind::fault && page.fault.kind == session::FaultKind::lines_gone &&
+        page.fault.detail.find("refused: GPIO lines disconnected") == 0 && ++refused == 2)
       room.lines->put_back();
     room.cooperate(page);
   };
@@ -152,7 +152,7 @@ TEST_CASE("faults that occur while a fault page is shown are cleared together wi
   Room room;
   bool pressed = false;
   room.reacts = [&](const auto& page) {
-    if (page.kind == PageKind::stimulus && room.stimuli == 1) return room.push(InputKind::fault);
+    if (page.kind == PageKind::stimulus && room.stimuli == 1) return room.push(session::Fault{});
     if (page.kind == PageKind::fault && room.stimuli == 1 && !std::exchange(pressed, true)) {
       // this fault does not disarm the amplifier, so the page offers only Continue
       CHECK(page.amplifier.empty());
@@ -160,7 +160,7 @@ TEST_CASE("faults that occur while a fault page is shown are cleared together wi
     }
     if (page.kind == PageKind::fault && pressed && room.lines->level(SharedLines::stop)) {
       room.lines->set(SharedLines::stop, false, system::monotonic_ns());
-      room.push(InputKind::fault);  // a third fault before anybody has armed
+      room.push(session::Fault{});  // a third fault before anybody has armed
     }
     room.cooperate(page);
   };
@@ -180,7 +180,7 @@ TEST_CASE("continuing before the lost buttons are back shows the fault page agai
   int told = 0;
   room.reacts = [&](const auto& page) {
     if (page.kind == PageKind::stimulus && room.stimuli == 1) return buttons->remove();
-    if (page.kind == PageKind::fault && page.fault == session::FaultKind::lines_gone && ++told == 3) {
+    if (page.kind == PageKind::fault && page.fault.kind == session::FaultKind::lines_gone && ++told == 3) {
       CHECK(page.amplifier.empty());  // the amplifier's lines are on another chip, so it stays armed
       buttons->put_back();
     }
@@ -219,7 +219,7 @@ TEST_CASE("disarming by the operator makes the trial void, and arming again cont
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
   room.reacts = [&](const auto& page) {
-    if (page.kind == PageKind::stimulus && room.stimuli == 1) return room.push(InputKind::disarm);
+    if (page.kind == PageKind::stimulus && room.stimuli == 1) return room.push(input::Disarm{});
     room.cooperate(page);
   };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
@@ -268,7 +268,7 @@ TEST_CASE("the interval between trials is lengthened to keep the limit of duty, 
   room.reacts = [&](const auto& page) {
     if (page.kind == PageKind::stimulus) return;  // explore until the stimulus ends, and answer afterwards
     if (page.kind == PageKind::response) return room.press(1);
-    if (page.kind == PageKind::interval && room.stimuli == 1) return room.push(InputKind::stop);
+    if (page.kind == PageKind::interval && room.stimuli == 1) return room.push(input::Stop{});
     room.cooperate(page);
   };
   const auto first = session::run(setup, &room, room.inputs, room.devices());
@@ -280,10 +280,10 @@ TEST_CASE("the interval between trials is lengthened to keep the limit of duty, 
   std::jthread stops;
   again.reacts = [&](const auto& page) {
     if (page.kind == PageKind::instructions) {
-      again.push(InputKind::next);
+      again.push(input::Next{});
       stops = std::jthread([&again] {
         system::sleep_until_ns(system::monotonic_ns() + 300'000'000);
-        again.push(InputKind::stop);
+        again.push(input::Stop{});
       });
       return;
     }

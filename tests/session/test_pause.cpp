@@ -25,20 +25,20 @@ struct PausingRoom : Room {
   std::jthread patience{[this](const std::stop_token& stop) {
     for (int i = 0; i < 200 && !stop.stop_requested(); ++i)
       system::sleep_until_ns(system::monotonic_ns() + 50'000'000);
-    push(InputKind::stop);
+    push(input::Stop{});
   }};
 
   void ask() {
     asked = true;
     asked_at = pages.size();
-    push(InputKind::pause);
+    push(input::Pause{});
   }
 
   session::Summary run(const std::function<bool(const session::Page&)>& asks) {
     reacts = [this, asks](const auto& page) {
       if (!asked && asks(page)) return ask();
       cooperate(page);
-      if (page.kind == PageKind::rest && page.remaining_s <= 0) push(InputKind::next);
+      if (page.kind == PageKind::rest && page.remaining_s <= 0) push(input::Next{});
     };
     return session::run(setup, this, inputs, devices());
   }
@@ -89,8 +89,6 @@ TEST_CASE("a pause while the row of a trial is being stored comes before the nex
   struct Storing : session::Monitor {
     PausingRoom& room;
     explicit Storing(PausingRoom& in) : room(in) {}
-    void trial_begins(const trial::TrialSpec&, const protocol::Block&,
-                      const session::PlanAhead::Plans&) override {}
     void trial_ended(const trial::TrialSpec&, const core::TrialRow& row) override {
       // A machine that stalls makes a trial void; then a fault page comes first.
       if (!room.asked && row.outcome == core::Outcome::answered) room.ask();
@@ -114,7 +112,7 @@ TEST_CASE("a pause is shown at once while the limit of duty lengthens the interv
     if (page.kind == PageKind::response) return room.press(0);
     // The first page is that of the interval itself; the second is shown while the interval is lengthened.
     if (page.kind == PageKind::interval && room.count(PageKind::interval) == 2) return room.ask();
-    if (page.kind == PageKind::interval && room.asked) return room.push(InputKind::stop);
+    if (page.kind == PageKind::interval && room.asked) return room.push(input::Stop{});
     room.cooperate(page);
   };
   const auto summary = session::run(room.setup, &room, room.inputs, room.devices());
@@ -130,7 +128,7 @@ TEST_CASE("a pause that comes together with a fault is not forgotten when the fa
   PausingRoom room;
   const auto summary = room.run([&room](const auto& page) {
     if (page.kind != PageKind::stimulus) return false;
-    room.push(InputKind::fault);
+    room.push(session::Fault{});
     return true;
   });
   CHECK(summary.status == core::SessionStatus::completed);
@@ -144,13 +142,10 @@ TEST_CASE("a press of Continue that was meant for the previous page does not lea
   std::jthread stops;
   room.reacts = [&](const auto& page) {
     if (page.kind != PageKind::instructions) return room.cooperate(page);
-    session::Input late;
-    late.time_ns = system::monotonic_ns() - 300'000'000;
-    late.kind = InputKind::next;
-    room.inputs.push(late);
+    room.push(input::Next{}, -300'000'000);
     stops = std::jthread([&room] {
       system::sleep_until_ns(system::monotonic_ns() + 300'000'000);
-      room.push(InputKind::stop);
+      room.push(input::Stop{});
     });
   };
   const auto summary = session::run(room.setup, &room, room.inputs, room.devices());

@@ -21,6 +21,7 @@
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/quick_rig.hpp"
+#include "tests/support/simulated_run.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
@@ -31,13 +32,8 @@ namespace {
 const std::string kRoot = TURNPOINT_SOURCE_DIR;
 
 session::RunRequest training_for(const std::string& participant, const std::string& database) {
-  session::RunRequest request;
-  request.protocol = kRoot + "/protocols/friction-training.toml";
-  request.rig = kRoot + "/tests/support/thin_plate.toml";
+  auto request = simulated_run(kRoot + "/protocols/friction-training.toml", database, 7);
   request.participant = participant;
-  request.database = database;
-  request.observer = "sim";
-  request.seed = 7;
   return request;
 }
 
@@ -280,8 +276,6 @@ TEST_CASE("a procedure that continues goes on where the participant's last sessi
   SECTION("the second session continues, also after an interruption; another person begins anew") {
     struct Cut : session::Monitor {
       int left = 5;
-      void trial_begins(const trial::TrialSpec&, const protocol::Block&,
-                        const session::PlanAhead::Plans&) override {}
       void trial_ended(const trial::TrialSpec&, const core::TrialRow&) override {
         if (--left == 0) throw std::runtime_error("cut");
       }

@@ -213,9 +213,9 @@ TEST_CASE("a session with people pauses when its program dies, and Continue star
   CHECK(summary.answered == ProgramSession::trials);
   std::vector<session::Page> faults;
   for (const auto& page : room.pages)
-    if (page.kind == PageKind::fault && page.fault == core::FaultKind::program) faults.push_back(page);
+    if (page.kind == PageKind::fault && page.fault.kind == core::FaultKind::program) faults.push_back(page);
   REQUIRE(faults.size() == 1);
-  CHECK_THAT(faults[0].detail, ContainsSubstring("ended with status 4: \"out of paper\""));
+  CHECK_THAT(faults[0].fault.detail, ContainsSubstring("ended with status 4: \"out of paper\""));
   // Every answer is "left", which is right for levels below 0, so each level is 1 lower than the one before.
   const auto stored = session.stored(summary.session_id);
   double level = -5;
@@ -234,8 +234,8 @@ TEST_CASE("a session with people that stops at the page of a failed program can 
   session.setup.run_mode = core::RunMode::pilot;
   live_room::Room room;
   room.reacts = [&](const auto& page) {
-    if (page.kind == live_room::PageKind::fault && page.fault == core::FaultKind::program)
-      room.push(live_room::InputKind::stop);
+    if (page.kind == live_room::PageKind::fault && page.fault.kind == core::FaultKind::program)
+      room.push(live_room::input::Stop{});
     else
       room.cooperate(page);
   };

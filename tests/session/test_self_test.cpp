@@ -347,13 +347,9 @@ TEST_CASE("in the room, the operator ends a session after a failed check, or wri
   setup.self_test = true;
   const bool continues = GENERATE(true, false);
   room.reacts = [&](const Page& page) {
-    if (page.kind != PageKind::fault || page.fault != FaultKind::self_test) return room.cooperate(page);
-    CHECK(page.detail.find("gate: the gate stays open") == 0);
-    Input input;
-    input.time_ns = system::monotonic_ns();
-    input.kind = continues ? InputKind::note : InputKind::stop;
-    if (continues) input.text = "the oscilloscope shows that it shuts";
-    room.inputs.push(input);
+    if (page.kind != PageKind::fault || page.fault.kind != FaultKind::self_test) return room.cooperate(page);
+    CHECK(page.fault.detail.find("gate: the gate stays open") == 0);
+    room.push(continues ? input::Any(input::Note{"the oscilloscope shows that it shuts"}) : input::Stop{});
   };
   const auto lines = std::make_shared<io::SimulatedAmplifierLines>();
   lines->bridge_monostable();

@@ -1,4 +1,3 @@
-#include <unistd.h>
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -10,8 +9,11 @@
 #include "station/session/resume.hpp"
 #include "station/session/session.hpp"
 #include "station/store/read.hpp"
+#include "tests/session/screen.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/simulated_run.hpp"
 #include "tests/support/stochastic_approximation.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
 namespace fs = std::filesystem;
@@ -20,26 +22,8 @@ namespace {
 
 const std::string kSource = TURNPOINT_SOURCE_DIR;
 
-/// A folder for one test, removed afterwards.
-struct Folder {
-  fs::path path;
-  Folder() : path(fs::temp_directory_path() / ("turnpoint-session-" + std::to_string(::getpid()))) {
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  ~Folder() { fs::remove_all(path); }
-  std::string operator/(const std::string& name) const { return (path / name).string(); }
-};
-
 session::RunRequest request_for(const std::string& protocol, const std::string& database) {
-  session::RunRequest request;
-  request.protocol = kSource + "/protocols/" + protocol + ".toml";
-  request.rig = kSource + "/tests/support/thin_plate.toml";
-  request.participant = "P01";
-  request.database = database;
-  request.observer = "sim";
-  request.seed = 20261121;
-  return request;
+  return simulated_run(kSource + "/protocols/" + protocol + ".toml", database, 20261121);
 }
 
 session::Summary run(const session::RunRequest& request) {
@@ -66,19 +50,10 @@ struct Watch : session::Monitor {
   }
 };
 
-/// Simulates a crash: it throws an exception after a number of pages.
-struct Cut : session::Display {
-  int pages;
-  explicit Cut(int n) : pages(n) {}
-  void show(const session::Page&) override {
-    if (--pages == 0) throw std::runtime_error("the plug was pulled");
-  }
-};
-
 }  // namespace
 
 TEST_CASE("the demo protocol runs and its trials are stored in SQLite", "[session]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto summary = run(request_for("demo", folder / "a.sqlite"));
   CHECK(summary.status == core::SessionStatus::completed);
   const auto trials = trials_of(folder / "a.sqlite", summary.session_id);
@@ -97,7 +72,7 @@ TEST_CASE("the demo protocol runs and its trials are stored in SQLite", "[sessio
 }
 
 void runs_to_its_end(const std::string& protocol) {
-  const Folder folder;
+  const TemporaryFolder folder;
   INFO(protocol);
   const auto summary = run(request_for(protocol, folder / "b.sqlite"));
   CHECK(summary.status == core::SessionStatus::completed);
@@ -126,7 +101,7 @@ TEST_CASE("the shipped speed and accuracy protocol runs to its end", "[session]"
 TEST_CASE("the shipped oddity protocol runs to its end", "[session]") { runs_to_its_end("two-spots-oddity"); }
 
 TEST_CASE("a simulated observer that can never answer in time does not go on for ever", "[session]") {
-  Folder folder;
+  TemporaryFolder folder;
   auto request = request_for("friction-rating", folder / "a.sqlite");
   std::ifstream shipped(request.protocol);
   std::string text{std::istreambuf_iterator<char>(shipped), {}};
@@ -142,7 +117,7 @@ TEST_CASE("a simulated observer that can never answer in time does not go on for
 }
 
 TEST_CASE("the same seed gives the same trials and answers", "[session]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto first = run(request_for("demo", folder / "a.sqlite")),
              second = run(request_for("demo", folder / "b.sqlite"));
   const auto a = trials_of(folder / "a.sqlite", first.session_id),
@@ -159,13 +134,13 @@ TEST_CASE("the same seed gives the same trials and answers", "[session]") {
 TEST_CASE(
     "a session cut at any page continues with the same trial that the uninterrupted session would have shown",
     "[session]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto whole = run(request_for("demo", folder / "whole.sqlite"));
   const auto expected = trials_of(folder / "whole.sqlite", whole.session_id);
   for (int page = 8; page < 40; page += 6) {
     INFO("cut at page " << page);
     const auto database = folder / ("cut" + std::to_string(page) + ".sqlite");
-    Cut cut(page);
+    Screen cut(page);
     session::Inputs inputs;
     auto setup = session::prepare(request_for("demo", database));
     setup.protocol.resume.warmup = 0;
@@ -190,7 +165,7 @@ TEST_CASE(
 TEST_CASE(
     "an accelerated stochastic approximation that is interrupted in a track continues at the same level",
     "[session]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   std::ofstream(folder / "asa.toml") << stochastic_approximation();
   const auto request = [&](const std::string& database) {
     auto made = request_for("", folder / database);
@@ -205,7 +180,7 @@ TEST_CASE(
   for (const int page : {70, 100, 130}) {
     INFO("cut at page " << page);
     const auto database = "cut" + std::to_string(page) + ".sqlite";
-    Cut cut(page);
+    Screen cut(page);
     session::Inputs inputs;
     CHECK_THROWS_AS(session::run(session::prepare(request(database)), &cut, inputs), std::runtime_error);
     const auto before = store::list_sessions(folder / database).front().trials;
@@ -228,8 +203,8 @@ TEST_CASE(
 }
 
 TEST_CASE("a session log is not continued with a different protocol text", "[session]") {
-  const Folder folder;
-  Cut cut(30);
+  const TemporaryFolder folder;
+  Screen cut(30);
   session::Inputs inputs;
   auto setup = session::prepare(request_for("demo", folder / "a.sqlite"));
   CHECK_THROWS(session::run(setup, &cut, inputs));
@@ -243,8 +218,8 @@ TEST_CASE("a session log is not continued with a different protocol text", "[ses
 TEST_CASE("a session log is not continued if factors would be combined in another way", "[session]") {
   // If the levels of a balanced factor are in another order, the staircase presents the same levels, but the
   // positions of the marks change.
-  const Folder folder;
-  Cut cut(60);
+  const TemporaryFolder folder;
+  Screen cut(60);
   session::Inputs inputs;
   CHECK_THROWS(
       session::run(session::prepare(request_for("boundary-constant", folder / "a.sqlite")), &cut, inputs));
@@ -262,7 +237,7 @@ TEST_CASE("a session log is not continued if factors would be combined in anothe
 }
 
 TEST_CASE("all mistakes in a request are reported at once, and nothing is written", "[session]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   auto request = request_for("demo", folder / "a.sqlite");
   request.participant = "Jane Doe";
   request.language = "xx";
@@ -277,7 +252,7 @@ TEST_CASE("all mistakes in a request are reported at once, and nothing is writte
 }
 
 TEST_CASE("a monitor is notified before and after every trial and does not change any trial", "[session]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   Watch watch;
   session::Inputs inputs;
   const auto watched =
@@ -298,7 +273,7 @@ TEST_CASE(
     "the latency of the response device and the consent form are stored, and response times are not "
     "corrected",
     "[session]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   auto setup = session::prepare(request_for("demo", folder / "a.sqlite"));
   setup.response_offset_s = 0.0625;
   setup.consent_version = "2026-03";
@@ -319,9 +294,9 @@ TEST_CASE(
 }
 
 TEST_CASE("a simulated session is not continued with another simulated observer", "[session]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto database = folder / "a.sqlite";
-  Cut cut(30);
+  Screen cut(30);
   session::Inputs inputs;
   const auto setup = session::prepare(request_for("demo", database));
   CHECK_THROWS_AS(session::run(setup, &cut, inputs), std::runtime_error);

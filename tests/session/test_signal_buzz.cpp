@@ -12,6 +12,7 @@
 #include "station/trial/timing.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/replaced.hpp"
 
 using namespace turnpoint;
 using namespace measured;
@@ -23,12 +24,6 @@ constexpr double kLength_s = 0.06;
 const char* const kBuzzing =
     "[scene.buzz]\ntones = [{ frequency_Hz = 30000, displacement_um = 0.4 }, { frequency_Hz = 30150, "
     "displacement_um = 0.4 }]\n\n[task]";
-
-std::string replaced(std::string text, const std::string& old, const std::string& with) {
-  const auto at = text.find(old);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, old.size(), with);
-}
 
 std::string source(const std::string& by = "by = \"buzz\", scene = \"buzz\", length_ms = 60",
                    const std::string& buzz = kBuzzing) {

@@ -6,17 +6,12 @@
 #include "station/core/read_file.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/replaced.hpp"
 
 using namespace turnpoint;
 using namespace measured;
 
 namespace {
-
-std::string replaced(std::string text, const std::string& old, const std::string& with) {
-  const auto at = text.find(old);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, old.size(), with);
-}
 
 /// Remembers when the flashes of a session were due.
 struct Flashes : session::Display {

@@ -11,18 +11,13 @@
 #include "station/session/stage.hpp"
 #include "station/trial/timing.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/replaced.hpp"
 
 using namespace turnpoint;
 
 namespace {
 
 const std::string kRoot = TURNPOINT_SOURCE_DIR;
-
-std::string replaced(std::string text, const std::string& old, const std::string& with) {
-  const auto at = text.find(old);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, old.size(), with);
-}
 
 rig::Rig with_headphones() {
   return rig::parse(

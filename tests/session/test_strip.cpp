@@ -39,8 +39,6 @@ std::string demo_with(const TemporaryFolder& folder, const std::string& sensing)
 struct Sensors : session::Monitor {
   std::optional<protocol::Sensing> asked;
   std::map<std::string, std::string> facts;
-  void trial_begins(const trial::TrialSpec&, const protocol::Block&,
-                    const session::PlanAhead::Plans&) override {}
   void trial_ended(const trial::TrialSpec&, const core::TrialRow& row) override {
     facts.clear();
     for (const auto& [label, value] : view::sensors_of(row, asked)) facts[label] = value;
@@ -88,7 +86,7 @@ TEST_CASE("the report has friction along the strip, which rises at the planned b
   CHECK(std::get<report::Rule>(chart->layers.front()).at == 0);
   CHECK(data.repeats.empty());
   SECTION("the operator sees what the sensors measured") {
-    CHECK(sensors.facts.at("Finger") == "ok");
+    CHECK(sensors.facts.at("The finger") == "ok");
     CHECK(sensors.facts.at("Normal force").find("N, SD") != std::string::npos);
     CHECK(sensors.facts.count("Pick-up, level") == 1);
     CHECK(sensors.facts.count("Zero of the cells") == 1);
@@ -106,6 +104,6 @@ TEST_CASE("the report counts the trials that were presented again, by level", "[
     CHECK(at.presented == 2);
     CHECK(at.repeated == 1);
   }
-  CHECK(sensors.facts.at("Finger") == "slow");
+  CHECK(sensors.facts.at("The finger") == "slow");
   CHECK(sensors.facts.at("Speed").find("asked for 200 to 300 mm/s") != std::string::npos);
 }

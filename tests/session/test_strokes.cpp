@@ -163,9 +163,7 @@ TEST_CASE("a resumed session continues the table, and plans with the same table 
     session::Inputs inputs;
     saboteur.before = [](int) {};
     saboteur.after = [&](int done) {
-      session::Input stop;
-      stop.kind = session::InputKind::stop;
-      if (done + 1 == stop_at) inputs.push(std::move(stop));
+      if (done + 1 == stop_at) inputs.push({0, session::input::Stop{}});
     };
     Pages pages;
     return session::run(setup, &pages, inputs, std::move(room), &saboteur);

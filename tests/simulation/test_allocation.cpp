@@ -1,23 +1,7 @@
 // Counts memory allocations while the plant advances.
-#include <cstdlib>
-#include <new>
-
 #include "tests/simulation/lab.hpp"
 #include "tests/support/catch.hpp"
-
-namespace {
-
-thread_local long allocations = 0;
-
-}  // namespace
-
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#include "tests/support/count_allocations.hpp"
 
 using namespace turnpoint::simulation;
 

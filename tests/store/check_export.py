@@ -30,7 +30,7 @@ def stored_signals(database):
     written from the description in signal_code.hpp, without the station's own decoder."""
     signals = {}
     rows = sqlite3.connect(database).execute(
-        "SELECT session_id, trial_index, segment_index, start_s, start_frame, rate_Hz, points, channels, data"
+        "SELECT session_id, trial_index, segment_index, start_s, start_frame, rate_Hz, signal.points, channels, data"
         " FROM signal JOIN trial USING (session_id, trial_index)")
     for session, trial, segment, start_s, start_frame, rate_hz, points, channels, data in rows:
         channels = json.loads(channels)

@@ -65,6 +65,7 @@ inline ToneRow tone(int interval, int index) {
   t.model = "mode";
   t.error_bound_mm = 0.1;
   t.uncertainty_mm = 0.4;
+  t.level_uncertainty_dB = 2.75;
   t.reason = "cheapest inside the tolerance";
   t.onset_frame = 192000 + interval * 96000;
   t.length_frames = 96000;
@@ -141,6 +142,7 @@ inline TrialRow answered(int index, int tones = 2) {
   t.silence_tone_dB = -82.25;
   t.confidence = 1 + index % 4;
   t.confidence_time_s = 0.75;
+  t.points = 2.5;
   t.finger.sensing = "ok";
   t.finger.contact_s = 2.25;
   t.finger.strokes = 9;
@@ -179,6 +181,7 @@ inline TrialRow timeout(int index) {
 inline TrialRow failed(int index) {
   auto t = timeout(index);
   t.outcome = Outcome::fault;
+  t.points.reset();
   t.signal_rows.push_back(raw_signal(index));
   return t;
 }

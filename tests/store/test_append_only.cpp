@@ -58,9 +58,22 @@ TEST_CASE("negative control: each outcome without an answer is accepted if the t
   for (const auto outcome : {Outcome::timeout, Outcome::anticipation, Outcome::aborted, Outcome::fault}) {
     auto trial = sample::timeout(index++);
     trial.outcome = outcome;
+    if (outcome == Outcome::aborted || outcome == Outcome::fault) trial.points.reset();
     log.append(trial);
   }
   CHECK(log.session().trials == 4);
+}
+
+TEST_CASE("a void trial is worth no points", "[store]") {
+  TemporaryFolder folder;
+  auto log = SessionLog::begin(folder / "a.sqlite", sample::start(), sample::segment());
+  log.begin_block(sample::block());
+  auto trial = sample::failed(0);
+  trial.outcome = GENERATE(Outcome::aborted, Outcome::fault);
+  trial.points = 1;
+  const auto [fault, message] = sample::failure([&] { log.append(trial); });
+  CHECK(fault == ErrorKind::refused);
+  CHECK(sample::contains(message, "points IS NULL"));
 }
 
 TEST_CASE("an answered trial must have a response time of 0 or more and a score that agrees with the answer",

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <random>
 
+#include "station/core/usage_error.hpp"
 #include "station/store/export.hpp"
 #include "station/store/fields.hpp"
 #include "station/store/merge.hpp"
@@ -215,7 +216,7 @@ TEST_CASE("rows that were edited and got new checksums differ from a checksum th
   std::string exported;
   {
     auto database = unguarded(db);
-    exported = last_checksum(database, id);
+    exported = verify_session(database, id).last_sha256;
     REQUIRE(exported.size() == 64);
     CHECK(holds_link(database, id, exported));
     database.execute("UPDATE trial SET response_time_s = 0.3 WHERE trial_index = 2; DELETE FROM link");
@@ -315,6 +316,7 @@ TEST_CASE("a change by somebody else stays visible, however often the program wr
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = sample::session(db, 1);
+  CHECK_THROWS_AS(annotate(db, id, ""), turnpoint::core::UsageError);
   annotate(db, id, "first");
   sample::raw(db).execute("DELETE FROM annotation");
   annotate(db, id, "second");
@@ -329,14 +331,14 @@ TEST_CASE("a session that continued after an export still contains the checksum 
   std::string exported;
   {
     auto database = sample::raw(db);
-    exported = last_checksum(database, id);
+    exported = verify_session(database, id).last_sha256;
   }
   {
     auto log = SessionLog::resume(db, id, sample::segment("resume"));
     log.finish(SessionStatus::completed, "");
   }
   auto database = sample::raw(db);
-  CHECK(last_checksum(database, id) != exported);
+  CHECK(verify_session(database, id).last_sha256 != exported);
   CHECK(holds_link(database, id, exported));
 }
 
@@ -375,5 +377,5 @@ TEST_CASE("the bytes over which the checksums of a session are made change only 
       "UPDATE segment SET session_id = (SELECT session_id FROM session); DELETE FROM link");
   Transaction transaction(database);
   Chain chain(database, "00000000-0000-4000-8000-000000000000");
-  CHECK(chain.add().sha256 == "c191b81cfb4b565967319105ea3d67a08003542f47d5b63a665c594644fd0ab8");
+  CHECK(chain.add().sha256 == "02de25505db73477219390c419c8ce5b64d021b5221c40c09cfb2068dd6f8d1b");
 }

@@ -36,9 +36,10 @@ const char* const kHeader =
     "outcome,response_time,decision_time,movement_time,response_zero,response_time_quality,response_offset_s,"
     "deadline,xruns,extra_touches,threshold_est,threshold_sd,seed,station_id,calibration_id,software_version,"
     "response_zero_onset,trial_duration,proof,proof_cause,drive_ratio_db,drive_residual_db,onset_error_us,"
-    "confidence,confidence_time,"
+    "confidence,confidence_time,points,"
     "sensing,contact_s,strokes,normal_n,normal_sd_n,normal_in_window,speed_mm_s,speed_in_window,mu_low,"
     "mu_high,boundary_felt_mm,boundary_se_mm,lag_mm,tare_mn,mu,silence_db,silence_tone_db,"
+    "previous_level,previous_correct_response,previous_response,previous_correct,previous_outcome,"
     "columns_version";
 
 }  // namespace
@@ -62,8 +63,9 @@ TEST_CASE("trials.csv has all fixed columns in order, and the factors at their p
       "P01," + id + ",1,simulated,two-boundaries,1.2.0," + std::string(64, 'a') +
           ",0,main,speed,0,0,1,0,experimental,staircase,n/a,n/a,-12.5,dB,0.30000000000000004,speed,150.25,"
           "30123.4567890123,2.5,mode,first,second,0,answered,0.4375,n/a,n/a,go_cue,simulated,0,2,0,0,-10,1.5,"
-          "20240229,bench-a,n/a,0.1.0,2,3.5,flagged,level,-0.75,-55,12.5,1,0.75,ok,2.25,9,0.5,0.0625,0.875,"
-          "80.5,0.6875,0.25,0.8125,150.5,0.375,0.625,-1.5,0.625,-57.5,-82.25,2");
+          "20240229,bench-a,"
+          "n/a,0.1.0,2,3.5,flagged,level,-0.75,-55,12.5,1,0.75,2.5,ok,2.25,9,0.5,0.0625,0.875,"
+          "80.5,0.6875,0.25,0.8125,150.5,0.375,0.625,-1.5,0.625,-57.5,-82.25,n/a,n/a,n/a,n/a,n/a,2");
   CHECK(sample::contains(lines[5], ",mode,first,n/a,n/a,timeout,n/a,n/a,n/a,go_cue,n/a,"));
 }
 
@@ -139,6 +141,46 @@ std::string session_of_unlike_values(const std::string& db) {
 }
 
 }  // namespace
+
+TEST_CASE("a line of trials.csv has the trial before it, in the same attempt and run of the program",
+          "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  std::string id;
+  {
+    auto log = SessionLog::begin(db, sample::start(), sample::segment());
+    log.begin_block(sample::block());
+    auto first = sample::answered(0);
+    first.level = -3, first.response = "first", first.correct = true;
+    log.append(first);
+    log.append(sample::timeout(1));
+    log.append(sample::answered(2));
+    log.begin_block(sample::block(0, 1));
+    log.append(sample::answered(3));
+    log.append(sample::answered(4));
+    log.finish(SessionStatus::interrupted, "");
+    id = log.session().session_id;
+  }
+  {
+    auto log = SessionLog::resume(
+        db, id, {"boot-2", "resume", 9'000'000'000, 2'000'000'000, 1'709'197'300'000'000'000});
+    log.begin_block(sample::block(0, 1));
+    log.append(sample::answered(5));
+    log.append(sample::answered(6));
+    log.finish(SessionStatus::completed, "");
+  }
+  const auto files = export_data(db, folder / "out", {});
+  const auto lines = lines_of(sample::bytes_of(files[0].path), "\r\n");
+  REQUIRE(lines.size() == 8);
+  const std::string none = ",n/a,n/a,n/a,n/a,n/a,2";
+  CHECK(lines[1].ends_with(none));
+  CHECK(lines[2].ends_with(",-3,first,first,1,answered,2"));
+  CHECK(lines[3].ends_with(",first,n/a,n/a,timeout,2"));
+  CHECK(lines[4].ends_with(none));  // another attempt
+  CHECK(lines[5].ends_with(",first,second,0,answered,2"));
+  CHECK(lines[6].ends_with(none));  // after the session was resumed
+  CHECK(lines[7].ends_with(",first,first,1,answered,2"));
+}
 
 TEST_CASE("each value of each table is in its own column", "[store]") {
   TemporaryFolder folder;

@@ -114,7 +114,8 @@ TEST_CASE("a session can be continued after a power cut", "[store]") {
     auto log = SessionLog::resume(db, interrupted->session.session_id, sample::segment("resume"));
     const int trials = log.session().trials;
     REQUIRE(trials >= cut.acknowledged);
-    REQUIRE(log.stored_blocks()[0].trials.size() == static_cast<std::size_t>(trials));
+    const auto blocks = read_session(db, interrupted->session.session_id).blocks;
+    REQUIRE(blocks[0].trials.size() == static_cast<std::size_t>(trials));
     log.begin_block(sample::block());
     log.append(sample::answered(trials));
     log.finish(SessionStatus::completed, "");

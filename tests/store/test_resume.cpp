@@ -27,10 +27,11 @@ TEST_CASE("a resumed session has all its trials, a new segment, and the open tri
     auto log = SessionLog::resume(db, id, sample::segment("resume"));
     CHECK(log.session().segments == 2);
     CHECK(log.session().status == SessionStatus::running);
-    REQUIRE(log.stored_blocks().size() == 1);
-    REQUIRE(log.stored_blocks()[0].trials.size() == 4);
-    CHECK(log.stored_blocks()[0].trials[3].state_hash == sample::answered(3).state_hash);
-    CHECK(log.stored_blocks()[0].trials[3].factors == sample::answered(3).factors);
+    const auto blocks = read_session(db, id).blocks;
+    REQUIRE(blocks.size() == 1);
+    REQUIRE(blocks[0].trials.size() == 4);
+    CHECK(blocks[0].trials[3].state_hash == sample::answered(3).state_hash);
+    CHECK(blocks[0].trials[3].factors == sample::answered(3).factors);
     log.begin_block(sample::block());
     log.presented(4, 88);
     log.append(sample::answered(4));

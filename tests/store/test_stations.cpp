@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+#include <sys/mount.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -9,8 +12,8 @@
 #include <set>
 
 #include "station/core/number.hpp"
-#include "station/core/usage_error.hpp"
 #include "station/store/backup.hpp"
+#include "station/store/backup_folder.hpp"
 #include "station/store/export.hpp"
 #include "station/store/merge.hpp"
 #include "station/store/open.hpp"
@@ -22,6 +25,7 @@
 #include "station/store/withdraw.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/number_from.hpp"
 
 using namespace turnpoint::store;
 
@@ -362,19 +366,6 @@ TEST_CASE("the next participant after a withdrawal gets the sequence index that 
   CHECK(read_session(db, id).session.sequence_index == 1);
 }
 
-TEST_CASE("an interrupted session can be closed for good, but a completed one cannot", "[store]") {
-  TemporaryFolder folder;
-  const auto db = folder / "a.sqlite";
-  const auto open = sample::session(db, 2, sample::start(), SessionStatus::interrupted);
-  const auto done = sample::session(db, 2);
-  REQUIRE(interrupted_session(db));
-  abandon(db, open, "too old");
-  CHECK_FALSE(interrupted_session(db));
-  CHECK(read_session(db, open).session.status_reason == "too old");
-  CHECK(sample::failure([&] { abandon(db, done, ""); }).first == ErrorKind::refused);
-  CHECK_THROWS_AS(annotate(db, done, ""), turnpoint::core::UsageError);
-}
-
 TEST_CASE("a withdrawal that arrives from elsewhere takes all sessions of the person, sent or not",
           "[store]") {
   TemporaryFolder folder;
@@ -417,7 +408,9 @@ TEST_CASE("a withdrawal that was interrupted is completed once its folder of bac
     Statement(writer.database, "INSERT INTO meta VALUES ('erasing', ?)").bind(dir).run();
     transaction.commit();
   }
-  const auto unfinished = [&] { return sample::raw(a).integer("SELECT count(*) FROM meta WHERE key = 'erasing'") == 1; };
+  const auto unfinished = [&] {
+    return sample::raw(a).integer("SELECT count(*) FROM meta WHERE key = 'erasing'") == 1;
+  };
   CHECK(follow_tombstones(a, stones).removed_copies.empty());
   CHECK(unfinished());
   CHECK(follow_tombstones(a, stones, dir).removed_copies.size() == 1);
@@ -471,30 +464,247 @@ std::string recorded(const std::string& db, const std::string& participant, cons
 
 }  // namespace
 
-TEST_CASE("a machine is known by its machine-id and its board, and an image's name gets a part of that",
-          "[store]") {
+namespace {
+
+/// The files by which a machine is known, as every user sees them.
+struct Machine {
   TemporaryFolder folder;
-  CHECK(machine_identity(folder.path).empty());
-  const auto write = [&](const std::string& path, const std::string& text) {
-    const auto name = std::filesystem::path(folder / path.c_str());
+  const std::string board = "sys/firmware/devicetree/base/serial-number",
+                    uuid = "sys/class/dmi/id/product_uuid", serial = "sys/class/dmi/id/board_serial";
+
+  explicit Machine(const std::string& machine_id = "4c1d0f5b7e2a49c38d6e90b1a7f35c28\n") {
+    if (!machine_id.empty()) write("etc/machine-id", machine_id);
+  }
+  std::filesystem::path write(const std::string& path, const std::string& text) const {
+    const auto name = std::filesystem::path(folder / path);
     std::filesystem::create_directories(name.parent_path());
     std::ofstream(name) << text;
+    std::filesystem::permissions(name, std::filesystem::perms(0444));
     return name;
-  };
-  write("etc/machine-id", "4c1d\n");
-  const auto of_card = machine_identity(folder.path);
-  const auto uuid = write("sys/class/dmi/id/product_uuid", "uuid-1\n");
+  }
+  std::string identity() const { return machine_identity(folder.path); }
+};
+
+}  // namespace
+
+TEST_CASE("a machine is known by its machine-id and its board, and an image's name gets a part of that",
+          "[store]") {
+  CHECK(Machine("").identity().empty());
+  const Machine machine;
+  const auto of_card = machine.identity();
+  const auto uuid = machine.write(machine.uuid, "8f1b0a6c-52d3-4e79-9c04-b7e1a2d63f58\n");
   std::filesystem::permissions(uuid, std::filesystem::perms::owner_read);
-  CHECK(machine_identity(folder.path) == of_card);  // it must not depend on who asks
+  CHECK(machine.identity() == of_card);  // it must not depend on who asks
   std::filesystem::permissions(uuid, std::filesystem::perms::others_read, std::filesystem::perm_options::add);
-  const auto of_pc = machine_identity(folder.path);
+  const auto of_pc = machine.identity();
   CHECK(of_pc != of_card);
-  write("sys/firmware/devicetree/base/serial-number", std::string("100000008a7d\0", 13));
-  const auto of_board = machine_identity(folder.path);
+  machine.write(machine.board, std::string("100000008a7d41f3\0", 17));
+  const auto of_board = machine.identity();
   CHECK(of_board != of_pc);
   CHECK(of_board.size() == 64);
-  write("etc/turnpoint/station", "lab-3\n");
-  CHECK(suggested_station_name(folder.path) == "lab-3");
+  CHECK(machine_traits(machine.folder.path).hardware == "100000008a7d41f3");
+  machine.write("etc/turnpoint/station", "lab-3\n");
+  CHECK(suggested_station_name(machine.folder.path) == "lab-3");
+}
+
+TEST_CASE("what a maker never set does not make two machines one", "[store]") {
+  const auto plain = Machine().identity();
+  const auto with = [](const std::string& which, const std::string& value) {
+    const Machine machine;
+    machine.write(which, value);
+    return machine.identity();
+  };
+  const Machine names;
+  for (const auto* shared :
+       {"00000000-0000-0000-0000-000000000000\n", "FFFFFFFF-FFFF-FFFF-FFFF-FFFFFFFFFFFF\n",
+        "ffffffff-ffff-ffff-ffff-ffffffffffff\n", "03000200-0400-0500-0006-000700080009\n",
+        "00020003-0004-0005-0006-000700080009\n", "12345678-1234-5678-90AB-CDDEEFAABBCC\n",
+        "12345678-1234-1234-1234-123456789012\n", "11111111-2222-3333-4444-555555555555\n",
+        "00112233-4455-6677-8899-AABBCCDDEEFF\n", "FEFEFEFE-FEFE-FEFE-FEFE-FEFEFEFEFEFE\n",
+        "4C4C4544-0000-2010-8020-80C04F202020\n", "Not Settable\n", "Not Present\n", "\n", "   \n"}) {
+    INFO(shared);
+    CHECK(with(names.uuid, shared) == plain);
+    CHECK(with(names.serial, shared) == plain);
+  }
+  for (const auto* shared : {"Default string\n",
+                             "Default string 1\n",
+                             "To be filled by O.E.M.\n",
+                             "To Be Filled By O.E.M. 01\n",
+                             "None\n",
+                             "N/A\n",
+                             "0\n",
+                             "0000000000000000",
+                             "0123456789\n",
+                             "123456789\n",
+                             "1234567890\n",
+                             "0123456789ABCDEF",
+                             "fedcba9876543210",
+                             "xxxxxxxxxxxx\n",
+                             "............\n",
+                             "SN123456789\n",
+                             "System Serial Number\n",
+                             "Type2 - Board Serial Number\n",
+                             "Base Board Serial Number\n",
+                             "Not Specified\n",
+                             "Not Applicable\n",
+                             "INVALID\n",
+                             "OEM\n",
+                             "empty\n",
+                             "Unknown\n"}) {
+    INFO(shared);
+    CHECK(with(names.board, shared) == plain);
+    CHECK(with(names.serial, shared) == plain);
+  }
+  // Without a machine-id as well, nothing is known, instead of one identity for all of them.
+  for (const auto* which : {&names.board, &names.uuid, &names.serial}) {
+    const Machine bare("");
+    bare.write(*which, "Default string\n");
+    CHECK(bare.identity().empty());
+  }
+  // The next number counts if the first one is not one.
+  const Machine machine;
+  machine.write(machine.uuid, "03000200-0400-0500-0006-000700080009\n");
+  machine.write(machine.serial, "BSS-0123-X7421\n");
+  CHECK(machine_traits(machine.folder.path).hardware == "BSS-0123-X7421");
+}
+
+TEST_CASE("numbers that makers give to one board each count", "[store]") {
+  std::set<std::string> identities;
+  const std::vector<std::string> given{"100000008a7d41f3",
+                                       "00000000b3f0e1a2",
+                                       "1000000010a0305c",
+                                       "10000000deadbeef",
+                                       "c3d9b8674f4b94f6",
+                                       "/6XKJ9Y2/CN7220059N00A1/",
+                                       "PF2ZKQ7M",
+                                       "L1HF65E00X9",
+                                       "VMware-56 4d 1a 2b 8c 07 f1 3e-a4 5b 6c 90 11 d2 3e 4f",
+                                       "5CG8234TQX",
+                                       "GEBN12400BCX",
+                                       "4C4C4544-0051-3510-8056-B7C04F4D4832",
+                                       "00000000-0000-0000-0000-AC1F6B8D42E0",
+                                       "EC2E1916-9099-7CAF-FD21-012345ABCDEF"};
+  for (const auto& number : given) {
+    const Machine machine;
+    machine.write(machine.board, number);
+    INFO(number);
+    CHECK(machine_traits(machine.folder.path).hardware == number);
+    identities.insert(machine.identity());
+  }
+  CHECK(identities.size() == given.size());
+  // Virtual machines that share a UUID differ in the machine-id.
+  const Machine one, two("9be07a3c5d1f42e68a0c7b94f2d35e61\n");
+  for (const auto* machine : {&one, &two}) machine->write(machine->uuid, given[11] + "\n");
+  CHECK(one.identity() != two.identity());
+  // Of random numbers, none is taken for what nobody set.
+  std::mt19937_64 random(11);
+  const Machine machine;
+  int lost = 0;
+  for (int k = 0; k < 2000; ++k) {
+    std::filesystem::remove(machine.folder / machine.board);
+    machine.write(machine.board, fmt::format("10000000{:08x}", static_cast<std::uint32_t>(random())));
+    lost += machine_traits(machine.folder.path).hardware.empty() ? 1 : 0;
+  }
+  CHECK(lost == 0);
+}
+
+TEST_CASE("a copied disk in a computer whose maker set no number is known by its own number", "[store]") {
+  const auto with = [&](const std::string& file, const std::string& number) {
+    const Machine machine;
+    machine.write(machine.uuid, "03000200-0400-0500-0006-000700080009\n");
+    const auto disk = machine.folder / "sys/devices/mmcblk0", blocks = machine.folder / "sys/dev/block";
+    std::filesystem::create_directories(disk + "/mmcblk0p2");
+    std::filesystem::create_directories(blocks);
+    machine.write("sys/devices/mmcblk0/mmcblk0p2/partition", "2\n");
+    machine.write("sys/devices/mmcblk0/" + file, number + "\n");
+    const auto number_of_device = status_of(machine.folder / "etc").st_dev;
+    std::filesystem::create_symlink(
+        disk + "/mmcblk0p2",
+        blocks + fmt::format("/{}:{}", major(number_of_device), minor(number_of_device)));
+    const auto alone = machine.identity();
+    machine.write(machine.serial, "BSS-0123-X7421\n");  // a number of the board comes before that of the disk
+    CHECK(machine_traits(machine.folder.path).hardware == "BSS-0123-X7421");
+    return alone;
+  };
+  const auto plain = Machine().identity();
+  std::set<std::string> identities{plain};
+  for (const auto* number : {"035344534836344780b1f0c2a4015a00", "035344534836344780b1f0c2a5015a00"})
+    identities.insert(with("device/cid", number));
+  identities.insert(with("wwid", "eui.0025385b21404f7a"));
+  identities.insert(
+      with("device/wwid", "t10.ATA     Samsung SSD 860 EVO 250GB               S3YJNB0K512345X"));
+  CHECK(identities.size() == 5);
+  CHECK(with("serial", "00000000000000000000") == plain);
+}
+
+TEST_CASE("a machine-id that the next boot replaces is no identity", "[store]") {
+  const std::string serial = "100000008a7d41f3";
+  const Machine board("");
+  board.write(board.board, serial);
+  const auto of_board = board.identity();
+  CHECK_FALSE(of_board.empty());
+  for (const auto* transient :
+       {"\n", " \n", "uninitialized\n", "00000000000000000000000000000000\n",
+        "ffffffffffffffffffffffffffffffff\n", "4c1d\n", "0123456789abcdef0123456789abcdef\n"}) {
+    INFO(transient);
+    const Machine machine(transient);
+    CHECK(machine.identity().empty());
+    machine.write(machine.board, serial);
+    CHECK(machine.identity() == of_board);  // known by the board alone, and the same at each boot
+  }
+  const Machine hidden;
+  std::filesystem::permissions(hidden.folder / "etc/machine-id", std::filesystem::perms::owner_read);
+  CHECK(hidden.identity().empty());
+}
+
+TEST_CASE("a machine-id that systemd has mounted from memory is no identity", "[store]") {
+  const Machine machine;
+  const auto lasting = machine.identity();
+  const auto run = machine.folder / "run", id = machine.folder / "etc/machine-id";
+  std::filesystem::create_directory(run);
+  if (::mount("tmpfs", run.c_str(), "tmpfs", 0, nullptr) != 0) {
+    WARN("skipped: only root can mount; sudo tests/run");
+    return;
+  }
+  machine.write("run/machine-id", "9be07a3c5d1f42e68a0c7b94f2d35e61\n");
+  REQUIRE(::mount((run + "/machine-id").c_str(), id.c_str(), nullptr, MS_BIND, nullptr) == 0);
+  CHECK(machine.identity().empty());
+  ::umount2(id.c_str(), MNT_DETACH);
+  CHECK(machine.identity() == lasting);  // once systemd has written it to the disk, it counts
+  ::umount2(run.c_str(), MNT_DETACH);
+}
+
+TEST_CASE("a machine-id that an overlay keeps in memory is no identity, and one on a disk is", "[store]") {
+  const Machine first, second("9be07a3c5d1f42e68a0c7b94f2d35e61\n"), machine;
+  const auto etc = machine.folder / "etc";
+  std::string disk = "/var/tmp/turnpoint-test-XXXXXX";  // not where other tests write, which may be memory
+  REQUIRE(::mkdtemp(disk.data()) != nullptr);
+  const auto memory = disk + "/memory", lower = disk + "/lower";
+  for (const auto& name : {memory, lower}) std::filesystem::create_directory(name);
+  std::filesystem::copy_file(first.folder / "etc/machine-id", lower + "/machine-id");
+  if (::mount("tmpfs", memory.c_str(), "tmpfs", 0, nullptr) != 0) {
+    WARN("skipped: only root can mount; sudo tests/run");
+    std::filesystem::remove_all(disk);
+    return;
+  }
+  for (const auto& [upper, lasts] : {std::pair{memory, false}, {disk, true}})
+    for (const auto* inodes : {"", ",xino=on"}) {  // without the option, each layer has numbers of its own
+      INFO(upper << inodes);
+      for (const auto* name : {"/changes", "/work"}) {
+        std::filesystem::remove_all(upper + name);
+        std::filesystem::create_directory(upper + name);
+      }
+      const auto layers =
+          fmt::format("lowerdir={},upperdir={}/changes,workdir={}/work{}", lower, upper, upper, inodes);
+      REQUIRE(::mount("overlay", etc.c_str(), "overlay", 0, layers.c_str()) == 0);
+      CHECK(machine.identity() == first.identity());  // that of the lower layer, which the next boot has too
+      std::filesystem::remove(etc + "/machine-id");
+      machine.write("etc/machine-id", "9be07a3c5d1f42e68a0c7b94f2d35e61\n");
+      CHECK(machine.identity() == (lasts ? second.identity() : ""));
+      ::umount2(etc.c_str(), MNT_DETACH);
+    }
+  ::umount2(memory.c_str(), MNT_DETACH);
+  std::filesystem::remove_all(disk);
 }
 
 TEST_CASE("a database keeps the name of its station, whatever the host is called", "[store]") {
@@ -530,6 +740,61 @@ TEST_CASE("a copied card is noticed, and becomes a station of its own when it is
   CHECK(list_sessions(hub).size() == 3);
   CHECK(list_sessions(hub, {"", "P02@lab-2", ""}).size() == 1);
   for (const auto& path : {db, copy, hub}) CHECK(verify(path).good());
+}
+
+namespace {
+
+/// Makes a backup as another machine would make it.
+std::string backup_of_other_machine(const std::string& db, const std::string& dir, int keep) {
+  const auto made = backup(db, {dir, keep}).path;
+  auto raw = sample::raw(made);
+  raw.execute("PRAGMA journal_mode = DELETE");
+  SealedTransaction change(raw);
+  raw.execute("UPDATE meta SET value = 'board-2' WHERE key = 'backup_machine'");
+  change.commit();
+  std::filesystem::remove(made + ".sha256");
+  return made;
+}
+
+}  // namespace
+
+TEST_CASE("two copies of one database share a folder of backups, and neither loses or gets the other's",
+          "[store]") {
+  if (machine_identity().empty()) {
+    WARN("skipped: this machine has no identity");
+    return;
+  }
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", copy = folder / "copy/a.sqlite", dir = folder / "backups";
+  recorded(db, "P01", "lab", machine_identity());
+  const auto own = backup(db, {dir, 9}).path;
+  sample::raw(db).execute("PRAGMA wal_checkpoint(TRUNCATE)");
+  std::filesystem::create_directory(folder / "copy");
+  std::filesystem::copy_file(db, copy);
+  sample::session(copy, 2, at_station("P02", "lab"));
+  const auto foreign = backup_of_other_machine(copy, dir, 9);
+  const auto newer = backup(db, {dir, 1}).path;  // removes its own first one, and not the other's
+  CHECK_FALSE(std::filesystem::exists(own));
+  CHECK(std::filesystem::exists(foreign));
+  std::filesystem::resize_file(db, 6000);
+  SECTION("a restore takes its own, although the other's is newer") {
+    const auto newest = backup_of_other_machine(copy, dir, 9);
+    const auto restored = restore_backup(db, {dir, ""});
+    CHECK(restored.sessions == 1);
+    CHECK(std::filesystem::exists(newest));
+  }
+  SECTION("a restore asks if there are only the other's") {
+    remove_backup(newer);
+    const auto [kind, message] = sample::failure([&] { restore_backup(db, {dir, ""}); });
+    CHECK(kind == ErrorKind::other_machine);
+    CHECK(sample::contains(message, "of station lab: " + foreign));
+    CHECK(sample::contains(message, "if this machine replaces that one, add --moved"));
+    CHECK(std::filesystem::file_size(db) == 6000);
+    RestoreOptions moved{dir, ""};
+    moved.whose = Whose::moved;
+    CHECK(restore_backup(db, moved).sessions == 2);
+    CHECK(read_station(db).machine == machine_identity());
+  }
 }
 
 TEST_CASE("a replaced board goes on as the same station when somebody has said so", "[store]") {
@@ -644,8 +909,7 @@ struct Room {
 }  // namespace
 
 TEST_CASE("in whatever order things happen, withdrawn is withdrawn, and nothing else is", "[store]") {
-  const auto* wanted = std::getenv("TURNPOINT_INTERLEAVINGS");
-  const int runs = wanted != nullptr ? std::atoi(wanted) : 20;
+  const int runs = number_from("TURNPOINT_INTERLEAVINGS", 20);
   std::mt19937 random(20261128);
   int withdrawals = 0;
   for (int run = 0; run < runs; ++run) {

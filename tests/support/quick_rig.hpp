@@ -1,16 +1,9 @@
 #pragma once
-#include <stdexcept>
 #include <string>
 
 #include "station/core/read_file.hpp"
 #include "station/rig/rig.hpp"
-
-/// Returns `text` with the first `from` replaced. Throws if `text` does not contain it.
-inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  if (at == std::string::npos) throw std::logic_error("not in the text: " + from);
-  return text.replace(at, from.size(), to);
-}
+#include "tests/support/replaced.hpp"
 
 /// Returns the file of the rig with the thin plate, changed to simply supported sides and a thicker plate.
 /// Its boundary map is nearly the same but has a closed form, so that surveys of protocols are fast.

@@ -83,6 +83,28 @@ TEST_CASE("practice that is not passed is repeated and then ends the session wit
   CHECK(director.ended_because().find("practice") != std::string::npos);
 }
 
+TEST_CASE("a block of a fixed time ends with the trial that fills it, and void trials take none of it",
+          "[session]") {
+  auto protocol = shipped("demo");
+  auto& block = std::get<protocol::Block>(protocol.plan.front());
+  block.procedures.resize(1), block.lasts_s = 10;
+  Director director(protocol, 0, 11);
+  for (const double trial_s : {4.0, 5.9, 0.2}) {
+    auto spec = director.next();
+    REQUIRE(spec);
+    director.record({core::Outcome::fault, {}, {}, {}});
+    director.spend(100);
+    spec = director.next();
+    REQUIRE(spec);
+    director.record(answered(*spec, true));
+    director.spend(trial_s);
+  }
+  CHECK_FALSE(director.next());
+  CHECK(director.block() != nullptr);
+  director.finish_block();
+  CHECK(director.block() == nullptr);
+}
+
 TEST_CASE("catch trials occur at about their rate, and the procedure does not learn from them", "[session]") {
   const auto protocol = shipped("friction-2ifc");
   int catches = 0, trials = 0;
@@ -319,4 +341,8 @@ TEST_CASE("the progress never reaches its end before the last trial, however man
   }
   CHECK(number < 3000);
   CHECK(director.trials_done() == director.trials_expected());
+}
+
+TEST_CASE("the expected trials have those that a list with rules of its order begins with", "[session]") {
+  CHECK(Director(shipped("bisection"), 0, 7).trials_expected() == 99);  // 7 levels x 14 and one more
 }

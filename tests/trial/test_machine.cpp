@@ -91,6 +91,30 @@ TEST_CASE("an answer sooner than a person can feel is an anticipation without a 
   CHECK_FALSE(machine.result().response.has_value());
 }
 
+TEST_CASE("the pause is longer after an answer that was not right, by the delay of its kind", "[trial]") {
+  auto plan = exploration();
+  plan.wrong_delay_ns = 2000 * ms, plan.late_delay_ns = 4000 * ms, plan.early_delay_ns = 3000 * ms;
+  plan.answers = 3, plan.unsure = 2;
+  const auto pause = [&](std::optional<Event> event) {
+    auto machine = exploring(plan);
+    machine.handle({600 * ms, EventKind::heard, 0});
+    const std::int64_t at = event ? event->time_ns : 6500 * ms + plan.watermark_ns;
+    machine.handle(event.value_or(Event{at, EventKind::tick, 0}));
+    if (machine.phase() == Phase::late) machine.handle({at + plan.late_ns, EventKind::tick, 0});
+    REQUIRE(machine.phase() == Phase::interval);
+    machine.handle({machine.wake_ns().value(), EventKind::tick, 0});
+    CHECK(machine.done());
+    return machine.result().ended_ns - at - (event && machine.result().response ? 0 : plan.late_ns);
+  };
+  CHECK(pause(Event{900 * ms, EventKind::answer, 1}) == 1000 * ms);
+  CHECK(pause(Event{900 * ms, EventKind::answer, 0}) == 3000 * ms);
+  CHECK(pause(Event{900 * ms, EventKind::answer, 2}) == 1000 * ms);  // unsure: neither right nor wrong
+  CHECK(pause(Event{600 * ms, EventKind::answer, 1}) == 4000 * ms);  // too early
+  CHECK(pause({}) == 5000 * ms);
+  plan.wrong_delay_ns = -1;
+  CHECK_THROWS_AS(Machine(plan), std::invalid_argument);
+}
+
 TEST_CASE("two intervals are presented in turn and answers open at the end of the second", "[trial]") {
   Machine machine(two_intervals());
   CHECK(has(machine.start(0), ActionKind::present, 0));
@@ -182,7 +206,7 @@ TEST_CASE("lost frames that are reported after the stimulus, or after the answer
     const auto actions = machine.handle({1511 * ms, EventKind::xrun, 1});
     CHECK(has(actions, ActionKind::silence, 0));  // this cancels the second interval
     CHECK(machine.done());
-    CHECK(machine.result().onsets_ns.size() == 1);
+    CHECK(machine.interval() == 0);
     CHECK(machine.result().outcome == Outcome::fault);
   }
   SECTION("after the answer, whatever was shown") {

@@ -1,6 +1,7 @@
 // Tests that random events never break the rules that hold for every trial.
 #include <random>
 
+#include "station/core/limits.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/trial/timings.hpp"
 
@@ -43,6 +44,12 @@ std::string broken_invariant(const Machine& machine, const Timing& plan, const D
   if (answered &&
       (*result.response_time_ns < plan.anticipation_ns || *result.response_time_ns > plan.deadline_ns))
     return "response time outside anticipation and deadline";
+  if (result.confidence.has_value() != (answered && plan.confidence > 0))
+    return "answer or confidence missing";
+  if (result.confidence.has_value() != result.confidence_time_ns.has_value())
+    return "time without a confidence";
+  if (result.confidence && *result.confidence_time_ns < turnpoint::core::kConfidenceGuard_ns)
+    return "a press within the guard time is the confidence";
   if (drive.presented > 1) return "presented twice";
   if (hurt && result.outcome != Outcome::fault && result.outcome != Outcome::aborted)
     return "lost frames without a void trial";
@@ -64,6 +71,7 @@ TEST_CASE("whatever comes in whatever order, the invariants of a trial hold", "[
     } else if (below(4) == 0) {
       plan.response_zero = below(2) ? ResponseZero::first_contact : ResponseZero::lift_off;
     }
+    if (below(2)) plan.confidence = 3;
     Machine machine(plan);
     Drive drive{machine, plan};
     std::int64_t now = 0;
@@ -74,7 +82,13 @@ TEST_CASE("whatever comes in whatever order, the invariants of a trial hold", "[
       const auto kind = below(60) == 0 ? rare[below(3)] : common[below(4)];
       const int value = static_cast<int>(below(4)) - 1;
       hurt |= kind == EventKind::xrun && value != 0 && !machine.decided();
-      drive.follow(machine.handle({now, kind, value}), now, 0);
+      // the time stamp of an answer may arrive late, after that of a later one
+      const auto stamped = kind == EventKind::answer && below(3) == 0 ? now - below(500) * ms : now;
+      drive.follow(machine.handle({stamped, kind, value}), now, 0);
+    }
+    if (machine.phase() == Phase::confidence) {
+      now += turnpoint::core::kConfidenceGuard_ns;
+      drive.follow(machine.handle({now, EventKind::answer, 0}), now, 0);
     }
     for (int i = 0; i < static_cast<int>(plan.intervals.size()) && !machine.done(); ++i)
       drive.follow(machine.handle({now, EventKind::heard, i}), now, 0);

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <utility>
 
 #include "station/session/prepare.hpp"
 #include "station/session/session.hpp"
@@ -21,23 +22,18 @@ class Room : public session::Display {
   void show(const session::Page& page) override {
     using session::PageKind;
     // a live session begins disarmed, so arm the amplifier first
-    if (page.kind == PageKind::fault) push(session::InputKind::arm);
-    if (page.kind == PageKind::instructions) push(session::InputKind::next);
-    if (page.kind == PageKind::rest && page.remaining_s == 0) push(session::InputKind::next);
+    if (page.kind == PageKind::fault) push(session::input::Arm{});
+    if (page.kind == PageKind::instructions) push(session::input::Next{});
+    if (page.kind == PageKind::rest && page.remaining_s == 0) push(session::input::Next{});
     if (page.kind != PageKind::stimulus || !page.answers_open) return;
     if (page.trials_done == 2) ::raise(SIGKILL);
-    push(session::InputKind::answer, 1);
+    // answers count only after a page has been shown for a while
+    push(session::input::Answer{1}, 300'000'000);
   }
 
  private:
-  void push(session::InputKind kind, int value = 0) {
-    session::Input input;
-    input.time_ns = std::chrono::steady_clock::now().time_since_epoch().count();
-    // answers count only after a page has been shown for a while
-    if (kind == session::InputKind::answer) input.time_ns += 300'000'000;
-    input.kind = kind;
-    input.value = value;
-    inputs.push(input);
+  void push(session::input::Any content, std::int64_t after_ns = 0) {
+    inputs.push({std::chrono::steady_clock::now().time_since_epoch().count() + after_ns, std::move(content)});
   }
 };
 

@@ -12,8 +12,7 @@ namespace {
 
 Page oddity(const Words& words, PageKind kind, int interval) {
   Page page = base(words, kind);
-  page.interval = interval;
-  page.intervals = 3;
+  page.interval = {interval, 3, {}};
   if (kind == PageKind::response) {
     page.text = words.pick("Which of the three felt different?", "Welcher der drei fühlte sich anders an?",
                            "三つのうちどれが違いましたか?");
@@ -27,7 +26,7 @@ Page oddity(const Words& words, PageKind kind, int interval) {
 
 Page abx(const Words& words, PageKind kind) {
   Page page = oddity(words, kind, 3);
-  page.interval_names = {"A", "B", "X"};
+  page.interval.names = {"A", "B", "X"};
   page.text =
       words.pick("Was X like A or like B?", "War X wie A oder wie B?", "Xは、AとBのどちらと同じでしたか?");
   page.answers = {{"a", words.pick("Like A", "Wie A", "Aと同じ")},
@@ -162,9 +161,25 @@ void add_trials(std::vector<Exhibit>& all, const Words& words) {
   all.push_back({"feedback-right", feedback});
   feedback.correct = false;
   all.push_back({"feedback-wrong", feedback});
+  const auto said = [&](const char* key, const char* value = "") {
+    return core::say(core::phrase(key, {core::plain(value)}), words.language);
+  };
+  feedback.text = said("wrong") + "  \u221210\n" + said("points", "1240");
+  all.push_back({"feedback-points", feedback});
   feedback.correct.reset();
   feedback.text = words.pick("Too slow", "Zu langsam", "遅すぎました");
   all.push_back({"too-slow", feedback});
+  Page over = base(words, PageKind::instructions);
+  over.title = said("block_over");
+  over.surface = {};
+  for (const auto& [key, value] : {std::pair{"block_right", "83"},
+                                   {"block_time", "0.55"},
+                                   {"goal_right", "85"},
+                                   {"goal_time", "0.6"},
+                                   {"goal_missed", ""},
+                                   {"points", "120"}})
+    over.text += (over.text.empty() ? "" : "\n") + said(key, value);
+  all.push_back({"block-over", over});
 }
 
 void add_faults(std::vector<Exhibit>& all, const Words& words) {
@@ -201,11 +216,10 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
     Page page = base(words, PageKind::fault);
     const auto text = core::fault_text(kind, words.language);
     page.title = core::text("please_wait", words.language);
-    page.fault = kind;
+    page.fault = {kind, detail};
     page.text = text.happened;
     page.safe = text.safe;
     page.to_do = text.to_do;
-    page.detail = detail;
     if (kind == FaultKind::disarmed) page.amplifier = "disarmed";
     // These faults do not put the amplifier into the state "faulted".
     const auto armed = {FaultKind::disarmed,  FaultKind::limits,          FaultKind::touch_gone,
@@ -296,10 +310,7 @@ void add_starts(std::vector<Exhibit>& all, const Words& words) {
                            "Den Regler schieben, bis der glatte Teil an der Markierung endet.",
                            "なめらかな部分が印で終わるように、つまみを動かしてください。");
   adjust.answers.clear();
-  adjust.slider_min = 0;
-  adjust.slider_max = 100;
-  adjust.slider_step = 1;
-  adjust.slider = 31;
+  adjust.slider = {31, 0, 100, 1};
   all.push_back({"adjust", adjust});
   adjust.answers_open = true;
   all.push_back({"adjust-silent", adjust});

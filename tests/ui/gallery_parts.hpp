@@ -26,9 +26,7 @@ inline Page base(const Words& words, PageKind kind) {
   page.kind = kind;
   page.language = words.language;
   page.run_mode = "live";
-  page.length_mm = 300;
-  page.wide_half_width_mm = 14;
-  page.narrow_half_width_mm = 5;
+  page.surface = {300, 14, 5};
   page.trials_done = 37;
   page.trials_total = 88;
   return page;

@@ -75,7 +75,10 @@ void OperatorCamera::shoot_live(const view::LiveState& state, const QString& nam
         {{"live", QVariant::fromValue(&live_)}, {"bridge", QVariant::fromValue(&bridge_)}});
 }
 
-void OperatorCamera::shoot_report(const view::ReportPages& pages, const QString& name, int picture) {
+void OperatorCamera::shoot_report(const view::ReportPages& pages, const QString& name,
+                                  const std::string& figure) {
+  const auto found = std::ranges::find(pages.figures, figure, &report::NamedFigure::name);
+  const auto picture = found == pages.figures.end() ? 0 : static_cast<int>(found - pages.figures.begin());
   report_.take(pages);
   QGuiApplication::processEvents();
   shoot("ReportPage.qml", name,

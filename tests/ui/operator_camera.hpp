@@ -51,8 +51,8 @@ class OperatorCamera {
   /// With gauges of the finger, if there are any.
   void shoot_live(const view::LiveState& state, const QString& name,
                   const std::optional<view::FingerGauges>& gauges = std::nullopt);
-  /// `picture` is the number of the figure to show.
-  void shoot_report(const view::ReportPages& pages, const QString& name, int picture = 0);
+  /// `figure` is the name of the figure to show; the first one if there is none of that name.
+  void shoot_report(const view::ReportPages& pages, const QString& name, const std::string& figure = "");
 
   int count() const { return count_; }
 

@@ -1,4 +1,5 @@
 #include "tests/ui/operator_gallery.hpp"
+#include "tests/support/simulated_run.hpp"
 
 #include <QTemporaryDir>
 #include <cmath>
@@ -16,13 +17,8 @@ namespace turnpoint::ui {
 namespace {
 
 session::RunRequest request_for(const std::string& protocol, const std::string& database) {
-  session::RunRequest request;
-  request.protocol = TURNPOINT_SOURCE_DIR "/protocols/" + protocol + ".toml";
-  request.rig = TURNPOINT_SOURCE_DIR "/tests/support/thin_plate.toml";
+  auto request = simulated_run(TURNPOINT_SOURCE_DIR "/protocols/" + protocol + ".toml", database, 20261121);
   request.participant = "P03";
-  request.database = database;
-  request.observer = "sim";
-  request.seed = 20261121;
   return request;
 }
 
@@ -40,12 +36,6 @@ struct FirstTrials : session::Monitor {
     --left;
     to.trial_ended(spec, row);
   }
-};
-
-struct Nobody : session::Monitor {
-  void trial_begins(const trial::TrialSpec&, const protocol::Block&,
-                    const session::PlanAhead::Plans&) override {}
-  void trial_ended(const trial::TrialSpec&, const core::TrialRow&) override {}
 };
 
 void run_first(const session::RunRequest& request, session::Monitor& monitor, int trials) {
@@ -110,7 +100,7 @@ view::ReportPages forces_exhibit(const std::string& protocol, const std::string&
 
 std::string interrupted_exhibit(const std::string& folder) {
   auto request = request_for("boundary-constant", folder + "/lab.sqlite");
-  Nobody nobody;
+  session::Monitor nobody;
   run_first(request, nobody, 7);
   return request.database;
 }

@@ -3,6 +3,8 @@
 #include <QQmlEngine>
 #include <QQmlExtensionPlugin>
 #include <QtQuickTest>
+#include <clocale>
+#include <string>
 
 #include "station/ui/platform/screen.hpp"
 #include "tests/ui/operator_desk.hpp"
@@ -19,6 +21,8 @@ class Setup : public QObject {
  public Q_SLOTS:
   // The application owns these objects, because their timers and pending calls must end before it does.
   void applicationAvailable() {
+    if (qEnvironmentVariableIsSet("LC_NUMERIC") && std::string(std::localeconv()->decimal_point) != ",")
+      qFatal("these pages should run with a decimal comma, but the locale of LC_NUMERIC was not found");
     script_ = new turnpoint::ui::ScriptedSession(QCoreApplication::instance());
     desk_ = new turnpoint::ui::OperatorDesk(*script_->bridge(), QCoreApplication::instance());
     inspector_ = new turnpoint::ui::PageInspector(QCoreApplication::instance());

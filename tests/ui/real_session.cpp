@@ -17,10 +17,7 @@ RealSession::RealSession(QObject* parent)
 RealSession::~RealSession() { end(); }
 
 void RealSession::end() {
-  session::Input input;
-  input.time_ns = bridge_.now_ns();
-  input.kind = session::InputKind::stop;
-  inputs_.push(std::move(input));
+  inputs_.push({bridge_.now_ns(), session::input::Stop{}});
   if (thread_.joinable()) thread_.join();
 }
 
@@ -69,13 +66,8 @@ void RealSession::setDiskFull(bool full) {
 
 void RealSession::find(const QString& fault) {
   using session::FaultKind;
-  session::Input input;
-  input.time_ns = bridge_.now_ns();
-  input.kind = session::InputKind::fault;
-  input.text = "found by a test";
   for (const auto kind : {FaultKind::converter_gone, FaultKind::touch_gone, FaultKind::stimulus_missed})
-    if (fault == core::name(kind)) input.fault = kind;
-  inputs_.push(std::move(input));
+    if (fault == core::name(kind)) inputs_.push({bridge_.now_ns(), session::Fault{kind, "found by a test"}});
 }
 
 QList<QStringList> RealSession::table(const QString& file) const {

@@ -309,8 +309,8 @@ int shoot_sessions(const QString& out, const QStringList& sizes, const QString& 
     camera.shoot_live(live3, "live-oddity");
     camera.shoot_report(report, "report-trade");
     camera.shoot_report(report2, "report-boundary");
-    camera.shoot_report(report3, "report-forces", 3);
-    camera.shoot_report(report3, "report-friction", 4);
+    camera.shoot_report(report3, "report-forces", "finger");
+    camera.shoot_report(report3, "report-friction", "friction");
     camera.shoot("PreviewPage.qml", "preview", {{"controller", QVariant::fromValue(&preview)}},
                  [&] { return !preview.busy(); });
     camera.shoot("PreviewPage.qml", "preview-zone", {{"controller", QVariant::fromValue(&zones)}},

@@ -27,7 +27,7 @@ void ScriptedSession::showWith(const QString& name, const QString& text) {
   for (auto exhibit : gallery("en")) {
     if (exhibit.name != name.toStdString()) continue;
     auto& page = exhibit.page;
-    for (auto* place : {&page.title, &page.text, &page.safe, &page.to_do, &page.detail}) *place = words;
+    for (auto* place : {&page.title, &page.text, &page.safe, &page.to_do, &page.fault.detail}) *place = words;
     for (auto& answer : page.answers) answer.label = words;
     for (auto& line : page.summary) line.value = words;
     return bridge_.show(page);
@@ -65,63 +65,38 @@ void ScriptedSession::forgetKernel() { bridge_.set_kernel_time({}); }
 
 double ScriptedSession::answerAgeMs() const { return static_cast<double>(steady_ns() - answer_ns_) / 1e6; }
 
+namespace {
+
+using namespace session::input;
+
+/// What the list of inputs says of an input that the screen can send.
+QString in_words(const session::Input& input) {
+  if (const auto* answer = input.as<Answer>()) return QStringLiteral("answer %1").arg(answer->index);
+  if (const auto* slider = input.as<Slider>()) return QStringLiteral("slider %1").arg(slider->value);
+  if (const auto* value = input.as<Value>()) return QStringLiteral("value %1").arg(value->number);
+  if (const auto* note = input.as<Note>()) return "note " + QString::fromStdString(note->text);
+  if (const auto* lost = input.as<FramesLost>()) return QStringLiteral("frames_lost %1").arg(lost->frames);
+  if (input.is<Next>()) return "next";
+  if (input.is<Back>()) return "back";
+  if (input.is<Stop>()) return "stop";
+  if (input.is<Pause>()) return "pause";
+  if (input.is<Arm>()) return "arm";
+  if (input.is<Repeat>()) return "repeat";
+  if (input.is<SignalShown>()) return "signal_shown";
+  qFatal("the screen cannot send this input");
+}
+
+}  // namespace
+
 void ScriptedSession::take(const session::Input& input) {
-  using session::InputKind;
-  switch (input.kind) {
-    case InputKind::answer:
-      answer_ns_ = input.time_ns;
-      quality_ = input.quality == session::TimeQuality::kernel ? "kernel" : "toolkit";
-      inputs_ += QStringLiteral("answer %1").arg(input.value);
-      break;
-    case InputKind::next:
-      inputs_ += "next";
-      break;
-    case InputKind::back:
-      inputs_ += "back";
-      break;
-    case InputKind::slider:
-      inputs_ += QStringLiteral("slider %1").arg(input.number);
-      break;
-    case InputKind::value:
-      inputs_ += QStringLiteral("value %1").arg(input.number);
-      break;
-    case InputKind::touch_down:
-      ++touches_;
-      break;
-    case InputKind::stop:
-      inputs_ += "stop";
-      break;
-    case InputKind::pause:
-      inputs_ += "pause";
-      break;
-    case InputKind::arm:
-      inputs_ += "arm";
-      break;
-    case InputKind::repeat:
-      inputs_ += "repeat";
-      break;
-    case InputKind::note:
-      inputs_ += "note " + QString::fromStdString(input.text);
-      break;
-    case InputKind::frames_lost:
-      inputs_ += QStringLiteral("frames_lost %1").arg(input.value);
-      break;
-    case InputKind::signal_shown:
-      inputs_ += "signal_shown";
-      break;
-    case InputKind::contact:
-    case InputKind::xrun:
-    case InputKind::heard:
-    case InputKind::measured:
-    case InputKind::fault:
-    case InputKind::failure:
-    case InputKind::glitch:
-    case InputKind::notice:
-    case InputKind::button:
-    case InputKind::disarm:
-    case InputKind::sync:
-      qFatal("the screen cannot send this input");
+  if (input.is<Answer>()) {
+    answer_ns_ = input.time_ns;
+    quality_ = input.quality == session::TimeQuality::kernel ? "kernel" : "toolkit";
   }
+  if (input.is<Touch>())
+    ++touches_;
+  else
+    inputs_ += in_words(input);
   Q_EMIT inputsChanged();
 }
 

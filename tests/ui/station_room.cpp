@@ -1,4 +1,5 @@
 #include "tests/ui/station_room.hpp"
+#include "tests/support/simulated_run.hpp"
 
 #include <QDir>
 #include <QDirIterator>
@@ -11,6 +12,7 @@
 #include <csignal>
 #include <fstream>
 
+#include "station/core/number.hpp"
 #include "station/maintenance/calibrate.hpp"
 #include "station/maintenance/panel_latency.hpp"
 #include "station/rig/apply.hpp"
@@ -178,7 +180,7 @@ void StationRoom::calibrate() {
   std::string sweep = "frequency_Hz,displacement_um,phase_deg\n";
   for (int frequency_Hz = 20000; frequency_Hz <= 50000;
        frequency_Hz += 500)  // the calibration contains no resonance
-    sweep += std::to_string(frequency_Hz) + "," + std::to_string(0.3 + 4e-6 * frequency_Hz) + ",-20\n";
+    sweep += std::to_string(frequency_Hz) + "," + core::number(0.3 + 4e-6 * frequency_Hz) + ",-20\n";
   write(path("sweep.csv"), sweep);
   write(path("friction.csv"), "displacement_um,relative_friction\n0,1\n0.5,0.6\n1,0.4\n2,0.2\n4,0.15\n");
   write(path("sound.csv"), "frequency_Hz,level_dB\n20000,60\n30000,70\n50000,80\n");
@@ -271,12 +273,9 @@ void StationRoom::block(int ms) {
 }
 
 QStringList StationRoom::plannedLevels() const {
-  session::RunRequest request;
-  request.protocol = path("protocols/short.toml");
+  auto request = simulated_run(path("protocols/short.toml"), path("unbroken.sqlite"));
   request.rig = path("rig.toml");
   request.participant = "T1";
-  request.database = path("unbroken.sqlite");
-  request.observer = "sim";
   session::Inputs inputs;
   session::run(session::prepare(request), nullptr, inputs);
   return read(request.database, "trials.csv", "level", {}, {});

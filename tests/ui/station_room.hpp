@@ -51,6 +51,7 @@ class StationRoom : public QObject {
   /// Lets the latency of the touch panel be measured without a panel and without button lines.
   Q_INVOKABLE void pretendPanel(turnpoint::ui::CalibrationGuide* guide);
   Q_INVOKABLE void close();
+  Q_INVOKABLE void resize(int width, int height) { station_->window().resize(width, height); }
   Q_INVOKABLE void addSecondScreen();
   /// Plugs in a USB stick "Test, 16 GB", which is simulated by folders. It is not mounted yet.
   Q_INVOKABLE void plugIn();

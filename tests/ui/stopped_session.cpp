@@ -10,6 +10,7 @@
 #include <QTimer>
 #include <cstdio>
 #include <exception>
+#include <utility>
 
 #include "station/core/records.hpp"
 #include "station/ui/participant/session_bridge.hpp"
@@ -27,22 +28,34 @@ std::string filling;
 void take_part(ui::SessionBridge& bridge) {
   using Kind = ui::PageModel::Kind;
   const auto* page = bridge.page();
-  if (page->kind() == Kind::Instructions) return bridge.next();
+  if (page->kind() == Kind::Instructions || page->kind() == Kind::Paused || page->kind() == Kind::Rest)
+    return bridge.next();
+  // on a machine that stood still the amplifier was switched off; the operator switches it on again
+  if (page->kind() == Kind::Fault) {
+    bridge.arm();
+    return bridge.next();
+  }
   if (page->kind() != Kind::Stimulus || !page->answers_open()) return;
-  if (page->trials_done() == 1) {
+  if (page->trials_done() >= 1) {
+    static bool stopped = false;  // a second signal would end the process
+    if (std::exchange(stopped, true)) return;
     if (!filling.empty()) SmallDisk::fill(filling);
     return void(::raise(SIGTERM));
   }
   // answers count only after a page has been shown for a while
-  bridge.answer(1, bridge.now_ns() + 300'000'000);
+  bridge.answer(1, {bridge.now_ns() + 300'000'000});
 }
 
-/// Simulates a participant. The program calls it once its window exists.
+/// Simulates a participant. The program calls it once its window exists. What came too early for a page,
+/// because the machine stood still, is done again half a second later.
 void sit_down() {
   for (auto* window : QGuiApplication::topLevelWindows()) {
     auto* bridge = window->property("bridge").value<ui::SessionBridge*>();
     if (bridge == nullptr) continue;
     QObject::connect(bridge, &ui::SessionBridge::shown, bridge, [bridge] { take_part(*bridge); });
+    auto* again = new QTimer(bridge);
+    QObject::connect(again, &QTimer::timeout, bridge, [bridge] { take_part(*bridge); });
+    again->start(500);
     return take_part(*bridge);
   }
   QTimer::singleShot(1, [] { sit_down(); });

@@ -100,7 +100,7 @@ TEST_CASE("each flash of a session is stored with the time at which it was shown
   const bool ended = wait_until([&] {
     if (page.kind == session::PageKind::instructions) bridge.next();
     if (flash_ns && system::monotonic_ns() > *flash_ns + 400'000'000)
-      bridge.answer(0, system::monotonic_ns());
+      bridge.answer(0, {system::monotonic_ns()});
     return page.kind == session::PageKind::end;
   });
   CHECK(ended);

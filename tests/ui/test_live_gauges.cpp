@@ -5,6 +5,7 @@
 #include "station/ui/participant/session_runner.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/simulated_run.hpp"
 #include "tests/ui/event_loop.hpp"
 
 using namespace turnpoint;
@@ -13,13 +14,8 @@ TEST_CASE("the operator's view has gauges of the finger, and the participant's p
           "[ui][gauges]") {
   const EventLoop<> loop;
   const TemporaryFolder folder;
-  session::RunRequest request;
-  request.protocol = measured::shipped("demo");
+  auto request = simulated_run(measured::shipped("demo"), folder / "a.sqlite", 7);
   request.rig = measured::with_capture(folder, measured::kCells);
-  request.participant = "P01";
-  request.database = folder / "a.sqlite";
-  request.observer = "sim";
-  request.seed = 7;
   ui::SessionRunner runner;
   const auto& live = runner.live();
   int pressed = 0, guided = 0;

@@ -62,7 +62,7 @@ TEST_CASE("if the pages' thread hangs, the amplifier is switched off, and the ne
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(2600));  // now the pages' thread hangs
   REQUIRE(session.shows(session::PageKind::fault));
-  CHECK(session.page().fault == core::FaultKind::page_silent);
+  CHECK(session.page().fault.kind == core::FaultKind::page_silent);
   CHECK(session.page().amplifier == "faulted");
   session.runner.ask_to_stop();
   const auto summary = session.runner.finish();
@@ -79,8 +79,8 @@ TEST_CASE("an unplugged touch panel makes the trial void and causes a fault page
   REQUIRE(session.shows(session::PageKind::stimulus));
   panel->unplug();
   REQUIRE(session.shows(session::PageKind::fault));
-  CHECK(session.page().fault == core::FaultKind::touch_gone);
-  CHECK(session.page().detail == "the touch panel was disconnected");
+  CHECK(session.page().fault.kind == core::FaultKind::touch_gone);
+  CHECK(session.page().fault.detail == "the touch panel was disconnected");
   panel.reset();
   panel = std::make_unique<FakeEvdev>(2, path);
   session.runner.bridge().arm();

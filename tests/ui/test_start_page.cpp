@@ -17,6 +17,7 @@
 #include "station/ui/operator/operator_controller.hpp"
 #include "station/ui/shared/operator_screen.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/simulated_run.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/ui/event_loop.hpp"
 
@@ -91,7 +92,8 @@ struct StartPage {
 
   void open() {
     page = std::make_unique<OperatorController>(
-        session::StationRequest{folder.path, kSource + "/tests/support/thin_plate.toml", folder / "lab.sqlite"},
+        session::StationRequest{folder.path, kSource + "/tests/support/thin_plate.toml",
+                                folder / "lab.sqlite"},
         [this](const std::string& protocol, const std::string&, const std::stop_token& stop) {
           return checks(protocol, stop);
         });
@@ -160,15 +162,8 @@ TEST_CASE("the result of a check that ends late is not shown for a protocol that
 TEST_CASE("a failed attempt to resume a session does not change the check of the chosen protocol",
           "[start]") {
   StartPage start;
-  session::RunRequest request;
-  request.protocol = kSource + "/protocols/demo.toml";
-  request.rig = kSource + "/tests/support/thin_plate.toml";
-  request.participant = "P01";
-  request.database = start.folder / "lab.sqlite";
-  request.observer = "sim";
+  auto request = simulated_run(kSource + "/protocols/demo.toml", start.folder / "lab.sqlite");
   struct Cut : session::Monitor {
-    void trial_begins(const trial::TrialSpec&, const protocol::Block&,
-                      const session::PlanAhead::Plans&) override {}
     void trial_ended(const trial::TrialSpec&, const core::TrialRow&) override {
       throw std::runtime_error("cut");
     }
@@ -262,8 +257,7 @@ TEST_CASE("the operator begins a session that comes too early only with a reason
   today.participant = "P01", today.protocol_id = "friction-training", today.planned_session = 1;
   today.run_mode = core::RunMode::pilot;
   today.station_id = store::suggested_station_name(), today.started_local = session::local_time();
-  store::SessionLog::begin(start.folder / "lab.sqlite", today, {})
-      .finish(core::SessionStatus::completed, "");
+  store::SessionLog::begin(start.folder / "lab.sqlite", today, {}).finish(core::SessionStatus::completed, "");
   start.open();
   start.checks.let_go();
   REQUIRE(start.comes([&] { return !start.page->checking(); }));

@@ -99,7 +99,8 @@ TEST_CASE("a session stopped during a stimulus is closed in its log, and can be 
   REQUIRE(child.ends_within(kPatience_ms));
   CAPTURE(child.said());
   CHECK(child.outcome() == 0);
-  CHECK(child.said().find("interrupted, 2 trials: the program was stopped by a signal") != std::string::npos);
+  CHECK(child.said().find("interrupted, ") != std::string::npos);
+  CHECK(child.said().find(" trials: the program was stopped by a signal") != std::string::npos);
   const auto sessions = turnpoint::store::list_sessions(folder / "db");
   REQUIRE(sessions.size() == 1);
   CHECK(sessions[0].status == turnpoint::core::SessionStatus::interrupted);

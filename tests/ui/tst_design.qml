@@ -400,6 +400,22 @@ Item {
             tryVerify(() => place("questionnaire") === -1, 5000)
         }
 
+        function test_every_section_of_the_form_can_be_read_on_a_small_panel_in_each_language() {
+            begin("contrast", "a")
+            room.resize(800, 480)
+            tryCompare(room.screen, "width", 800)
+            for (const language of ["en", "de", "es", "ja", "zh", "ar"]) {
+                find(room.screen, "formScroll").parent.texts.language = language
+                for (const section of ["study", "question", "scenes", "levels", "blocks", "timing", "other"]) {
+                    tap("section-" + section)
+                    wait(50)
+                    const form = find(room.screen, "formScroll")
+                    compare(inspector.brokenWords(form), [], language + ", " + section)
+                    compare(inspector.overlaps(form), [], language + ", " + section)
+                }
+            }
+        }
+
         function test_a_screen_reader_finds_every_control_with_a_name() {
             begin("contrast", "a")
             for (const section of ["study", "question", "scenes", "levels", "blocks", "timing", "other"]) {

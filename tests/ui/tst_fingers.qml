@@ -16,14 +16,13 @@ Item {
         pixelsPerMm: 5.2
     }
 
-    TestCase {
+    GalleryTest {
         name: "Fingers"
+        view: view
         when: windowShown
 
         readonly property var panels: [{ width: 800, height: 480, mm: 5.2 }, { width: 1280, height: 800, mm: 5.9 },
                                        { width: 480, height: 800, mm: 5.2 }, { width: 800, height: 1280, mm: 5.9 }]
-
-        SignalSpy { id: shown; target: script.bridge; signalName: "shown" }
 
         function initTestCase() { script.bridge.watch(stage.Window.window) }
         function init() {
@@ -32,29 +31,8 @@ Item {
             show("between-trials")
             script.forget()
         }
-        function resize(panel) {
-            stage.width = panel.width
-            stage.height = panel.height
-            tryCompare(stage.Window.window, "width", panel.width)
-            view.pixelsPerMm = panel.mm
-        }
-        function show(page, language = "en") {
-            const before = shown.count
-            script.show(page, language)
-            tryCompare(shown, "count", before + 1)
-        }
-        function all(parent, wanted) {
-            let found = []
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                if (wanted(child)) found.push(child)
-                found = found.concat(all(child, wanted))
-            }
-            return found
-        }
         function button(name) {
-            const found = all(view, item => item.objectName === name)
+            const found = named(view, name)
             compare(found.length, 1, name)
             return found[0]
         }
@@ -171,7 +149,7 @@ Item {
             mouseClick(stage, place.x, place.y)
             compare(script.inputs, [])
             untilArmed()
-            if (all(view, item => item.objectName === "confirm").length === 0) {
+            if (!find(view, "confirm")) {
                 mouseClick(button("end"))
                 untilArmed()
             }
@@ -187,7 +165,7 @@ Item {
             show("fault-disk_full")
             untilArmed()
             mouseClick(button("end"))
-            verify(all(view, item => (item.text ?? "").toString().includes("last answer")).length > 0)
+            verify(says(view, "last answer"))
         }
 
         function test_the_end_page_ignores_taps_that_were_meant_for_an_answer() {

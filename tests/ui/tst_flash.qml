@@ -15,17 +15,10 @@ Item {
         pixelsPerMm: 5.2
     }
 
-    TestCase {
+    GalleryTest {
         name: "Flash"
+        view: view
         when: windowShown
-
-        SignalSpy { id: shown; target: script.bridge; signalName: "shown" }
-
-        function show(page, language) {
-            const before = shown.count
-            script.show(page, language)
-            tryCompare(shown, "count", before + 1)
-        }
 
         function item(name) {
             const found = findChild(view, name)
@@ -60,10 +53,7 @@ Item {
             return rows
         }
         function test_a_flash_darkens_two_fifths_of_each_panel_says_what_to_do_and_ends(row) {
-            stage.width = row.panel.width
-            stage.height = row.panel.height
-            tryCompare(stage.Window.window, "width", row.panel.width)
-            view.pixelsPerMm = row.panel.mm
+            resize(row.panel)
             const timer = item("flash"), signal = item("signal"), answers = item("answer0").parent
             timer.interval = 10000 // long enough for a picture
             show("explore", row.language)
@@ -86,9 +76,9 @@ Item {
             const timer = item("flash"), signal = item("signal")
             timer.interval = 100
             for (let trial = 0; trial < 2; ++trial) {
-                show("between-trials", "en")
+                show("between-trials")
                 verify(!timer.running)
-                show("explore-flash", "en")
+                show("explore-flash")
                 compare(signal.height, signal.parent.height)
                 tryVerify(() => signal.height < signal.parent.height, 5000)
                 verify(!timer.running)

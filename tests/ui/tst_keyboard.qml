@@ -27,7 +27,7 @@ Item {
         suggestions: ["boundary_mm", "mark_mm", "offset_mm"]
     }
 
-    TestCase {
+    PageTest {
         name: "Keyboard"
         when: windowShown
 
@@ -50,26 +50,10 @@ Item {
             keyboard.layout = "en"
             dialog.visible = false
         }
-        /// All keys below an item that are shown, by name.
-        function keysOf(item) {
-            let found = []
-            for (let i = 0; i < item.children.length; ++i) {
-                const child = item.children[i]
-                if (child.visible && /^letter/.test(child.objectName)) found.push(child)
-                found = found.concat(keysOf(child))
-            }
-            return found
-        }
-        function named(item, name) {
-            for (let i = 0; i < item.children.length; ++i) {
-                const child = item.children[i], deeper = named(child, name)
-                if (child.visible && child.objectName === name) return child
-                if (deeper) return deeper
-            }
-            return null
-        }
+        /// All keys below an item that are shown.
+        function keysOf(item) { return all(item, key => /^letter/.test(key.objectName)) }
         function tap(item, name) {
-            const key = named(item, name)
+            const key = find(item, name)
             verify(key, name)
             mouseClick(key)
         }
@@ -124,13 +108,13 @@ Item {
             compare(letters.length, 15)
             for (const character of "-1.5e+3") tap(keyboard, "letter" + character)
             compare(stage.typed, "-1.5e+3")
-            for (const name of ["erase", "cursorLeft", "cursorRight"]) verify(named(keyboard, name), name)
+            for (const name of ["erase", "cursorLeft", "cursorRight"]) verify(find(keyboard, name), name)
         }
         function test_the_line_and_its_buttons_stay_in_view_while_it_is_typed() {
             dialog.open("")
             wait(20)
             for (const name of ["entry", "keepEntry", "cancelEntry", "letterq", "erase"]) {
-                const item = named(dialog, name), at = item.mapToItem(dialog, 0, 0)
+                const item = find(dialog, name), at = item.mapToItem(dialog, 0, 0)
                 verify(at.y >= 0 && at.y + item.height <= dialog.height, name)
             }
             const typed = createTemporaryQmlObject("import QtTest; SignalSpy { signalName: 'typed' }", stage)

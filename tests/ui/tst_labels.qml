@@ -16,11 +16,10 @@ Item {
         pixelsPerMm: 5.2
     }
 
-    TestCase {
+    GalleryTest {
         name: "Labels"
+        view: view
         when: windowShown
-
-        SignalSpy { id: shown; target: script.bridge; signalName: "shown" }
 
         function test_nine_long_answers_are_read_in_full_on_large_targets_data() {
             const rows = []
@@ -30,13 +29,8 @@ Item {
             return rows
         }
         function test_nine_long_answers_are_read_in_full_on_large_targets(row) {
-            stage.width = row.panel.width
-            stage.height = row.panel.height
-            tryCompare(stage.Window.window, "width", row.panel.width)
-            view.pixelsPerMm = row.panel.mm
-            const before = shown.count
-            script.show("choices-9-long", row.language)
-            tryCompare(shown, "count", before + 1)
+            resize(row.panel)
+            show("choices-9-long", row.language)
             for (let i = 0; i < 9; ++i) {
                 const button = findChild(view, "answer" + i), label = button.children[0]
                 verify(button.visible)

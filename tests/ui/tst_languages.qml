@@ -30,17 +30,11 @@ Item {
         }
     }
 
-    TestCase {
+    GalleryTest {
         name: "Languages"
+        view: view
         when: windowShown
 
-        SignalSpy { id: shown; target: script.bridge; signalName: "shown" }
-
-        function show(page, language) {
-            const before = shown.count
-            script.show(page, language)
-            tryCompare(shown, "count", before + 1)
-        }
         function leftOf(parent, name) {
             const item = findChild(parent, name)
             return item.mapToItem(stage, 0, 0).x

@@ -47,30 +47,14 @@ Item {
         }
     }
 
-    TestCase {
+    GalleryTest {
         name: "Looks"
+        view: view
         when: windowShown
 
-        SignalSpy { id: shown; target: script.bridge; signalName: "shown" }
-
         function place(row) {
-            stage.width = row.panel.width
-            stage.height = row.panel.height
-            tryCompare(stage.Window.window, "width", row.panel.width)
-            view.pixelsPerMm = row.panel.mm
-            const before = shown.count
-            script.show(row.page, row.language)
-            tryCompare(shown, "count", before + 1)
-        }
-        function all(parent, wanted) {
-            let found = []
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                if (wanted(child)) found.push(child)
-                found = found.concat(all(child, wanted))
-            }
-            return found
+            resize(row.panel)
+            show(row.page, row.language)
         }
 
         function test_answers_on_one_page_have_the_same_font_size_however_long_they_are_data() {
@@ -118,7 +102,7 @@ Item {
         function test_a_tall_panel_shows_faults_in_large_type(row) {
             place(row)
             const scale = findChild(view, "explanation").scale
-            const told = all(view, item => item.objectName === "told")
+            const told = named(view, "told")
             compare(told.length, 3)
             for (const text of told) verify(scale * text.font.pixelSize >= 4 * row.panel.mm, text.text)
         }
@@ -137,9 +121,9 @@ Item {
             // The text of a long consent form is cut off on purpose: it scrolls, and a symbol shows that.
             if (row.page !== "consent-form-long") compare(inspector.cutTexts(view), [])
             compare(inspector.brokenWords(view), [])
-            for (const drawing of all(view, item => item.lengthMm !== undefined))
+            for (const drawing of all(view, item => item.xOf !== undefined))
                 verify(!inspector.reachesEdge(drawing))
-            const headings = all(view, item => item.objectName === "heading")
+            const headings = named(view, "heading")
             compare(headings.length, row.page.startsWith("fault-") ? 3 : 0)
             for (const heading of headings) compare(heading.lineCount, 1)
         }

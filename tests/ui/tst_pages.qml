@@ -14,8 +14,9 @@ Item {
         pixelsPerMm: 5.2
     }
 
-    TestCase {
+    GalleryTest {
         name: "Pages"
+        view: view
         when: windowShown
 
         readonly property real settleMs: 40
@@ -29,12 +30,6 @@ Item {
             script.forget()
         }
 
-        function show(page) {
-            const before = shown.count
-            script.show(page, "en")
-            tryCompare(shown, "count", before + 1)
-        }
-
         function item(name) {
             const found = findChild(view, name)
             verify(found, name)
@@ -42,19 +37,9 @@ Item {
         }
 
         function visibleItem(name) {
-            const all = []
-            collect(view, name, all)
-            compare(all.length, 1, "visible items called " + name)
-            return all[0]
-        }
-
-        function collect(parent, name, all) {
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                if (child.objectName === name) all.push(child)
-                collect(child, name, all)
-            }
+            const found = named(view, name)
+            compare(found.length, 1, "visible items called " + name)
+            return found[0]
         }
 
         function tap(name) {
@@ -63,8 +48,6 @@ Item {
         }
 
         function untilArmed() { wait(400) }
-
-        SignalSpy { id: shown; target: script.bridge; signalName: "shown" }
 
         function test_the_intervals_of_abx_are_called_a_b_and_x_all_others_are_numbered() {
             for (const page of ["abx-cue", "abx-x", "abx-answers"]) {
@@ -96,9 +79,7 @@ Item {
             for (const page of ["explore-guided", "response-guided"]) {
                 show(page)
                 const pacer = item("pacer")
-                const all = []
-                collect(view, "pacerBlock", all)
-                compare(all.length, 0, page)
+                compare(named(view, "pacerBlock").length, 0, page)
                 const before = pacer.seconds
                 wait(100)
                 compare(pacer.seconds, before, page)
@@ -107,11 +88,7 @@ Item {
             verify(!item("pacer").visible)
         }
 
-        function intervalNames() {
-            const all = []
-            collect(view, "intervalName", all)
-            return all.map(name => name.text)
-        }
+        function intervalNames() { return named(view, "intervalName").map(name => name.text) }
 
         function test_an_answer_goes_out_once_with_the_time_of_the_touch() {
             show("explore")
@@ -240,9 +217,7 @@ Item {
             show("line")
             untilArmed()
             verify(!item("mark").visible)
-            const done = []
-            collect(view, "proceed", done)
-            compare(done.length, 0)
+            compare(named(view, "proceed").length, 0)
             const line = visibleItem("line")
             mouseClick(line, line.inset + 0.62 * (line.width - 2 * line.inset), line.height / 2)
             verify(item("mark").visible)
@@ -290,6 +265,34 @@ Item {
             wait(400)
             mouseClick(visibleItem("answer1"))
             tryCompare(script, "inputs", ["answer 1"])
+        }
+
+        // As if the program had been held up: the tap waited for the page for longer than taps are ignored.
+        function test_a_tap_that_had_to_wait_is_no_confidence() {
+            show("confidence")
+            const until = Date.now() + 500
+            while (Date.now() < until) continue
+            wait(0)
+            mouseClick(visibleItem("answer1"))
+            wait(2 * settleMs)
+            compare(script.inputs, [])
+            wait(400)
+            mouseClick(visibleItem("answer1"))
+            tryCompare(script, "inputs", ["answer 1"])
+        }
+
+        function test_a_confidence_that_was_not_accepted_is_asked_again() {
+            show("confidence")
+            tryCompare(item("touchField"), "open", true)
+            mouseClick(visibleItem("answer1"))
+            tryCompare(script, "inputs", ["answer 1"])
+            wait(2 * settleMs)
+            mouseClick(visibleItem("answer2"))
+            wait(2 * settleMs)
+            compare(script.inputs, ["answer 1"])
+            show("confidence")
+            mouseClick(visibleItem("answer2"))
+            tryCompare(script, "inputs", ["answer 1", "answer 2"])
         }
 
         function test_every_fault_page_says_what_happened_what_is_safe_and_what_to_do_data() {
@@ -358,14 +361,7 @@ Item {
             verify(!findText(view, "SIMULATED") && !findText(view, "PILOT RUN"))
         }
 
-        function findText(parent, wanted) {
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                if (child.text === wanted || findText(child, wanted)) return true
-            }
-            return false
-        }
+        function findText(parent, wanted) { return all(parent, item => item.text === wanted).length > 0 }
 
         function test_nothing_is_repainted_during_a_stimulus() {
             show("explore")

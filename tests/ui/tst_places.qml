@@ -313,6 +313,9 @@ Item {
             const guide = find(room.screen, "rigPage").rig.guide
             tap("guideTab")
             tap("guide-response")
+            const sign = appears("guideSign"), picture = find(room.screen, "guidePicture")
+            verify(picture.surface.wideEndLeft)
+            fuzzyCompare(sign.x, picture.xOf(0), 1)   // on the strip, at its wide end
             compare(guide.readings, [])
             tap("guidePlay")
             tryVerify(() => guide.readings.length === 2, 20000)

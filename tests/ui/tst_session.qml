@@ -14,7 +14,7 @@ Item {
         pixelsPerMm: 5.2
     }
 
-    TestCase {
+    PageTest {
         name: "Session"
         when: windowShown
 
@@ -32,20 +32,10 @@ Item {
 
         function proceed() {
             wait(400)
-            const all = []
-            collect(view, all)
-            compare(all.length, 1)
-            tryCompare(all[0], "armed", true, 20000)
-            mouseClick(all[0])
-        }
-
-        function collect(parent, all) {
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                if (child.objectName === "proceed") all.push(child)
-                collect(child, all)
-            }
+            const found = named(view, "proceed")
+            compare(found.length, 1)
+            tryCompare(found[0], "armed", true, 20000)
+            mouseClick(found[0])
         }
 
         // The answers do not depend on the levels, so that each row can be compared with the answer that was

@@ -19,19 +19,13 @@ Item {
         }
     }
 
-    TestCase {
+    GalleryTest {
         name: "Turned"
+        view: view
         when: windowShown
-
-        SignalSpy { id: shown; target: script.bridge; signalName: "shown" }
 
         function initTestCase() { script.bridge.watch(stage.Window.window) }
         function cleanupTestCase() { script.forgetKernel() }
-        function show(page) {
-            const before = shown.count
-            script.show(page, "en")
-            tryCompare(shown, "count", before + 1)
-        }
 
         function test_pages_are_turned_and_touches_find_their_answer_data() {
             return [{ tag: "0", corner: Qt.point(0, 0), side: false }, { tag: "90", corner: Qt.point(800, 0), side: true },

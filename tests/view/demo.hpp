@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "station/session/prepare.hpp"
+#include "tests/support/simulated_run.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 // Helpers for tests of what the operator is shown.
@@ -21,13 +22,8 @@ inline std::string value_of(const std::vector<std::pair<std::string, std::string
 
 /// A simulated session of the demo, stored in this folder.
 inline session::RunRequest demo_in(const TemporaryFolder& folder) {
-  session::RunRequest request;
-  request.protocol = kSource + "/protocols/demo.toml";
-  request.rig = kSource + "/tests/support/thin_plate.toml";
+  auto request = simulated_run(kSource + "/protocols/demo.toml", folder / "a.sqlite", 4);
   request.participant = "P09";
-  request.database = folder / "a.sqlite";
-  request.observer = "sim";
-  request.seed = 4;
   return request;
 }
 

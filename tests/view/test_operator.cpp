@@ -288,8 +288,6 @@ TEST_CASE("participants are listed once they have a stored session, and an inter
   CHECK_FALSE(view::interrupted_note(request.database).has_value());
   struct Cut : session::Monitor {
     int left = 3;
-    void trial_begins(const trial::TrialSpec&, const protocol::Block&,
-                      const session::PlanAhead::Plans&) override {}
     void trial_ended(const trial::TrialSpec&, const core::TrialRow&) override {
       if (--left == 0) throw std::runtime_error("cut");
     }

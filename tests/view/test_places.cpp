@@ -10,6 +10,7 @@
 #include "station/view/choices.hpp"
 #include "station/view/session_list.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/simulated_run.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
@@ -20,13 +21,8 @@ const std::string kHere = TURNPOINT_SOURCE_DIR;
 
 /// Runs a session of this participant with a simulated observer, and returns its id.
 std::string run_session(const std::string& database, const std::string& participant) {
-  session::RunRequest request;
-  request.protocol = kHere + "/protocols/demo.toml";
-  request.rig = kHere + "/tests/support/thin_plate.toml";
+  auto request = simulated_run(kHere + "/protocols/demo.toml", database, 1);
   request.participant = participant;
-  request.database = database;
-  request.observer = "sim";
-  request.seed = 1;
   session::Inputs inputs;
   return session::run(session::prepare(request), nullptr, inputs).session_id;
 }

@@ -10,6 +10,7 @@
 #include "station/session/session.hpp"
 #include "station/view/sample_pages.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/simulated_run.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
@@ -37,8 +38,8 @@ std::vector<view::SamplePage> samples_of(const std::string& protocol, const std:
 /// What a participant reads on a page: everything but the levels and the counted trials.
 std::string read(const session::Page& page) {
   auto text = std::to_string(static_cast<int>(page.kind)) + page.title + "|" + page.text + "|" +
-              (page.kind == PageKind::rest ? "" : page.instruction) + "|" + std::to_string(page.intervals) +
-              "." + std::to_string(page.interval);
+              (page.kind == PageKind::rest ? "" : page.instruction) + "|" + std::to_string(page.interval.of) +
+              "." + std::to_string(page.interval.number);
   for (const auto& answer : page.answers) text += "|" + answer.label + "/" + answer.caption;
   return text;
 }
@@ -83,13 +84,9 @@ TEST_CASE("what a simulated session shows is among the pages of the preview", "[
   const TemporaryFolder folder;
   for (const std::string study : {"friction-2ifc", "boundary-constant", "speed-accuracy"}) {
     INFO(study);
-    session::RunRequest request;
-    request.protocol = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + study + ".toml";
-    request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
+    auto request =
+        simulated_run(TURNPOINT_SOURCE_DIR "/protocols/" + study + ".toml", folder / (study + ".sqlite"), 1);
     request.participant = "P1";
-    request.database = folder / (study + ".sqlite");
-    request.observer = "sim";
-    request.seed = 1;
     const auto prepared = session::prepare(request);
     Collected shown;
     session::Inputs inputs;

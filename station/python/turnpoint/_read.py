@@ -1,5 +1,6 @@
 """Reads databases, collectors and exports into pandas frames."""
 import gzip
+import json
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +17,7 @@ TEXTS = ("participant_id participant_code session_id run_mode protocol_id protoc
          "response_time_quality station_id calibration_id software_version proof proof_cause sensing scene reason kind value "
          "status status_reason started protocol_path rig_name rig_sha256 rig_path language observer kernel realtime_rights "
          "consent_version annotations checksum columns_version stream file finger self_test check verdict unit what "
-         "questionnaire item answer").split()
+         "questionnaire item answer previous_correct_response previous_response previous_outcome").split()
 
 
 @dataclass(frozen=True)
@@ -109,9 +110,22 @@ def _read_csv(path):
         header = file.readline()
     separator = next(mark for mark in header if mark in ",;|\t")
     cells = pd.read_csv(path, sep=separator, encoding="utf-8-sig", dtype=str, na_values=["n/a"], keep_default_na=False)
+    levels = _levels_of_factors(path, list(cells.columns))
     for name in cells.columns:
-        cells[name] = _texts(cells[name]) if name in TEXTS else _numbers(cells[name], commas=separator != ",")
+        if "n/a" in levels.get(name, ()):  # the text; a trial that has a level has a value of each factor
+            cells[name] = cells[name].mask(cells[name].isna() & cells["level"].notna(), "n/a")
+        texts = bool(levels[name]) if name in levels else name in TEXTS
+        cells[name] = _texts(cells[name]) if texts else _numbers(cells[name], commas=separator != ",")
     return cells
+
+
+def _levels_of_factors(path, columns):
+    """The texts that each factor of trials.csv has as values, as the codebook lists them; none for a factor of numbers."""
+    if path.name != "trials.csv":
+        return {}
+    explained = json.loads((path.parent / "codebook.json").read_text(encoding="utf-8"))["trials.csv"]
+    factors = columns[columns.index("level_unit") + 1:columns.index("boundary_mm")]
+    return {name: explained[name].get("Levels", ()) for name in factors}
 
 
 def _texts(column):
@@ -122,8 +136,7 @@ def _texts(column):
 
 
 def _numbers(column, commas):
-    """Numbers if all cells are numbers, with a decimal point or (if `commas`) a decimal comma; else texts, which a factor may
-    have as values."""
+    """Numbers if all cells are numbers, with a decimal point or (if `commas`) a decimal comma; else texts."""
     for cells in (column, column.str.replace(",", ".", regex=False)) if commas else (column,):
         try:
             return pd.to_numeric(cells)

@@ -2,7 +2,7 @@
 #   turnpoint report --study --db lab.sqlite --tables tables
 #   Rscript study.R tables
 # The model is that of the report: a psychometric function whose intercept and slope differ between participants.
-# Prints what, condition, value of lme4, value of the report; and for times of right answers: what, first
+# Prints what, condition, value of lme4 (empty if it finds no fit), value of the report; and for times of right answers: what, first
 # condition, second condition, difference of their logarithms (second minus first, as in the report), standard error.
 suppressMessages(library(lme4))
 
@@ -38,21 +38,31 @@ link <- function(name, guess, lapse) {
 for (i in seq_len(nrow(groups))) {
   group <- groups[i, ]
   part <- answers[answers$condition == group$condition, ]
+  if (any(part$weight != 1)) {
+    message("no comparison for ", group$condition, ": unsure answers count as fractions with a weight, not as lme4 counts")
+    next
+  }
   # lme4 wants levels of the order of 1
   centre <- mean(part$axis); width <- sd(part$axis)
   part$x <- (part$axis - centre) / width
   start <- list(fixef = c(group$intercept + group$rate * centre, group$rate * width))
-  model <- suppressMessages(suppressWarnings(glmer(
+  model <- tryCatch(suppressMessages(suppressWarnings(glmer(
     cbind(positive, trials - positive) ~ x + (1 + x | participant), part, start = start,
     family = binomial(link(group$`function`, group$guess, group$lapse)),
-    control = glmerControl(optimizer = "bobyqa", optCtrl = list(maxfun = 1e5)))))
-  rate <- fixef(model)[[2]] / width
-  threshold <- -fixef(model)[[1]] / fixef(model)[[2]] * width + centre
-  likelihood <- as.numeric(logLik(model)) - sum(lchoose(part$trials, part$positive))
-  ours <- -group$intercept / group$rate
-  cat(sprintf("threshold,%s,%.6g,%.6g\n", quoted(group$condition), threshold, ours))
-  cat(sprintf("rate,%s,%.6g,%.6g\n", quoted(group$condition), rate, group$rate))
-  cat(sprintf("log_likelihood,%s,%.8g,%.8g\n", quoted(group$condition), likelihood, group$log_likelihood))
+    control = glmerControl(optimizer = "bobyqa", optCtrl = list(maxfun = 1e5))))),
+    error = function(problem) {
+      # for example if a participant is always right
+      message("lme4 finds no fit for ", group$condition, ": ", conditionMessage(problem))
+      NULL
+    })
+  theirs <- c(threshold = NA, rate = NA, log_likelihood = NA)
+  if (!is.null(model))
+    theirs <- c(threshold = -fixef(model)[[1]] / fixef(model)[[2]] * width + centre, rate = fixef(model)[[2]] / width,
+                log_likelihood = as.numeric(logLik(model)) - sum(lchoose(part$trials, part$positive)))
+  ours <- c(threshold = -group$intercept / group$rate, rate = group$rate, log_likelihood = group$log_likelihood)
+  for (what in names(ours))
+    cat(what, quoted(group$condition), ifelse(is.na(theirs[[what]]), "", sprintf("%.8g", theirs[[what]])),
+        sprintf("%.8g\n", ours[[what]]), sep = ",")
 }
 
 # Response times of right answers: log time by condition, with participants as random effects.

@@ -3,8 +3,8 @@
 turnpoint report --study --db lab.sqlite --tables tables
 python3 study.py tables
 
-Prints one line for each measure and pair of conditions: the mean of the participants' own differences, its
-standard error and the number of participants. If the conditions are those of two groups of participants,
+Prints the mean accuracy, if answers are right or wrong, and one line for each measure and pair of conditions: the mean
+of the participants' own differences, its standard error (empty for one participant) and the number of participants. If the conditions are those of two groups of participants,
 the line has the difference of the groups' means. The report has the same differences with intervals.
 """
 import csv
@@ -37,6 +37,10 @@ def effects(measures: pd.DataFrame, groups: pd.Series) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["measure", "first", "second", "difference", "se", "participants"])
 
 
+def number(value: float) -> str:
+    return "" if pd.isna(value) else f"{value:.6g}"
+
+
 def main() -> None:
     if len(sys.argv) != 2:
         sys.exit("name the folder of the tables: python3 study.py tables")
@@ -50,12 +54,13 @@ def main() -> None:
     trials = pd.read_csv(folder / "trials.csv", dtype=str, keep_default_na=False)
     trials["correct"] = pd.to_numeric(trials["correct"])
     answered = trials[(trials["excluded"] == "no") & (trials["outcome"] == "answered")]
-    accuracy = answered.groupby("participant")["correct"].mean()
+    accuracy = answered.groupby("participant")["correct"].mean().dropna()
     # a condition of two factors has a comma in its name, which csv quotes
     lines = csv.writer(sys.stdout, lineterminator="\n")
-    lines.writerow(["accuracy", "", "", f"{accuracy.mean():.6g}", f"{accuracy.sem():.6g}", len(accuracy)])
+    if len(accuracy) > 0:
+        lines.writerow(["accuracy", "", "", number(accuracy.mean()), number(accuracy.sem()), len(accuracy)])
     for row in effects(included, groups).itertuples(index=False):
-        lines.writerow([row.measure, row.first, row.second, f"{row.difference:.6g}", f"{row.se:.6g}", row.participants])
+        lines.writerow([row.measure, row.first, row.second, number(row.difference), number(row.se), row.participants])
 
 
 if __name__ == "__main__":

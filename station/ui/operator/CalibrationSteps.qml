@@ -56,7 +56,7 @@ Item {
                 theme: root.theme
                 texts: root.texts
                 surface: root.surface
-                boundaryMm: root.reading === "" ? Math.round((root.surface.lengthMm ?? 0) / 2) : Number(root.reading)
+                boundaryMm: root.reading === "" ? Math.round(root.surface.lengthMm / 2) : Number(root.reading)
                 onMoved: (which, mm) => root.guide.enter(mm.toFixed(1))
             }
         }
@@ -67,12 +67,10 @@ Item {
             height: root.guide.chosen === "sound" ? strip / 0.7 : strip  // the meter is above the surface
             SurfaceDrawing {
                 id: picture
+                objectName: "guidePicture"
                 anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
                 height: parent.strip
-                lengthMm: root.surface.lengthMm ?? 0
-                wideHalfWidthMm: root.surface.wideHalfWidthMm ?? 0
-                narrowHalfWidthMm: root.surface.narrowHalfWidthMm ?? 0
-                wideEndLeft: root.surface.wideEndLeft ?? true
+                surface: root.surface
                 showFinger: root.guide.chosen === "friction"
                 textPixels: root.theme.textSmall
                 ink: root.theme.ink
@@ -80,12 +78,13 @@ Item {
                 accent: root.theme.action
             }
             Glyph {
+                objectName: "guideSign"
                 visible: root.guide.chosen !== "friction"
                 name: root.guide.chosen === "sound" ? "gauge" : "rings"
                 color: root.theme.action
                 height: 0.57 * parent.strip
                 width: height
-                x: root.guide.chosen === "sound" ? (parent.width - width) / 2 : picture.width > 0 ? picture.xOf(0) - width / 2 + (picture.wideEndLeft ? 1 : -1) * width / 2 : 0
+                x: root.guide.chosen === "sound" ? (parent.width - width) / 2 : picture.width > 0 ? picture.xOf(0) - width / 2 + (root.surface.wideEndLeft ? 1 : -1) * width / 2 : 0
                 y: root.guide.chosen === "sound" ? 0 : 0.21 * parent.strip
             }
         }

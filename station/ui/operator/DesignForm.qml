@@ -105,21 +105,38 @@ Rectangle {
                     objectName: "group" + index
                     width: sheet.width
                     spacing: Math.round(0.6 * root.theme.unit)
+                    // the buttons stand beside the title, or below it if a word of it would be broken there
                     Item {
+                        id: head
+                        readonly property real natural: {
+                            let sum = 0
+                            for (let i = 0; i < tools.children.length; ++i) sum += tools.children[i].visible && tools.children[i].width > 0 ? tools.children[i].width + tools.spacing : 0
+                            return sum
+                        }
+                        readonly property bool beside: natural + words.width + root.theme.unit <= width
                         width: parent.width
-                        height: Math.max(title.implicitHeight, tools.height)
+                        height: beside ? Math.max(title.height, tools.height) : title.height + (natural > 0 ? tools.spacing + tools.height : 0)
+                        TextMetrics {
+                            id: words
+                            font: title.font
+                            text: title.text
+                        }
                         PlainText {
                             id: title
                             objectName: "title" + table.index
-                            anchors { left: parent.left; right: tools.left; verticalCenter: parent.verticalCenter }
+                            anchors.left: parent.left
+                            y: head.beside ? Math.round((head.height - height) / 2) : 0
+                            width: head.beside ? head.width - head.natural : head.width
                             text: root.design.label([table.modelData.kind], root.texts.language) + (table.modelData.name === "" ? "" : "  “" + table.modelData.name + "”")
                             color: root.theme.action
                             font { pixelSize: root.theme.textTitle; weight: Font.Bold }
                             wrapMode: Text.Wrap
                         }
-                        Row {
+                        Flow {
                             id: tools
-                            anchors { right: parent.right; verticalCenter: parent.verticalCenter }
+                            anchors.right: parent.right
+                            y: head.beside ? Math.round((head.height - height) / 2) : head.height - height
+                            width: Math.min(head.natural, head.width)
                             spacing: Math.round(0.5 * root.theme.unit)
                             Repeater {
                                 model: [{ name: "earlier", word: "design.earlier" }, { name: "later", word: "design.later" }]

@@ -29,10 +29,7 @@ Item {
         id: strip
         anchors { left: parent.left; right: parent.right; top: hint.bottom }
         height: Math.max(2.2 * root.theme.controlHeight, 12 * root.theme.unit)
-        lengthMm: root.surface.lengthMm ?? 0
-        wideHalfWidthMm: root.surface.wideHalfWidthMm ?? 0
-        narrowHalfWidthMm: root.surface.narrowHalfWidthMm ?? 0
-        wideEndLeft: root.surface.wideEndLeft ?? true
+        surface: root.surface
         textPixels: root.theme.textSmall
         ink: root.theme.ink
         paper: root.theme.raised

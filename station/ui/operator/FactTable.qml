@@ -1,14 +1,15 @@
 import QtQuick
 import Turnpoint
 
-// A table of labels and values under a heading, for the operator's pages. Both are phrases (see Texts.say). In a
-// language that is read from right to left, English values are at the right as well, so that both columns have a
-// straight edge.
+// A table of labels and values under a heading, and remarks below it, for the operator's pages. All but the heading are
+// phrases (see Texts.say). In a language that is read from right to left, English values are at the right as well, so
+// that both columns have a straight edge.
 Column {
     id: root
     required property Theme theme
     required property Texts texts
     required property var facts
+    property var remarks: []
     property string heading
     /// Share of the width that the labels have, or more if a word needs it.
     property real labelShare: 0.4
@@ -22,7 +23,7 @@ Column {
 
     FontMetrics { id: metrics; font.pixelSize: root.theme.textSmall }
     PlainText {
-        visible: root.heading !== "" && root.facts.length > 0
+        visible: root.heading !== "" && root.facts.length + root.remarks.length > 0
         width: root.width
         text: root.heading
         color: root.theme.action
@@ -54,6 +55,17 @@ Column {
                 horizontalAlignment: Text.AlignLeft
                 wrapMode: Text.Wrap
             }
+        }
+    }
+    Repeater {
+        model: root.remarks
+        PlainText {
+            required property var modelData
+            width: root.width
+            text: "• " + root.texts.say(modelData)
+            color: root.theme.ink
+            font.pixelSize: root.theme.textSmall
+            wrapMode: Text.Wrap
         }
     }
 }

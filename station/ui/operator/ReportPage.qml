@@ -12,6 +12,7 @@ Rectangle {
     /// On a tall screen, the numbers stand below the figure.
     readonly property bool tall: height > width
     readonly property string title: report.title + (report.status === "" ? "" : " (" + texts.named(report.runMode) + ", " + texts.named(report.status) + ")")
+    readonly property Texts words: texts
     signal closed()
 
     color: look.paper
@@ -67,40 +68,57 @@ Rectangle {
         id: body
         anchors { left: parent.left; right: parent.right; top: header.bottom; bottom: parent.bottom; margins: look.margin; topMargin: look.unit; bottomMargin: frame.edge + look.unit }
     }
-    Flow {
-        id: tabs
+    Item {
+        id: pane
         anchors { left: body.left; top: body.top }
-        width: figure.width
-        spacing: Math.round(0.6 * look.unit)
-        Repeater {
-            model: root.report.pictureNames
-            ActionButton {
-                required property int index
-                required property string modelData
-                objectName: "picture" + index
-                theme: look
-                primary: root.shown === index
-                quiet: root.shown !== index
-                size: look.textSmall
-                text: texts.text(modelData)
-                onActivated: root.shown = index
+        width: (root.tall ? 1 : 0.6) * body.width
+        height: (root.tall ? 0.55 : 1) * body.height
+        Flickable {
+            id: view
+            width: pane.width - look.unit
+            height: pane.height
+            contentHeight: figure.y + figure.height
+            boundsBehavior: Flickable.StopAtBounds
+            clip: true
+            Flow {
+                id: tabs
+                width: view.width
+                spacing: Math.round(0.6 * look.unit)
+                Repeater {
+                    model: root.report.pictureNames
+                    ActionButton {
+                        required property int index
+                        required property string modelData
+                        objectName: "picture" + index
+                        theme: look
+                        primary: root.shown === index
+                        quiet: root.shown !== index
+                        size: look.textSmall
+                        text: texts.text(modelData)
+                        onActivated: root.shown = index
+                    }
+                }
+            }
+            FigureView {
+                id: figure
+                objectName: "picture"
+                y: tabs.height + look.unit
+                width: view.width
+                height: neededHeight
+                // on a small panel the buttons are scrolled away to see the figure
+                seenHeight: view.height - (y < 0.3 * view.height ? y : 0)
+                textPixels: Math.max(0.85 * look.textSmall, 2 * root.pixelsPerMm)
+                dark: look.dark
+                paper: look.raised
+                picture: root.report.pictures[Math.min(root.shown, root.report.pictures.length - 1)] ?? ""
+                onPictureChanged: view.contentY = 0
             }
         }
-    }
-    FigureView {
-        id: figure
-        objectName: "picture"
-        anchors { left: body.left; top: tabs.bottom; topMargin: look.unit }
-        width: root.tall ? body.width : 0.6 * body.width - look.unit
-        height: (root.tall ? 0.55 : 1) * body.height - tabs.height - look.unit
-        textPixels: Math.max(0.85 * look.textSmall, 2 * root.pixelsPerMm)
-        dark: look.dark
-        paper: look.raised
-        picture: root.report.pictures[Math.min(root.shown, root.report.pictures.length - 1)] ?? ""
+        ScrollCue { theme: look; place: view }
     }
     Rectangle {
         id: side
-        anchors { right: body.right; top: root.tall ? figure.bottom : body.top; topMargin: root.tall ? look.unit : 0; bottom: body.bottom }
+        anchors { right: body.right; top: root.tall ? pane.bottom : body.top; topMargin: root.tall ? look.unit : 0; bottom: body.bottom }
         width: root.tall ? body.width : 0.4 * body.width
         radius: look.radius
         color: look.raised
@@ -115,22 +133,19 @@ Rectangle {
                 id: sheet
                 width: scroll.width
                 spacing: look.unit
-                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("operator.trials"); facts: root.report.outcomes; labelShare: 0.5 }
-                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.speed_accuracy"); facts: root.report.trade; labelShare: 0.5 }
-                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.fit"); facts: root.report.fit; labelShare: 0.5 }
-                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.finger"); facts: root.report.forces; labelShare: 0.5 }
                 Repeater {
-                    model: root.report.statements
-                    PlainText {
+                    model: root.report.sections
+                    FactTable {
                         required property var modelData
                         width: sheet.width
-                        text: "• " + texts.say(modelData)
-                        color: look.ink
-                        font.pixelSize: look.textSmall
-                        wrapMode: Text.Wrap
+                        theme: look
+                        texts: root.words
+                        heading: root.words.say(modelData.heading)
+                        facts: modelData.facts
+                        remarks: modelData.statements
+                        labelShare: 0.5
                     }
                 }
-                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.station"); facts: root.report.health; labelShare: 0.5 }
             }
         }
         ScrollCue { theme: look; place: scroll }

@@ -138,11 +138,7 @@ void CalibrationGuide::begin(const QString& series) {
     points_ = maintenance::series_points(*rig_, found->first);
     chosen_ = found->first;
     real_ = maintenance::can_be_felt(*rig_);
-    const auto outline = view::outline_of(*rig_);
-    surface_ = {{"lengthMm", outline.length_mm},
-                {"wideHalfWidthMm", outline.wide_half_width_mm},
-                {"narrowHalfWidthMm", outline.narrow_half_width_mm},
-                {"wideEndLeft", outline.wide_end_left}};
+    surface_ = {rig::outline_of(*rig_)};
   } catch (const std::exception& error) {
     problem_ = explanation_of(error);
   }

@@ -15,6 +15,7 @@
 
 #include "station/maintenance/guided_series.hpp"
 #include "station/ui/operator/latency_controller.hpp"
+#include "station/ui/participant/surface_drawing.hpp"
 #include "station/ui/platform/newest_job.hpp"
 #include "station/ui/shared/phrases.hpp"
 
@@ -46,8 +47,8 @@ class CalibrationGuide : public QObject {
   Q_PROPERTY(QVariantList readings READ readings NOTIFY read)
   Q_PROPERTY(double remainingSeconds READ remaining_s NOTIFY ticked)  ///< of the tone
   Q_PROPERTY(bool mayFinish READ may_finish NOTIFY changed)
-  /// outline of the rig's surface: {lengthMm, wideHalfWidthMm, narrowHalfWidthMm, wideEndLeft}
-  Q_PROPERTY(QVariantMap surface READ surface NOTIFY changed)
+  /// outline of the rig's surface
+  Q_PROPERTY(turnpoint::ui::SurfaceOutline surface READ surface NOTIFY changed)
   /// the measurement of the touch panel's latency; null unless one is going on
   Q_PROPERTY(turnpoint::ui::LatencyController* latency READ latency NOTIFY changed)
   Q_PROPERTY(QVariant problem READ problem NOTIFY changed)
@@ -76,7 +77,7 @@ class CalibrationGuide : public QObject {
   QVariantList readings() const { return readings_; }
   double remaining_s() const;
   bool may_finish() const;
-  QVariantMap surface() const { return surface_; }
+  SurfaceOutline surface() const { return surface_; }
   LatencyController* latency() const { return latency_.get(); }
   QVariant problem() const { return to_variant(problem_); }
   QString file() const { return file_; }
@@ -116,7 +117,7 @@ class CalibrationGuide : public QObject {
   bool real_ = false, playing_ = false;
   QElapsedTimer begun_;
   QTimer tick_, rest_;
-  QVariantMap surface_;
+  SurfaceOutline surface_;
   QVariantList readings_;
   /// Deleted by the event loop, because it ends its own measurement by a signal.
   std::unique_ptr<LatencyController, QScopedPointerDeleteLater> latency_;

@@ -102,13 +102,9 @@ bool DesignController::open(const QString& path) try {
 
 void DesignController::begin(std::string text, const std::string& path) {
   if (!schema_) schema_.emplace(core::read_file(place_.templates + "/protocol.schema.json"));
-  if (surface_.isEmpty()) {
+  if (!rig_) {
     rig_ = rig_without_messages(place_.rig);
-    const auto outline = view::outline_of(*rig_);
-    surface_ = {{"lengthMm", outline.length_mm},
-                {"wideHalfWidthMm", outline.wide_half_width_mm},
-                {"narrowHalfWidthMm", outline.narrow_half_width_mm},
-                {"wideEndLeft", outline.wide_end_left}};
+    surface_ = {rig::outline_of(*rig_)};
   }
   path_ = path;
   name_ = QFileInfo(QString::fromStdString(path)).completeBaseName().toStdString();

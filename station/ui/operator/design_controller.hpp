@@ -13,6 +13,7 @@
 #include "station/ui/operator/feeling.hpp"
 #include "station/ui/operator/pages_preview.hpp"
 #include "station/ui/operator/precision.hpp"
+#include "station/ui/participant/surface_drawing.hpp"
 #include "station/ui/platform/newest_job.hpp"
 #include "station/ui/shared/phrases.hpp"
 #include "station/view/choices.hpp"
@@ -62,8 +63,8 @@ class DesignController : public QObject {
   /// meanwhile), or what a file or a value did not allow; "" if it was
   Q_PROPERTY(QVariant trouble READ trouble NOTIFY changed)
   Q_PROPERTY(QString savedAs READ saved_as NOTIFY changed)
-  /// outline of the rig's surface: {lengthMm, wideHalfWidthMm, narrowHalfWidthMm, wideEndLeft}
-  Q_PROPERTY(QVariantMap surface READ surface NOTIFY changed)
+  /// outline of the rig's surface
+  Q_PROPERTY(turnpoint::ui::SurfaceOutline surface READ surface NOTIFY changed)
   /// parts of a typical trial as {kind: pause | interval | gap | answer, from, to} in seconds; empty while
   /// the study cannot be read
   Q_PROPERTY(QVariantList timeline READ timeline NOTIFY changed)
@@ -103,7 +104,7 @@ class DesignController : public QObject {
   QVariant trouble() const { return to_variant(trouble_); }
   const core::Phrase& trouble_phrase() const { return trouble_; }
   QString saved_as() const { return saved_as_; }
-  QVariantMap surface() const { return surface_; }
+  SurfaceOutline surface() const { return surface_; }
   QVariantList timeline() const { return timeline_; }
   QVariantMap profiles() const { return profiles_; }
   bool touched() const { return touched_; }
@@ -199,7 +200,8 @@ class DesignController : public QObject {
   view::CheckWords words_;
   QString stage_, saved_as_, suggested_;
   core::Phrase trouble_;
-  QVariantMap surface_, profiles_;
+  SurfaceOutline surface_;
+  QVariantMap profiles_;
   QVariantList timeline_;
   int section_ = 0;
   bool checking_ = false, touched_ = false;

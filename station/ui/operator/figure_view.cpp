@@ -48,13 +48,47 @@ void save_figure(const report::NamedFigure& figure, const QString& folder) {
 }
 
 QVariant to_variant(const view::Drawing& drawing) { return QVariant::fromValue(Picture{drawing}); }
+QVariant to_variant(const report::Figure& figure) {
+  return QVariant::fromValue(Picture{view::drawing_of(figure), figure});
+}
 
 FigureView::FigureView(QQuickItem* parent) : QQuickPaintedItem(parent) { setAntialiasing(true); }
 
 void FigureView::set_picture(const QVariant& picture) {
   picture_ = picture.value<Picture>();
   Q_EMIT pictureChanged();
+  lay_out();
+}
+
+void FigureView::set_text_pixels(double pixels) {
+  text_pixels_ = pixels;
+  lay_out();
+}
+
+void FigureView::set_seen_height(double height) {
+  seen_height_ = height;
+  lay_out();
+}
+
+void FigureView::geometryChange(const QRectF& now, const QRectF& before) {
+  QQuickPaintedItem::geometryChange(now, before);
+  if (now.width() != before.width()) lay_out();
+}
+
+void FigureView::lay_out() {
   update();
+  scrolled_.reset();
+  const double width_px = width() - 2 * kMargin, seen_px = seen_height_ - 2 * kMargin;
+  double needed = seen_height_;
+  if (picture_.figure && width_px >= 1 && seen_px >= 1) {
+    const double scale = text_pixels_ / kDrawnText_px;
+    scrolled_ = report::laid_out_to_scroll(*picture_.figure, width_px / scale, seen_px / scale);
+    const auto [drawn_width, drawn_height] = report::size_px(*scrolled_);
+    needed = 2 * kMargin + drawn_height * width_px / drawn_width;
+  }
+  if (needed == needed_height_) return;
+  needed_height_ = needed;
+  Q_EMIT neededHeightChanged();
 }
 
 void FigureView::set_paper(const QColor& paper) {
@@ -77,7 +111,10 @@ void FigureView::paint(QPainter* painter) {
   painter->drawRoundedRect(card, kMargin, kMargin);
   const double scale = text_pixels_ / kDrawnText_px;
   PainterCanvas canvas(*painter, inside, dark_ ? PainterCanvas::Tone::dark : PainterCanvas::Tone::paper);
-  picture_.draw(canvas, inside.width() / scale, inside.height() / scale);
+  if (scrolled_)
+    report::draw(canvas, *scrolled_);
+  else
+    picture_.draw(canvas, inside.width() / scale, inside.height() / scale);
 }
 
 }  // namespace turnpoint::ui

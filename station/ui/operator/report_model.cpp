@@ -45,12 +45,13 @@ void ReportModel::save(int picture) {
   Q_EMIT changed();
 }
 
-QVariantList ReportModel::outcomes() const { return to_list(pages_.outcomes); }
-QVariantList ReportModel::fit() const { return to_list(pages_.fit); }
-QVariantList ReportModel::trade() const { return to_list(pages_.speed_accuracy); }
-QVariantList ReportModel::forces() const { return to_list(pages_.forces); }
-QVariantList ReportModel::health() const { return to_list(pages_.health); }
-QVariantList ReportModel::statements() const { return to_list(pages_.statements); }
+QVariantList ReportModel::sections() const {
+  QVariantList list;
+  for (const auto& [heading, facts, statements] : pages_.sections)
+    list += QVariantMap{
+        {"heading", to_variant(heading)}, {"facts", to_list(facts)}, {"statements", to_list(statements)}};
+  return list;
+}
 
 QStringList ReportModel::picture_names() const {
   static const std::map<std::string, const char*> keys{{"judgements", "report.fit"},
@@ -61,6 +62,7 @@ QStringList ReportModel::picture_names() const {
                                                        {"roc", "report.roc"},
                                                        {"response-signal", "report.signal"},
                                                        {"speed-accuracy", "report.speed_accuracy"},
+                                                       {"sensitivity-over-conditions", "figure.sensitivity"},
                                                        {"response-times", "live.times"},
                                                        {"quantiles", "report.quantiles"},
                                                        {"levels", "live.levels"},
@@ -74,7 +76,7 @@ QStringList ReportModel::picture_names() const {
 
 QVariantList ReportModel::pictures() const {
   QVariantList list;
-  for (const auto& figure : pages_.figures) list += to_variant(view::drawing_of(figure.figure));
+  for (const auto& figure : pages_.figures) list += to_variant(figure.figure);
   return list;
 }
 

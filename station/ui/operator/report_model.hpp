@@ -17,12 +17,8 @@ class ReportModel : public QObject {
   /// run mode and status of the session, such as "live" and "completed"; "" if there is no report
   Q_PROPERTY(QString runMode READ run_mode NOTIFY changed)
   Q_PROPERTY(QString status READ status NOTIFY changed)
-  Q_PROPERTY(QVariantList outcomes READ outcomes NOTIFY changed)
-  Q_PROPERTY(QVariantList fit READ fit NOTIFY changed)
-  Q_PROPERTY(QVariantList trade READ trade NOTIFY changed)
-  Q_PROPERTY(QVariantList forces READ forces NOTIFY changed)
-  Q_PROPERTY(QVariantList health READ health NOTIFY changed)
-  Q_PROPERTY(QVariantList statements READ statements NOTIFY changed)
+  /// The parts of the report: {heading, facts: [{label, value}], statements}, all of them phrases.
+  Q_PROPERTY(QVariantList sections READ sections NOTIFY changed)
   /// Keys of the names and drawings of the existing figures.
   Q_PROPERTY(QStringList pictureNames READ picture_names NOTIFY changed)
   Q_PROPERTY(QVariantList pictures READ pictures NOTIFY changed)
@@ -48,12 +44,7 @@ class ReportModel : public QObject {
   QString title() const { return QString::fromStdString(pages_.title); }
   QString run_mode() const { return QString::fromStdString(pages_.run_mode); }
   QString status() const { return QString::fromStdString(pages_.status); }
-  QVariantList outcomes() const;
-  QVariantList fit() const;
-  QVariantList trade() const;
-  QVariantList forces() const;
-  QVariantList health() const;
-  QVariantList statements() const;
+  QVariantList sections() const;
   QStringList picture_names() const;
   QVariantList pictures() const;
 

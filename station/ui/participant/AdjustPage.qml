@@ -45,10 +45,7 @@ Item {
         anchors { left: parent.left; right: parent.right; top: parent.top }
         // gives way to the question
         height: Math.round(Math.max(7 * root.theme.unit, Math.min(0.3 * parent.height, slider.y - Math.ceil(asked.height) - 2 * root.theme.unit)))
-        lengthMm: root.page.lengthMm
-        wideHalfWidthMm: root.page.wideHalfWidthMm
-        narrowHalfWidthMm: root.page.narrowHalfWidthMm
-        wideEndLeft: root.page.wideEndLeft
+        surface: root.page.surface
         hasMark: root.page.hasMark
         markMm: root.page.markMm
         textPixels: root.theme.textSmall

@@ -158,7 +158,7 @@ Item {
         objectName: visible ? "backspace" : ""
         visible: root.layered && !question.visible
         anchors { left: cells.right; leftMargin: cells.spacing; verticalCenter: cells.verticalCenter }
-        width: Math.min(root.theme.targetMin, root.width - cells.x - cells.width - cells.spacing)
+        width: Math.min(root.theme.targetMin, root.width - cells.width - cells.spacing)
         height: Math.max(cells.height, Math.round(9 * root.theme.pixelsPerMm))
         glyph: "backspace"
         spoken: root.texts.text("erase")

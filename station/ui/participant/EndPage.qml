@@ -1,7 +1,7 @@
 import QtQuick
 import Turnpoint
 
-// Thanks the participant, and shows nothing else. The session's numbers are for the operator, who reaches
+// Thanks the participant, says the score if answers have points, and shows nothing else. The session's numbers are for the operator, who reaches
 // them by a button and the operator's code. They are in the operator's language.
 Item {
     id: root

@@ -2,7 +2,7 @@ import QtQuick
 import Turnpoint
 
 // Feedback after an answer: "right", "not right", the message after a late answer or, if no answer is right,
-// that the answer was noted. It shows one symbol and one word, and never a score.
+// that the answer was noted. It shows one symbol and one word, and what the answer was worth if answers have points.
 Column {
     id: root
     required property Theme theme

@@ -42,15 +42,12 @@ Item {
     }
     SurfaceDrawing {
         id: surface
-        visible: root.page.lengthMm > 0
+        visible: root.page.surface.lengthMm > 0
         anchors { left: parent.left; right: parent.right; bottom: go.top; bottomMargin: root.theme.unit }
         // gives way to a text that does not fit beside it
         height: Math.round(Math.max(7 * root.theme.unit, Math.min(0.32 * parent.height, parent.height - go.height - heading - words.natural - 4 * root.theme.unit)))
         readonly property real heading: badge.visible ? badge.height : title.visible ? title.height : 0
-        lengthMm: root.page.lengthMm
-        wideHalfWidthMm: root.page.wideHalfWidthMm
-        narrowHalfWidthMm: root.page.narrowHalfWidthMm
-        wideEndLeft: root.page.wideEndLeft
+        surface: root.page.surface
         hasMark: root.page.hasMark
         markMm: root.page.markMm
         showFinger: true

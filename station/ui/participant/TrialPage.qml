@@ -39,12 +39,24 @@ Item {
     }
 
     // Tapping an answer twice by accident must not also count as a confidence rating: the page ignores taps for a
-    // moment.
+    // moment. If the program was held up, taps of that moment arrive only after its end, so the page waits for those too.
     readonly property bool confides: page.kind === PageModel.Confidence
+    readonly property bool guarded: second.running || waiting.running
     onConfidesChanged: if (confides) second.restart()
     Timer {
         id: second
         interval: 350
+        onTriggered: waiting.restart()
+    }
+    Timer {
+        id: waiting
+        interval: 50
+    }
+    // The session shows the question again if a tap was no answer, because it began too early by the kernel's time.
+    Connections {
+        target: root.bridge
+        enabled: root.confides
+        function onShown() { field.again() }
     }
 
     SurfaceDrawing {
@@ -57,10 +69,7 @@ Item {
         /// What is below the surface besides the question.
         readonly property real below: bars.height + pacer.height + ((bars.visible ? 1 : 0) + (pacer.visible ? 1 : 0) + 1) * root.theme.unit
         height: Math.round(Math.max(least, Math.min(0.46 * parent.height, parent.height - answers.height - below - Math.max(asked.height + root.theme.unit, (pacer.visible ? 3.6 : bars.visible ? 3.5 : 9) * root.theme.unit))))
-        lengthMm: root.page.lengthMm
-        wideHalfWidthMm: root.page.wideHalfWidthMm
-        narrowHalfWidthMm: root.page.narrowHalfWidthMm
-        wideEndLeft: root.page.wideEndLeft
+        surface: root.page.surface
         hasMark: root.page.hasMark
         markMm: root.page.markMm
         showFinger: root.cue
@@ -133,8 +142,8 @@ Item {
     Pacer {
         id: pacer
         objectName: "pacer"
-        // On a small panel the question, the answers and the dots of the intervals come first.
-        readonly property bool fits: root.height - answers.height - bars.height - implicitHeight >= (root.counted ? 19.6 : 6.6) * root.theme.unit
+        // On a small panel the question, the answers, the surface and the dots of the intervals come first.
+        readonly property bool fits: root.height - answers.height - bars.height - implicitHeight >= Math.max((root.counted ? 19.6 : 6.6) * root.theme.unit, surface.least + asked.height + 3 * root.theme.unit)
         visible: bars.visible && root.page.paceMmPerS > 0 && fits
         anchors { left: parent.left; right: parent.right; bottom: answers.top; bottomMargin: visible ? root.theme.unit : 0 }
         height: visible ? implicitHeight : 0
@@ -201,7 +210,7 @@ Item {
         anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
         height: Math.max(leastHeight, Math.min(Math.round(0.36 * parent.height), most))
         // the question and, if it speaks of the mark, the surface keep their place
-        most: Math.floor(parent.height - asked.height - surface.below - surface.least)
+        most: Math.floor(parent.height - asked.height - bars.height - ((bars.visible ? 1 : 0) + 1) * root.theme.unit - surface.least)
         theme: root.theme
         answers: root.page.answers
         captions: root.page.captions
@@ -227,6 +236,6 @@ Item {
         columns: answers.columns
         gap: answers.gap
         pixelsPerMm: root.theme.pixelsPerMm
-        open: root.visible && root.asks && !second.running
+        open: root.visible && root.asks && !root.guarded
     }
 }

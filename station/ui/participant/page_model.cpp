@@ -135,7 +135,7 @@ QStringList PageModel::anchor_texts() const {
 
 QStringList PageModel::interval_names() const {
   QStringList names;
-  for (const auto& name : page_.interval_names) names += QString::fromStdString(name);
+  for (const auto& name : page_.interval.names) names += QString::fromStdString(name);
   return names;
 }
 

@@ -6,6 +6,7 @@
 #include <QVariantList>
 
 #include "station/session/page.hpp"
+#include "station/ui/participant/surface_drawing.hpp"
 
 namespace turnpoint::ui {
 
@@ -37,10 +38,7 @@ class PageModel : public QObject {
   Q_PROPERTY(QString instruction READ instruction NOTIFY changed)
   Q_PROPERTY(bool hasMark READ has_mark NOTIFY changed)
   Q_PROPERTY(double markMm READ mark_mm NOTIFY changed)
-  Q_PROPERTY(double lengthMm READ length_mm NOTIFY changed)
-  Q_PROPERTY(double wideHalfWidthMm READ wide_half_width_mm NOTIFY changed)
-  Q_PROPERTY(double narrowHalfWidthMm READ narrow_half_width_mm NOTIFY changed)
-  Q_PROPERTY(bool wideEndLeft READ wide_end_left NOTIFY changed)
+  Q_PROPERTY(turnpoint::ui::SurfaceOutline surface READ surface NOTIFY changed)
   Q_PROPERTY(int interval READ interval NOTIFY changed)
   Q_PROPERTY(int intervals READ intervals NOTIFY changed)
   Q_PROPERTY(QStringList intervalNames READ interval_names NOTIFY changed)
@@ -135,37 +133,34 @@ class PageModel : public QObject {
   QString instruction() const { return QString::fromStdString(page_.instruction); }
   bool has_mark() const { return page_.mark_mm.has_value(); }
   double mark_mm() const { return page_.mark_mm.value_or(0); }
-  double length_mm() const { return page_.length_mm; }
-  double wide_half_width_mm() const { return page_.wide_half_width_mm; }
-  double narrow_half_width_mm() const { return page_.narrow_half_width_mm; }
-  bool wide_end_left() const { return page_.wide_end_left; }
-  int interval() const { return page_.interval; }
-  int intervals() const { return page_.intervals; }
+  SurfaceOutline surface() const { return {page_.surface}; }
+  int interval() const { return page_.interval.number; }
+  int intervals() const { return page_.interval.of; }
   QStringList interval_names() const;
   int trials_done() const { return page_.trials_done; }
   int trials_total() const { return page_.trials_total; }
   int minutes_left() const;
   double remaining_s() const { return page_.remaining_s; }
-  double slider() const { return page_.slider; }
-  double slider_min() const { return page_.slider_min; }
-  double slider_max() const { return page_.slider_max; }
-  double slider_step() const { return page_.slider_step; }
+  double slider() const { return page_.slider.setting; }
+  double slider_min() const { return page_.slider.low; }
+  double slider_max() const { return page_.slider.high; }
+  double slider_step() const { return page_.slider.step; }
   QString language() const { return QString::fromStdString(page_.language); }
   QString run_mode() const { return QString::fromStdString(page_.run_mode); }
   QString safe() const { return QString::fromStdString(page_.safe); }
   QString to_do() const { return QString::fromStdString(page_.to_do); }
   QVariantMap early() const;
-  QString detail() const { return QString::fromStdString(page_.detail); }
+  QString detail() const { return QString::fromStdString(page_.fault.detail); }
   /// True if the session can continue from this page only after an operator has armed the amplifier.
   bool awaits_arming() const { return page_.amplifier == "disarmed" || page_.amplifier == "faulted"; }
   /// True if the session can continue from this page only after an operator has written down why it may.
   bool awaits_note() const {
-    return page_.kind == session::PageKind::fault && page_.fault == session::FaultKind::self_test;
+    return page_.kind == session::PageKind::fault && page_.fault.kind == session::FaultKind::self_test;
   }
   bool resumable() const { return page_.resumable; }
   /// True while the last answer is kept in memory only, because the disk is full.
   bool unsaved() const {
-    return page_.kind == session::PageKind::fault && page_.fault == session::FaultKind::disk_full;
+    return page_.kind == session::PageKind::fault && page_.fault.kind == session::FaultKind::disk_full;
   }
   QVariantList summary_labels() const;
   QStringList summary_values() const;

@@ -10,6 +10,8 @@
 
 namespace turnpoint::ui {
 
+namespace input = session::input;
+
 SessionBridge::SessionBridge(Clock clock, Sink sink, QObject* parent)
     : QObject(parent), clock_(std::move(clock)), sink_(std::move(sink)), page_(this) {
   flush_.setSingleShot(true);
@@ -35,101 +37,79 @@ void SessionBridge::guide(const session::Guidance& guidance) {
 
 void SessionBridge::watch(QObject* window) { window->installEventFilter(this); }
 
-std::int64_t SessionBridge::began_ns(int touch_id) const {
+SessionBridge::Stamp SessionBridge::stamped(int touch_id) const {
   const auto found =
       std::find_if(pending_.rbegin(), pending_.rend(), [&](const Pending& p) { return p.id == touch_id; });
-  return found != pending_.rend() ? found->time_ns : clock_();
+  return found != pending_.rend() ? found->stamp : Stamp{clock_(), 0};
 }
 
-void SessionBridge::answer(int index, std::int64_t time_ns) {
-  const auto found =
-      std::find_if(pending_.begin(), pending_.end(), [&](const Pending& p) { return p.time_ns == time_ns; });
-  Pending touch{kMouse, time_ns, -1, -1};
+void SessionBridge::answer(int index, const Stamp& stamp) {
+  const auto found = std::find_if(pending_.begin(), pending_.end(),
+                                  [&](const Pending& p) { return p.stamp.number == stamp.number; });
+  Pending touch{kMouse, stamp, -1, -1};
   if (found != pending_.end()) {
     touch = *found;
     pending_.erase(found);
   }
-  push_touch(session::InputKind::answer, index, touch);
+  push_touch(input::Answer{index}, touch);
 }
 
 void SessionBridge::note_touch(int id, QPointF position, const QObject* window) {
   const auto* area = qobject_cast<const QWindow*>(window);
   const double width = area != nullptr ? area->width() : 1, height = area != nullptr ? area->height() : 1;
-  pending_.push_back({id, clock_(), position.x() / width, position.y() / height});
+  pending_.push_back({id, {clock_(), ++touches_}, position.x() / width, position.y() / height});
   if (!flush_.isActive()) flush_.start();
 }
 
 void SessionBridge::flush() {
   const auto due_ns = clock_() - core::kTouchToAnswer_ns;
   for (const auto& touch : pending_)
-    if (touch.time_ns <= due_ns) push_touch(session::InputKind::touch_down, 0, touch);
-  std::erase_if(pending_, [&](const Pending& p) { return p.time_ns <= due_ns; });
+    if (touch.stamp.time_ns <= due_ns) push_touch(input::Touch{}, touch);
+  std::erase_if(pending_, [&](const Pending& p) { return p.stamp.time_ns <= due_ns; });
   if (!pending_.empty()) flush_.start();
 }
 
-void SessionBridge::push_touch(session::InputKind kind, int value, const Pending& touch) {
-  session::Input input;
-  input.time_ns = touch.time_ns;
-  input.kind = kind;
-  input.value = value;
-  const auto kernel_ns = kernel_time_ ? kernel_time_(touch.x, touch.y, touch.time_ns) : std::nullopt;
-  if (kernel_ns) {
-    input.time_ns = *kernel_ns;
-    input.quality = session::TimeQuality::kernel;
-  }
-  sink_(std::move(input));
+void SessionBridge::push_touch(input::Any content, const Pending& touch) {
+  const auto kernel_ns = kernel_time_ ? kernel_time_(touch.x, touch.y, touch.stamp.time_ns) : std::nullopt;
+  sink_({kernel_ns.value_or(touch.stamp.time_ns), std::move(content),
+         kernel_ns ? session::TimeQuality::kernel : session::TimeQuality::toolkit});
 }
 
 void SessionBridge::next() {
-  if (!std::exchange(left_, true)) push(session::InputKind::next);
+  if (!std::exchange(left_, true)) push(input::Next{});
 }
 void SessionBridge::back() {
-  if (!std::exchange(left_, true)) push(session::InputKind::back);
+  if (!std::exchange(left_, true)) push(input::Back{});
 }
-void SessionBridge::choose(int index) { push(session::InputKind::answer, index); }
-void SessionBridge::moveSlider(double value) { push(session::InputKind::slider, 0, value); }
-void SessionBridge::answerValue(double value) { push(session::InputKind::value, 0, value); }
-void SessionBridge::pause() { push(session::InputKind::pause); }
-void SessionBridge::stop() { push(session::InputKind::stop); }
+void SessionBridge::choose(int index) { push(input::Answer{index}); }
+void SessionBridge::moveSlider(double value) { push(input::Slider{value}); }
+void SessionBridge::answerValue(double value) { push(input::Value{value}); }
+void SessionBridge::pause() { push(input::Pause{}); }
+void SessionBridge::stop() { push(input::Stop{}); }
 
-void SessionBridge::repeat() { push(session::InputKind::repeat); }
-void SessionBridge::arm() { push(session::InputKind::arm); }
+void SessionBridge::repeat() { push(input::Repeat{}); }
+void SessionBridge::arm() { push(input::Arm{}); }
+
+// The following functions do not use push(). It clears the pending touches, as if a button on the page had
+// been pressed.
 
 void SessionBridge::annotate(const QString& text) {
-  session::Input input;
-  input.time_ns = clock_();
-  input.kind = session::InputKind::note;
-  input.text = text.trimmed().toStdString();
-  if (!input.text.empty()) sink_(std::move(input));
+  const auto note = text.trimmed().toStdString();
+  if (!note.empty()) sink_({clock_(), input::Note{note}});
 }
 
 void SessionBridge::frames_lost(int frames) {
-  if (frames <= 0) return;
-  // Do not use push() here. It clears the pending touches, as if a button on the page had been pressed.
-  session::Input input;
-  input.time_ns = clock_();
-  input.kind = session::InputKind::frames_lost;
-  input.value = frames;
-  sink_(std::move(input));
+  if (frames > 0) sink_({clock_(), input::FramesLost{frames}});
 }
 
 void SessionBridge::signal_shown(std::int64_t time_ns, std::int64_t due_ns) {
-  session::Input input;
-  input.time_ns = time_ns;
-  input.kind = session::InputKind::signal_shown;
-  input.number = 1e-9 * static_cast<double>(time_ns - due_ns);
-  sink_(std::move(input));
+  sink_({time_ns, input::SignalShown{1e-9 * static_cast<double>(time_ns - due_ns)}});
 }
 
-void SessionBridge::push(session::InputKind kind, int value, double number) {
+void SessionBridge::push(input::Any content) {
   // forget the tap that pressed this button; otherwise it would count as a stray touch in the next trial
   pending_.clear();
-  session::Input input;
-  input.time_ns = clock_();
-  input.kind = kind;
-  input.value = value;
-  input.number = number;
-  sink_(std::move(input));
+  sink_({clock_(), std::move(content)});
 }
 
 bool SessionBridge::eventFilter(QObject* watched, QEvent* event) {

@@ -46,22 +46,26 @@ class SessionBridge : public QObject, public session::Display {
   void guide(const session::Guidance& guidance) override;
 
   /// Stamps each touch and mouse press anywhere on the window with the time. A touch that does not become an
-  /// answer within a moment is reported as `touch_down`.
+  /// answer within a moment is reported as `Touch`.
   Q_INVOKABLE void watch(QObject* window);
 
   PageModel* page() { return &page_; }
   std::int64_t now_ns() const { return clock_(); }
 
-  /// The time at which the touch with this id began, as stamped by watch(). The current time if watch() did
-  /// not see it.
-  std::int64_t began_ns(int touch_id) const;
+  /// When a touch began, and its number, which no other touch has (the toolkit uses the ids of touches
+  /// again).
+  struct Stamp {
+    std::int64_t time_ns = 0;
+    int number = 0;  ///< 0 if watch() did not see the touch
+  };
+  /// The stamp by watch() of the newest touch with this id. The current time if watch() did not see it.
+  Stamp stamped(int touch_id) const;
 
   /// Reports that a touch has just pressed an answer's button. The next frame must show the pressed button.
   void pressed() { Q_EMIT acknowledged(); }
 
-  /// Reports an answer that the touch field accepted: the touch that began at `time_ns` chose the answer
-  /// `index`.
-  void answer(int index, std::int64_t time_ns);
+  /// Reports an answer that the touch field accepted: this touch chose the answer `index`.
+  void answer(int index, const Stamp& stamp);
 
   /// Reports that Continue or Done was pressed. Only the first press on a page counts.
   Q_INVOKABLE void next();
@@ -95,20 +99,21 @@ class SessionBridge : public QObject, public session::Display {
   /// A touch that may still become an answer.
   struct Pending {
     int id = 0;
-    std::int64_t time_ns = 0;  ///< when Qt delivered the touch
-    double x = 0, y = 0;       ///< position from 0 to 1 in the window
+    Stamp stamp;          ///< with the time at which Qt delivered the touch
+    double x = 0, y = 0;  ///< position from 0 to 1 in the window
   };
 
   void note_touch(int id, QPointF position, const QObject* window);
-  void push_touch(session::InputKind kind, int value, const Pending& touch);
+  void push_touch(session::input::Any content, const Pending& touch);
   void flush();
-  void push(session::InputKind kind, int value = 0, double number = 0);
+  void push(session::input::Any content);
   Clock clock_;
   Sink sink_;
   KernelTime kernel_time_;
   PageModel page_;
   bool left_ = false;  ///< somebody has pressed Continue or Done on this page
   std::vector<Pending> pending_;
+  int touches_ = 0;  ///< number of the newest touch
   QTimer flush_;
 };
 

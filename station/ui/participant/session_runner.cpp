@@ -101,7 +101,7 @@ void SessionRunner::run() {
     // The session is complete and stored, even if its report cannot be made.
     view::ReportPages pages;
     pages.title = core::text("report.none", language_);
-    pages.statements = {core::phrase_of(error)};
+    pages.sections = {{{}, {}, {core::phrase_of(error)}}};
     report_.take(pages);
   }
   Q_EMIT over();
@@ -111,12 +111,8 @@ void SessionRunner::run() {
 void SessionRunner::open_touch() {
   touch_ = session::open_touch(setup_.rig, [this](io::TouchPanelState state) {
     if (state == io::TouchPanelState::back) return;
-    session::Input input;
-    input.time_ns = system::monotonic_ns();
-    input.kind = session::InputKind::fault;
-    input.fault = session::FaultKind::touch_gone;
-    input.text = "the touch panel was disconnected";
-    inputs_.push(std::move(input));
+    inputs_.push({system::monotonic_ns(),
+                  session::Fault{session::FaultKind::touch_gone, "the touch panel was disconnected"}});
   });
   if (!touch_) return bridge_.set_kernel_time({});
   bridge_.set_kernel_time(
@@ -136,18 +132,15 @@ void SessionRunner::show_failure() {
     page.early = refused.early();
   } catch (const std::exception& error) {
     // for the operator; the participant's page does not show it
-    page.detail = core::say(core::phrase_of(error), language_);
+    page.fault.detail = core::say(core::phrase_of(error), language_);
   }
   bridge_.show(page);
 }
 
 void SessionRunner::ask_to_stop() {
   if (!running()) return;
-  session::Input input;
-  input.time_ns = system::monotonic_ns();
-  input.kind = session::InputKind::stop;
-  input.text = "the program was stopped by a signal, or its window was closed";
-  inputs_.push(std::move(input));
+  inputs_.push({system::monotonic_ns(),
+                session::input::Stop{"the program was stopped by a signal, or its window was closed"}});
 }
 
 std::optional<session::Summary> SessionRunner::finish() {

@@ -56,40 +56,40 @@ SurfaceDrawing::SurfaceDrawing(QQuickItem* parent) : QQuickPaintedItem(parent) {
 SurfaceDrawing::Layout SurfaceDrawing::layout() const {
   Layout at;
   at.unit = std::min(height() / 20, width() / 60);
-  at.wide_left = wide_end_left_;
-  at.length_mm = length_mm_;
+  at.wide_left = surface_.wide_end_left;
+  at.length_mm = surface_.length_mm;
   at.scale_text = std::max(text_pixels_, 1.8 * at.unit);
   at.flag_text = std::max(text_pixels_, 2.3 * at.unit);
   at.flag_height = std::max(3.6 * at.unit, 1.4 * at.flag_text);
   // The scale's last number is centred on the end of the strip, so the margin must have room for half of the
   // number.
   const double last =
-      QFontMetricsF(font_of(at.scale_text)).horizontalAdvance(QString::number(length_mm_, 'f', 0));
+      QFontMetricsF(font_of(at.scale_text)).horizontalAdvance(QString::number(surface_.length_mm, 'f', 0));
   const double driver = 3.2 * at.unit, margin = std::max(1.8 * at.unit, 0.5 * last + 2);
-  at.left = wide_end_left_ ? driver + margin : margin;
-  at.right = width() - (wide_end_left_ ? margin : driver + margin);
-  at.px_per_mm = (at.right - at.left) / length_mm_;
-  const double slim = 2 * wide_half_width_mm_ / length_mm_;
+  at.left = surface_.wide_end_left ? driver + margin : margin;
+  at.right = width() - (surface_.wide_end_left ? margin : driver + margin);
+  at.px_per_mm = (at.right - at.left) / surface_.length_mm;
+  const double slim = 2 * surface_.wide_half_width_mm / surface_.length_mm;
   const double across = at.px_per_mm * std::max(1.0, kSlimmest / slim);
   const double above = at.flag_height + 2 * at.unit, below = 2.2 * at.unit + 1.3 * at.scale_text;
   const double room = std::clamp(0.5 * (height() - above - below), at.unit, 4.6 * at.unit);
-  const double shrink = std::min(1.0, room / (across * wide_half_width_mm_));
-  at.wide_half = wide_half_width_mm_ * across * shrink;
-  at.narrow_half = narrow_half_width_mm_ * across * shrink;
+  const double shrink = std::min(1.0, room / (across * surface_.wide_half_width_mm));
+  at.wide_half = surface_.wide_half_width_mm * across * shrink;
+  at.narrow_half = surface_.narrow_half_width_mm * across * shrink;
   at.axis_y = above + room;
   return at;
 }
 
-double SurfaceDrawing::xOf(double mm) const { return length_mm_ > 0 ? layout().x(mm) : 0; }
+double SurfaceDrawing::xOf(double mm) const { return surface_.length_mm > 0 ? layout().x(mm) : 0; }
 
 double SurfaceDrawing::mmAt(double x) const {
-  if (length_mm_ <= 0) return 0;
+  if (surface_.length_mm <= 0) return 0;
   const Layout at = layout();
-  return std::clamp((at.wide_left ? x - at.left : at.right - x) / at.px_per_mm, 0.0, length_mm_);
+  return std::clamp((at.wide_left ? x - at.left : at.right - x) / at.px_per_mm, 0.0, surface_.length_mm);
 }
 
 void SurfaceDrawing::paint(QPainter* painter) {
-  if (length_mm_ <= 0 || wide_half_width_mm_ <= 0 || width() <= 0 || height() <= 0) return;
+  if (surface_.length_mm <= 0 || surface_.wide_half_width_mm <= 0 || width() <= 0 || height() <= 0) return;
   painter->setRenderHint(QPainter::Antialiasing);
   const Layout at = layout();
   paint_strip(*painter, at);
@@ -99,7 +99,7 @@ void SurfaceDrawing::paint(QPainter* painter) {
 }
 
 void SurfaceDrawing::paint_strip(QPainter& painter, const Layout& at) const {
-  const double x0 = at.x(0), x1 = at.x(length_mm_);
+  const double x0 = at.x(0), x1 = at.x(surface_.length_mm);
   const double toward = at.wide_left ? 1 : -1;
 
   // The transducer: a block with its bolt. It shows which end of the strip is which.
@@ -136,7 +136,7 @@ void SurfaceDrawing::paint_scale(QPainter& painter, const Layout& at) const {
   const QFontMetricsF metrics(painter.font());
   const double y0 = at.axis_y + at.wide_half + 0.9 * at.unit;
   const QColor colour = mixed(ink_, paper_, 0.15);
-  for (int i = 0; i * kTick_mm <= length_mm_ + 1e-9; ++i) {
+  for (int i = 0; i * kTick_mm <= surface_.length_mm + 1e-9; ++i) {
     const double mm = i * kTick_mm;
     const bool labelled = std::fmod(mm, kLabel_mm) < 1e-9;
     painter.setPen(QPen(colour, std::max(1.0, 0.1 * at.unit)));
@@ -159,7 +159,7 @@ bool SurfaceDrawing::behind_finger(const Layout& at, double mm, double width_px)
 /// The finger is drawn exactly below the mark, because a position to its left or right could favour an
 /// answer.
 double SurfaceDrawing::finger_x(const Layout& at) const {
-  return at.x(has_mark_ ? mark_mm_ : 0.5 * length_mm_);
+  return at.x(has_mark_ ? mark_mm_ : 0.5 * surface_.length_mm);
 }
 
 void SurfaceDrawing::paint_mark(QPainter& painter, const Layout& at) const {

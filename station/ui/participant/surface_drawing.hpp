@@ -1,8 +1,21 @@
 #pragma once
 #include <QColor>
+#include <QQmlEngine>
 #include <QQuickPaintedItem>
 
+#include "station/rig/physical.hpp"
+
 namespace turnpoint::ui {
+
+/// The outline of a surface as a value that pages pass to a SurfaceDrawing.
+struct SurfaceOutline : rig::Outline {
+  Q_GADGET
+  QML_ANONYMOUS
+  Q_PROPERTY(double lengthMm MEMBER length_mm)
+  Q_PROPERTY(bool wideEndLeft MEMBER wide_end_left)
+ public:
+  bool operator==(const SurfaceOutline&) const = default;
+};
 
 /// The surface seen from above, to scale: the tapered strip with its transducer at the wide end, a millimetre
 /// scale, the mark, and a fingertip that shows where to slide. It redraws only when a property changes.
@@ -10,10 +23,7 @@ namespace turnpoint::ui {
 class SurfaceDrawing : public QQuickPaintedItem {
   Q_OBJECT
   QML_ELEMENT
-  Q_PROPERTY(double lengthMm MEMBER length_mm_ NOTIFY changed)
-  Q_PROPERTY(double wideHalfWidthMm MEMBER wide_half_width_mm_ NOTIFY changed)
-  Q_PROPERTY(double narrowHalfWidthMm MEMBER narrow_half_width_mm_ NOTIFY changed)
-  Q_PROPERTY(bool wideEndLeft MEMBER wide_end_left_ NOTIFY changed)
+  Q_PROPERTY(turnpoint::ui::SurfaceOutline surface MEMBER surface_ NOTIFY changed)
   Q_PROPERTY(bool hasMark MEMBER has_mark_ NOTIFY changed)
   Q_PROPERTY(double markMm MEMBER mark_mm_ NOTIFY changed)
   Q_PROPERTY(bool showFinger MEMBER show_finger_ NOTIFY changed)
@@ -43,8 +53,7 @@ class SurfaceDrawing : public QQuickPaintedItem {
   double finger_x(const Layout& at) const;
   bool behind_finger(const Layout& at, double mm, double width_px) const;
 
-  double length_mm_ = 0, wide_half_width_mm_ = 0, narrow_half_width_mm_ = 0;
-  bool wide_end_left_ = true;
+  SurfaceOutline surface_;
   bool has_mark_ = false;
   double mark_mm_ = 0;
   bool show_finger_ = false;

@@ -25,6 +25,11 @@ void TouchField::set_open(bool open) {
   Q_EMIT openChanged();
 }
 
+void TouchField::again() {
+  judge_.again();
+  update_pressed();
+}
+
 int TouchField::target_at(QPointF position) const {
   if (row_ == nullptr || count_ <= 0) return -1;
   const QPointF inside = mapToItem(row_, position);
@@ -40,7 +45,8 @@ int TouchField::target_at(QPointF position) const {
 }
 
 void TouchField::down(int id, QPointF position, double diameter_mm) {
-  judge_.down({bridge_->began_ns(id), target_at(position), diameter_mm});
+  const auto touch = bridge_->stamped(id);
+  judge_.down({touch.time_ns, target_at(position), diameter_mm, touch.number});
   if (const auto due_ns = judge_.due_ns()) {
     const auto left_ms = (*due_ns - bridge_->now_ns()) / 1'000'000 + 1;
     timer_.start(std::max(1, static_cast<int>(left_ms)));
@@ -50,7 +56,7 @@ void TouchField::down(int id, QPointF position, double diameter_mm) {
 
 void TouchField::settle() {
   if (const auto answer = judge_.decide(bridge_->now_ns())) {
-    bridge_->answer(answer->target, answer->time_ns);
+    bridge_->answer(answer->target, {answer->time_ns, answer->number});
   } else if (judge_.due_ns()) {
     timer_.start(1);
   }

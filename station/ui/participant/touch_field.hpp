@@ -29,6 +29,8 @@ class TouchField : public QQuickItem {
   // Qt calls this function by its name, as the setter of the property `open` (NOLINT)
   void set_open(bool open);
   int pressed() const { return pressed_; }
+  /// Takes one more answer, because the session did not accept the last one.
+  Q_INVOKABLE void again();
 
  Q_SIGNALS:
   void openChanged();

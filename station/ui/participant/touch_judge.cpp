@@ -1,5 +1,7 @@
 #include "station/ui/participant/touch_judge.hpp"
 
+#include <utility>
+
 namespace turnpoint::ui {
 
 void TouchJudge::open() {
@@ -13,6 +15,8 @@ void TouchJudge::close() {
   candidate_.reset();
   given_ = -1;
 }
+
+void TouchJudge::again() { given_ = -1; }
 
 void TouchJudge::down(const Touch& touch) {
   const bool alone = !last_down_ns_ || touch.time_ns - *last_down_ns_ > rules_.settle_ns;
@@ -28,12 +32,10 @@ void TouchJudge::down(const Touch& touch) {
 
 void TouchJudge::cancel() { candidate_.reset(); }
 
-std::optional<TouchJudge::Answer> TouchJudge::decide(std::int64_t now_ns) {
+std::optional<Touch> TouchJudge::decide(std::int64_t now_ns) {
   if (!open_ || !candidate_ || now_ns < candidate_->time_ns + rules_.settle_ns) return std::nullopt;
-  const Answer answer{candidate_->target, candidate_->time_ns};
-  given_ = answer.target;
-  candidate_.reset();
-  return answer;
+  given_ = candidate_->target;
+  return std::exchange(candidate_, std::nullopt);
 }
 
 std::optional<std::int64_t> TouchJudge::due_ns() const {

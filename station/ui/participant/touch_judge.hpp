@@ -11,6 +11,7 @@ struct Touch {
   std::int64_t time_ns = 0;
   int target = -1;         ///< index of the answer button under the finger; -1 if there is none
   double diameter_mm = 0;  ///< diameter of the contact; 0 if the panel does not report it
+  int number = 0;          ///< the touch's number, which the judge passes on
 };
 
 /// Decides which touch is an answer, so that an accidental touch never becomes one. Pure: no clock, no
@@ -29,16 +30,13 @@ class TouchJudge {
     /// or more
     double palm_mm = 24;
   };
-  struct Answer {
-    int target = 0;
-    std::int64_t time_ns = 0;
-  };
 
   TouchJudge() = default;
   explicit TouchJudge(const Rules& rules) : rules_(rules) {}
 
   void open();   ///< Opens the answers. Touches that are already down can never answer.
   void close();  ///< Closes the answers.
+  void again();  ///< Takes one more answer: the session did not accept the last one.
   bool is_open() const { return open_; }
 
   /// Reports that a finger came down. There is no call for lifting a finger, because lifting does not
@@ -47,8 +45,8 @@ class TouchJudge {
   /// Reports that Qt has cancelled all touches (because of a system gesture or a lost device).
   void cancel();
 
-  /// Returns the answer, if one has settled by now. Each answer is returned only once.
-  std::optional<Answer> decide(std::int64_t now_ns);
+  /// Returns the touch that is the answer, if one has settled by now. Each answer is returned only once.
+  std::optional<Touch> decide(std::int64_t now_ns);
   /// The time at which to call decide() next, if a touch is settling.
   std::optional<std::int64_t> due_ns() const;
   /// Index of the answer button to draw as pressed: a touch on it is settling or was accepted. -1 if there is

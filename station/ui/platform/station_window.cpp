@@ -119,8 +119,8 @@ void StationWindow::close() {
   start_.await_operator();
   operating_->refresh();
   const auto& page = runner_.bridge().page()->page();
-  if (page.kind == session::PageKind::failed && !page.detail.empty())
-    operating_->tell_failure(core::plain(page.detail));
+  if (page.kind == session::PageKind::failed && !page.fault.detail.empty())
+    operating_->tell_failure(core::plain(page.fault.detail));
 }
 
 }  // namespace turnpoint::ui

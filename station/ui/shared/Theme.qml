@@ -45,7 +45,6 @@ QtObject {
     readonly property color quiet: dark ? "#bcc6ce" : "#3f4a54"
     readonly property color line: dark ? "#7d8790" : "#8a8678"
     readonly property color action: dark ? "#8ecbf0" : "#0f3d5c"
-    readonly property color actionPressed: dark ? "#c4e6fb" : "#061f31"
     readonly property color actionText: dark ? "#0b1a26" : "#ffffff"
     readonly property color right: dark ? "#8fe0b0" : "#0b5230"
     readonly property color wrong: dark ? "#ffb0a8" : "#8a1c1c"
