@@ -89,9 +89,9 @@ struct Planner::State : ToneDesigner {
   physics::Tolerance tolerance_of(const Scene& scene) const;
   physics::PlanChoice choose(const Scene& scene, const std::vector<Tone>& tones,
                              std::optional<Model> placed_by) const;
-  bool place_by_field(const std::vector<WantedTone>& wanted, std::vector<double>& frequencies_Hz) const;
-  Solution solve(const Scene& scene, const std::vector<WantedTone>& wanted);
-  const Solution& solution_for(const Scene& scene, const std::vector<WantedTone>& wanted);
+  bool place_by_field(const std::vector<ToneTarget>& wanted, std::vector<double>& frequencies_Hz) const;
+  Solution solve(const Scene& scene, const std::vector<ToneTarget>& wanted);
+  const Solution& solution_for(const Scene& scene, const std::vector<ToneTarget>& wanted);
   void drive(DrivePlan& plan, const std::vector<Tone>& tones, const Solution& solution) const;
   double drive_under_finger_m(const Scene& scene, double frequency_Hz);
 
@@ -129,14 +129,14 @@ physics::PlanChoice Planner::State::choose(const Scene& scene, const std::vector
 
 /// For each tone that has a boundary: finds the frequency for which the tone's edge lies at this boundary
 /// according to the model `modes`. Returns false if there is no such frequency.
-bool Planner::State::place_by_field(const std::vector<WantedTone>& wanted,
+bool Planner::State::place_by_field(const std::vector<ToneTarget>& wanted,
                                     std::vector<double>& frequencies_Hz) const {
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (!wanted[i].boundary_m) continue;
     auto options = edge_options(wanted[i].edge, wanted[i].displacement_m);
     options.model = Model::modes;
     const auto found =
-        physics::solve_frequency_Hz(surface, options, *wanted[i].boundary_m, wanted[i].frequency_Hz);
+        physics::solve_frequency_Hz(surface, options, *wanted[i].boundary_m, *wanted[i].frequency_Hz);
     if (!found) return false;
     frequencies_Hz[i] = *found;
   }
@@ -145,22 +145,22 @@ bool Planner::State::place_by_field(const std::vector<WantedTone>& wanted,
 
 /// Returns the uncertainty of the scene's boundary, which is the boundary of its furthest tone.
 double boundary_uncertainty_m(const physics::Surface& surface, const Scene& scene,
-                              const std::vector<WantedTone>& wanted) {
+                              const std::vector<ToneTarget>& wanted) {
   if (wanted.empty()) return 0;
   const auto& furthest = *std::max_element(wanted.begin(), wanted.end(), [](const auto& a, const auto& b) {
-    return a.frequency_Hz < b.frequency_Hz;
+    return *a.frequency_Hz < *b.frequency_Hz;
   });
   auto at = furthest.boundary_m ? furthest.boundary_m : scene.boundary_m;
-  if (!at) at = physics::turning_point_m(surface, furthest.frequency_Hz);
-  return at ? physics::boundary_budget(surface, furthest.frequency_Hz, *at).total_m : 0;
+  if (!at) at = physics::turning_point_m(surface, *furthest.frequency_Hz);
+  return at ? physics::boundary_budget(surface, *furthest.frequency_Hz, *at).total_m : 0;
 }
 
-Solution Planner::State::solve(const Scene& scene, const std::vector<WantedTone>& wanted) {
+Solution Planner::State::solve(const Scene& scene, const std::vector<ToneTarget>& wanted) {
   Solution solution;
   std::vector<Tone> tones;
   for (const auto& tone : wanted) {
-    tones.push_back({on_grid(tone.frequency_Hz, kGridPerHz), 1, 0});
-    solution.frequencies_Hz.push_back(tone.frequency_Hz);
+    tones.push_back({on_grid(*tone.frequency_Hz, kGridPerHz), 1, 0});
+    solution.frequencies_Hz.push_back(*tone.frequency_Hz);
   }
   // Zones are designed with the first mode. Their boundary has the error of that model, whichever model is
   // later chosen for the field.
@@ -182,13 +182,13 @@ Solution Planner::State::solve(const Scene& scene, const std::vector<WantedTone>
   return solution;
 }
 
-const Solution& Planner::State::solution_for(const Scene& scene, const std::vector<WantedTone>& wanted) {
+const Solution& Planner::State::solution_for(const Scene& scene, const std::vector<ToneTarget>& wanted) {
   auto key = fmt::format("{} {} {} {} {}", physics::format(scene.edge),
                          scene.tolerance.boundary_m.value_or(0), scene.tolerance.level_dB.value_or(0),
                          scene.tolerance.friction.value_or(0), scene.zone || scene.tones.size() > 1);
   for (const auto& tone : wanted)
-    key +=
-        fmt::format(" {} {} {}", tone.frequency_Hz, physics::format(tone.edge), tone.boundary_m.value_or(-1));
+    key += fmt::format(" {} {} {}", *tone.frequency_Hz, physics::format(tone.edge),
+                       tone.boundary_m.value_or(-1));
   const auto found = solutions.find(key);
   if (found != solutions.end()) return found->second;
   if (solutions.size() >= kSolutions) solutions.clear();
