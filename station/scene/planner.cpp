@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "physics/boundary_budget.hpp"
 #include "physics/centre_line.hpp"
@@ -197,22 +198,17 @@ const Solution& Planner::State::solution_for(const Scene& scene, const std::vect
 
 void Planner::State::drive(DrivePlan& plan, const std::vector<Tone>& tones, const Solution& solution) const {
   for (std::size_t i = 0; i < tones.size(); ++i) {
-    const auto& tone = tones[i];
     const auto& info = solution.fields[i].info;
-    DrivenTone driven;
-    driven.frequency_Hz = tone.frequency_Hz;
-    driven.amplitude_m = tone.amplitude_m;
-    driven.phase_rad = tone.phase_rad;
-    driven.turning_point_m = info.turning_point_m;
-    driven.last_peak_m = info.last_peak_m;
-    driven.gain = info.gain;
-    driven.displacement_m = info.gain * tone.amplitude_m;
-    assign_transducer(rig, driven);
-    if (driven.frequency_Hz >= core::kHighestShareOfRate * rig.output.rate_Hz)
+    auto tone = on_transducer(rig, tones[i]);
+    tone.turning_point_m = info.turning_point_m;
+    tone.last_peak_m = info.last_peak_m;
+    tone.gain = info.gain;
+    tone.displacement_m = info.gain * tone.amplitude_m;
+    if (tone.frequency_Hz >= core::kHighestShareOfRate * rig.output.rate_Hz)
       throw Unreachable(
-          phrase("problem.too_high", {plain(number(driven.frequency_Hz)), plain(rig.output.rate_Hz),
+          phrase("problem.too_high", {plain(number(tone.frequency_Hz)), plain(rig.output.rate_Hz),
                                       plain(number(core::kHighestShareOfRate * rig.output.rate_Hz))}));
-    plan.tones.push_back(driven);
+    plan.tones.push_back(std::move(tone));
   }
   std::stable_sort(plan.tones.begin(), plan.tones.end(),
                    [](const auto& a, const auto& b) { return a.frequency_Hz > b.frequency_Hz; });
@@ -362,8 +358,7 @@ void refuse_beyond_limits(const rig::Rig& rig, const DrivePlan& plan) {
 Planner::Profile Planner::profile(const DrivePlan& plan, int points) {
   if (state_->rig.surface.plate_theory == rig::PlateTheory::automatic)
     return by_theory(plan.theory).profile(plan, points);
-  std::vector<Tone> tones;
-  for (const auto& tone : plan.tones) tones.push_back({tone.frequency_Hz, tone.amplitude_m, tone.phase_rad});
+  const std::vector<Tone> tones(plan.tones.begin(), plan.tones.end());
   Profile profile;
   profile.x_m = physics::linspace_points(state_->surface, points);
   profile.displacement_m =
