@@ -251,6 +251,19 @@ std::string Document::with_copy(const Path& path, const std::string& name) const
   return checked(text.insert(tables.back()->value.end, copy));
 }
 
+std::string Document::with_name(const Path& path, const std::string& name) const {
+  const auto* part = find(path);
+  if (part == nullptr || part->kind != Part::Kind::table) no_such(path);
+  const auto depth = part->header_names.size() - 1;
+  auto text = text_;
+  const auto tables = tables_of(*part);
+  for (auto table = tables.rbegin(); table != tables.rend(); ++table) {
+    const auto& old = (*table)->header_names[depth];
+    text.replace(old.begin, old.end - old.begin, key_of(name));
+  }
+  return checked(text);
+}
+
 /// The text of a table with the tables below it and the comments in the lines directly above it.
 Span Document::with_comments(const Path& path) const {
   const auto* part = find(path);
@@ -267,7 +280,11 @@ Span Document::with_comments(const Path& path) const {
 }
 
 std::string Document::exchanged(const Path& first, const Path& second) const {
-  auto a = with_comments(first), b = with_comments(second);
+  const auto span = [this](const Path& path) {
+    const auto* part = find(path);
+    return part == nullptr || part->kind == Part::Kind::table ? with_comments(path) : part->value;
+  };
+  auto a = span(first), b = span(second);
   if (b.begin < a.begin) std::swap(a, b);
   if (a.end > b.begin) no_such(second);
   const auto piece = [this](std::size_t from, std::size_t to) { return text_.substr(from, to - from); };

@@ -40,7 +40,11 @@ class Document {
   /// Adds a copy of a table directly after it. A table of a list ([[block]]) gets this `name` as its key
   /// "name"; another table ([scene.edge]) gets it as the last part of its header.
   std::string with_copy(const Path& path, const std::string& name) const;
-  /// Lets two tables with headers change places, with the tables below them and the comments directly above them.
+  /// Gives another name to a table that has its name in its header, such as [scene.edge]. What refers to it
+  /// by its old name stays as it is.
+  std::string with_name(const Path& path, const std::string& name) const;
+  /// Lets two tables with headers change places, with the tables below them and the comments directly above
+  /// them; or two items of a list within a line.
   std::string exchanged(const Path& first, const Path& second) const;
   /// Adds tables at the end of the text.
   std::string with_tables(const std::string& tables) const;

@@ -52,14 +52,11 @@ Item {
         }
         /// Returns the name of the item that shows a key, such as "stop.trials", of a table on the shown
         /// page.
-        function field(key, table = 0) {
-            const groups = designPage().design.groups
-            const found = groups[table].fields.find(one => one.path.join(".") === key)
-            return "field" + table + "-" + found.index
-        }
-        function valueOf(key, table = 0) {
-            return designPage().design.groups[table].fields.find(one => one.path.join(".") === key).value
-        }
+        function field(key, table = 0) { return "field" + table + "-" + theField(key, table).index }
+        function theField(key, table = 0) { return groupsNow()[table].fields.find(one => one.path.join(".") === key) }
+        function valueOf(key, table = 0) { return theField(key, table).value }
+        /// A copy of the tables of the page, because each look at the property itself makes all of them again.
+        function groupsNow() { return JSON.parse(JSON.stringify(designPage().design.groups)) }
         function designPage() { return appears("designPage") }
         function tapField(key, table = 0) { tap(field(key, table), 0.8) }
         function keys(text) { for (const letter of text) tap("letter" + letter) }
@@ -377,10 +374,9 @@ Item {
             const languages = ["en", "de"]
             tap("section-blocks")
             tap("add-explanation")
-            tap("lengthen" + place("explanation"))
-            tap("lengthen" + place("explanation"))
+            for (let page = 1; page < 3; ++page) tap(field("page", place("explanation")) + "-add")
             while (place("explanation") > 0) tap("earlier" + place("explanation"))
-            compare(groups()[0].belowCount, 3)
+            compare(valueOf("page", 0), "3")
             for (let page = 0; page < 3; ++page)
                 for (const language of languages) write("page." + page + ".text." + language, 0, "ab" + page)
             tap("add-questionnaire")
@@ -400,6 +396,66 @@ Item {
             tryVerify(() => place("questionnaire") === -1, 5000)
         }
 
+        readonly property var everySection: ["study", "question", "scenes", "levels", "blocks", "timing", "other"]
+        function order() { return designPage().design.groups.map(group => group.kind + " " + group.name).join(", ") }
+        /// Where a name of the session's parts is in the text.
+        function placeOf(name) { return designPage().design.text.indexOf('name = "' + name + '"') }
+        function test_a_card_is_dragged_to_another_place_in_the_session() {
+            begin("response-signal", "d")
+            tap("section-blocks")
+            tap("add-consent")
+            tap("add-explanation")
+            compare(order(), "block practice, block main, consent consent-1, explanation explanation-1")
+            const cards = inView("cards"), scroll = find(room.screen, "formScroll")
+            scroll.contentY = 0
+            const before = designPage().design.text
+            // a tap, and a finger that trembles, drag nothing
+            const grip = find(cards, "grip3")
+            mousePress(grip, 10, 10)
+            mouseMove(grip, 10, 13)
+            mouseRelease(grip, 10, 13)
+            mouseClick(grip)
+            compare(designPage().design.text, before)
+            verify(!shown("placeMark"))
+            // the last one to the beginning
+            mousePress(grip, 10, 10)
+            for (let y = 0; y >= -3.4 * cards.step; y -= 0.2 * cards.step) mouseMove(grip, 10, 10 + y - (grip.mapToItem(cards, 0, 0).y - 3 * cards.step))
+            tryVerify(() => shown("placeMark") && cards.place === 0, 5000)
+            compare(designPage().design.text, before)      // nothing changes before the finger is lifted
+            mouseRelease(grip, 10, 10)
+            compare(order(), "explanation explanation-1, block practice, block main, consent consent-1")
+            verify(placeOf("explanation-1") < placeOf("practice"))
+            verify(!shown("placeMark"))
+            tap("undo")
+            compare(designPage().design.text, before)
+            // one place down, with a finger
+            const first = find(cards, "grip0"), touch = touchEvent(first)
+            touch.press(1, first, 10, 10).commit()
+            for (let y = 5; y <= 1.4 * cards.step; y += 5) touch.move(1, first, 10, 10 + y - first.mapToItem(cards, 0, 0).y).commit()
+            touch.release(1, first, 10, 10).commit()
+            tryVerify(() => order() === "block main, block practice, consent consent-1, explanation explanation-1", 5000)
+            verify(placeOf("main") < placeOf("practice"))
+        }
+        function test_the_page_scrolls_while_a_card_is_held_at_its_edge() {
+            begin("response-signal", "d")
+            room.resize(800, 480)
+            tap("section-blocks")
+            for (let i = 0; i < 8; ++i) tap("add-consent")
+            const cards = find(room.screen, "cards"), scroll = find(room.screen, "formScroll")
+            scroll.contentY = 0
+            wait(50)
+            verify(cards.height > scroll.height, cards.height)
+            const grip = find(cards, "grip0")
+            mousePress(grip, 10, 10)
+            const low = () => grip.mapFromItem(scroll, 0, scroll.height - 5).y
+            mouseMove(grip, 10, 40)
+            mouseMove(grip, 10, low())
+            tryVerify(() => scroll.contentY > 0, 5000)
+            tryVerify(() => cards.place === 10, 5000)
+            mouseRelease(grip, 10, low())
+            compare(designPage().design.groups[9].name, "practice")
+        }
+
         function test_every_section_of_the_form_can_be_read_on_a_small_panel_in_each_language() {
             begin("contrast", "a")
             room.resize(800, 480)
@@ -416,6 +472,26 @@ Item {
             }
         }
 
+        function test_no_key_and_no_choice_is_shown_as_it_is_in_the_file_data() {
+            return [{ tag: "contrast" }, { tag: "speed-accuracy" }, { tag: "empty" }]
+        }
+        function test_no_key_and_no_choice_is_shown_as_it_is_in_the_file(data) {
+            begin(data.tag, "w")
+            const form = find(room.screen, "formScroll")
+            for (const section of everySection) {
+                tap("section-" + section)
+                for (const more of all(form, item => /^more\d+$/.test(item.objectName)).map(item => item.objectName)) tap(more)
+                // names that the file gives, such as contrast_dB, end with a unit
+                const raw = text => /\b[a-z]+_[a-z]{3,}\b/.test(text)
+                compare(texts(form).filter(raw), [], section)
+                const fields = groupsNow().reduce((most, group) => most.concat(group.fields), [])
+                const words = said => typeof said === "string" ? said : said.key === "" ? said.values.map(words).join("") : ""
+                compare(fields.map(one => words(one.help)).filter(raw), [], section)
+                verify(fields.filter(one => words(one.help) !== "").length >= fields.length / 2)
+                for (const one of fields.filter(field => field.closed))
+                    for (const word of one.allowed) verify(designPage().design.word(one.key, word, "en") !== word, word)
+            }
+        }
         function test_a_screen_reader_finds_every_control_with_a_name() {
             begin("contrast", "a")
             for (const section of ["study", "question", "scenes", "levels", "blocks", "timing", "other"]) {

@@ -13,6 +13,10 @@ Rectangle {
     property bool emptyAllowed: false
     property bool pick: false
     property bool list: false
+    /// True if nothing but the suggestions can be chosen.
+    property bool closed: false
+    /// How a suggestion is said on the page.
+    property var says: word => word
     /// True if sentences are typed. The keyboard then has capitals and more signs.
     property bool sentences: false
     /// True if a number is typed, or several. The keyboard then has nothing else.
@@ -39,8 +43,8 @@ Rectangle {
         typed(told)
     }
     function choose(word: string) {
-        if (pick) {
-            entry.text = word
+        if (pick || (!list && says(word) !== word)) {
+            entry.text = pick && entry.text === word && emptyAllowed ? "" : word  // a second tap takes the choice back
             keep()
         } else if (list) {
             const words = entry.text.split(",").map(part => part.trim()).filter(part => part !== "")
@@ -89,7 +93,7 @@ Rectangle {
             radius: root.theme.radius
             color: root.theme.raised
             border { color: root.theme.action; width: root.theme.stroke }
-            visible: !root.pick
+            visible: !root.pick && !(root.list && root.closed)
             TextInput {
                 id: entry
                 objectName: "entry"
@@ -166,7 +170,7 @@ Rectangle {
                         primary: chosen
                         quiet: !chosen
                         glyph: chosen ? "tick" : ""
-                        text: modelData
+                        text: root.says(modelData)
                         onActivated: root.choose(modelData)
                     }
                 }
