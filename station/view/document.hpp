@@ -14,8 +14,8 @@ using Path = std::vector<std::string>;
 
 /// A TOML text whose values can be changed one by one. A change returns the whole new text. Every byte that
 /// does not belong to the changed key stays as it was: comments, order, blank lines, line breaks. Changes
-/// throw std::logic_error for a path that they cannot use, and core::BadInput if the new text would not be
-/// valid TOML.
+/// throw std::logic_error for a path that they cannot use or where they cannot write the new value, and
+/// core::BadInput if the new text would not be valid TOML.
 class Document {
  public:
   /// Throws core::BadInput, with `file` as the name of the file, if the text is not valid TOML.
@@ -54,6 +54,7 @@ class Document {
   std::string inside_braces(const Part& table, const std::string& entry) const;
   std::string new_line_at(std::size_t at, const std::string& line) const;
   std::string checked(std::string text) const;
+  std::string checked(std::string text, const Path& path) const;
   Span with_comments(const Path& path) const;
 
   std::string text_, file_, line_break_ = "\n";

@@ -260,75 +260,91 @@ bool DesignController::goTo(int remark) {
   return false;
 }
 
-bool DesignController::change(int index, int of, const QString& typed) try {
+bool DesignController::guarded(const std::function<void()>& action) try {
+  action();
+  return true;
+} catch (const core::BadInput& bad) {
+  return refuse(reason(bad));
+} catch (const std::exception& error) {
+  return refuse(core::phrase_of(error));
+}
+
+bool DesignController::edit(const std::function<std::string()>& make) {
+  return draft_ && guarded([&] { take_change(make()); });
+}
+
+bool DesignController::change(int index, int of, const QString& typed) {
   const auto* changed = field(index, of);
   if (changed == nullptr) return false;
   if (changed->input == view::Field::Input::name && !is_name(typed)) return refuse(core::plain("name"));
-  take_change(view::changed(*draft_->document(), *changed, typed.toStdString()));
-  return true;
-} catch (const core::BadInput& bad) {
-  return refuse(reason(bad));
+  return edit([&] { return view::changed(*draft_->document(), *changed, typed.toStdString()); });
 }
 
-bool DesignController::copy(int index, const QString& name) try {
+bool DesignController::copy(int index, const QString& name) {
   const auto* from = group(index);
   if (from == nullptr) return false;
   if (!is_name(name)) return refuse(core::plain("name"));
-  take_change(draft_->document()->with_copy(from->path, name.toStdString()));
-  return true;
-} catch (const core::BadInput& bad) {
-  return refuse(reason(bad));
+  return edit([&] { return draft_->document()->with_copy(from->path, name.toStdString()); });
 }
 
 void DesignController::remove(int index) {
-  if (const auto* gone = group(index); gone != nullptr) take_change(draft_->document()->without(gone->path));
+  if (const auto* gone = group(index); gone != nullptr)
+    edit([&] { return draft_->document()->without(gone->path); });
 }
 
 void DesignController::add(const QString& kind) {
-  if (draft_ && draft_->document() != nullptr)
-    take_change(draft_->document()->with_tables(view::new_table(*draft_->document(), kind.toStdString())));
+  if (!draft_ || draft_->document() == nullptr) return;
+  edit([&] {
+    return draft_->document()->with_tables(view::new_table(*draft_->document(), kind.toStdString()));
+  });
 }
 
 void DesignController::move(int index, bool earlier) {
   const auto* moved = group(index);
   if (moved == nullptr) return;
   const auto& other = earlier ? moved->earlier : moved->later;
-  if (!other.empty()) take_change(draft_->document()->exchanged(moved->path, other));
+  if (!other.empty()) edit([&] { return draft_->document()->exchanged(moved->path, other); });
 }
 
 void DesignController::place(int index, int to) {
-  if (group(index) == nullptr || group(to) == nullptr) return;
-  auto text =
-      view::with_part_at(*draft_->document(), static_cast<std::size_t>(index), static_cast<std::size_t>(to));
-  if (text != draft_->text()) take_change(std::move(text));
+  if (group(index) == nullptr || group(to) == nullptr || index == to) return;
+  edit([&] {
+    return view::with_part_at(*draft_->document(), static_cast<std::size_t>(index),
+                              static_cast<std::size_t>(to));
+  });
 }
 
 void DesignController::extend(int index, int of) {
-  if (const auto* longer = field(index, of)) take_change(view::extended(*draft_->document(), *longer));
+  if (const auto* longer = field(index, of))
+    edit([&] { return view::extended(*draft_->document(), *longer); });
 }
 
 void DesignController::reduce(int index, int of) {
-  if (const auto* gone = field(index, of)) take_change(view::reduced(*draft_->document(), *gone));
+  if (const auto* gone = field(index, of)) edit([&] { return view::reduced(*draft_->document(), *gone); });
 }
 
 void DesignController::moveUp(int index, int of) {
-  if (const auto* moved = field(index, of)) take_change(view::moved_up(*draft_->document(), *moved));
+  if (const auto* moved = field(index, of)) edit([&] { return view::moved_up(*draft_->document(), *moved); });
 }
 
 void DesignController::undo() {
   if (!can_undo()) return;
-  draft_->undo();
-  read_again();
+  guarded([this] {
+    draft_->undo();
+    read_again();
+  });
 }
 
 void DesignController::redo() {
   if (!can_redo()) return;
-  draft_->redo();
-  read_again();
+  guarded([this] {
+    draft_->redo();
+    read_again();
+  });
 }
 
 void DesignController::setText(const QString& text) {
-  if (draft_) take_change(text.toStdString());
+  edit([&] { return text.toStdString(); });
 }
 
 }  // namespace turnpoint::ui

@@ -4,6 +4,7 @@
 #include <QStringList>
 #include <QVariantList>
 #include <QVariantMap>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -181,6 +182,11 @@ class DesignController : public QObject {
   };
   void begin(std::string text, const std::string& path);
   void take_change(std::string text);
+  /// Does what QML asks for. An exception, which would end the program in QML, becomes `trouble`; the result
+  /// is false then.
+  bool guarded(const std::function<void()>& action);
+  /// Changes the draft to the text that `make` returns. If `make` throws, the draft stays as it was.
+  bool edit(const std::function<std::string()>& make);
   void read_again();
   void start_check();
   void start_profiles();
