@@ -105,6 +105,19 @@ bool is_simple(const Part& part, int depth = 0) {
                      [depth](const Part& item) { return is_simple(item, depth + 1); });
 }
 
+/// Whether the first of a list's items, or the value itself, is a text.
+bool is_text(const Part& part) {
+  if (part.kind == Part::Kind::array) return !part.parts.empty() && is_text(part.parts.front());
+  return part.kind == Part::Kind::scalar && part.scalar.kind == core::Value::Kind::string;
+}
+
+/// Whether a text in a list has a comma, which would separate two texts where a person types the list.
+bool has_comma(const Part& list) {
+  return std::any_of(list.parts.begin(), list.parts.end(), [](const Part& item) {
+    return has_comma(item) || (is_text(item) && item.scalar.string.find(',') != std::string::npos);
+  });
+}
+
 /// The forms of a key that are no tables.
 std::vector<const Key*> simple_forms(const Key& key) {
   if (key.kind == Key::Kind::table || key.kind == Key::Kind::tables) return {};
@@ -246,6 +259,9 @@ class Maker {
                       page_of(path[0]) + 1 == pages().size();
     fields_ = &group.fields;
     add_table({path, path.size()}, {&keys}, part, needed || part != nullptr);
+    const auto* inherits = path.front() == "procedure" ? "copy" : path.front() == "scene" ? "base" : "";
+    if (part != nullptr && part->find(inherits) != nullptr)
+      for (auto& field : group.fields) field.inherited = true;
     return group;
   }
 
@@ -393,11 +409,28 @@ class Maker {
     Field field{at.path, input_for(forms)};
     field.key = &key, field.forms = std::move(forms);
     field.present = part != nullptr, field.required = required, field.heading = at.heading;
-    if (part != nullptr && !is_simple(*part)) field.input = Input::written;
+    if (part != nullptr && (!is_simple(*part) || has_comma(*part))) field.input = Input::written;
+    field.of_texts = has_texts(field, part);
     if (part != nullptr)
       field.value = field.input == Input::written ? document_.written(at.path) : shown(document_, *part);
     allow(field);
     fields_->push_back(std::move(field));
+  }
+
+  /// For a key that can have numbers or texts: whether it has texts.
+  bool has_texts(const Field& field, const Part* part) const {
+    if (std::any_of(field.forms.begin(), field.forms.end(),
+                    [](const Key* form) { return is_kind(*form, {Key::Kind::expression}); }))
+      return false;
+    if (field.key->name == "FACTOR")
+      if (const auto* factors = document_.find({"factor"}); factors != nullptr)
+        for (const auto& factor : factors->parts)
+          if (name_in(factor) == field.path.back())
+            if (const auto* levels = factor.find("levels"); levels != nullptr) return is_text(*levels);
+    auto beside = field.path;
+    beside.back() = "choices";
+    if (field.key->name == "simulated" && document_.find(beside) != nullptr) return true;
+    return part != nullptr && is_text(*part);
   }
 
   void allow(Field& field) const {
@@ -549,12 +582,12 @@ std::string list_of(const std::vector<std::string>& items) {
   return "[" + all + "]";
 }
 
-std::string one_or_pair(const Key& list, const std::string& typed) {
+std::string one_or_pair(const Key& list, const std::string& typed, bool of_texts) {
   const auto has = [&](std::initializer_list<Key::Kind> kinds) {
     return std::any_of(list.forms.begin(), list.forms.end(),
                        [&](const Key& form) { return is_kind(form, kinds); });
   };
-  const bool numbers = has({Key::Kind::number, Key::Kind::numbers});
+  const bool numbers = !of_texts && has({Key::Kind::number, Key::Kind::numbers});
   std::vector<std::string> pieces;
   auto rest = typed;
   for (auto at = rest.find("→"); at != std::string::npos; at = rest.find("→"))
@@ -566,7 +599,7 @@ std::string one_or_pair(const Key& list, const std::string& typed) {
 
 /// What was typed as a value of this form; nothing if it cannot be one. `alone` is false if the key can also
 /// be a list of texts.
-std::optional<std::string> as(const Key& form, const std::string& typed, bool alone) {
+std::optional<std::string> as(const Key& form, const std::string& typed, bool alone, bool of_texts) {
   const auto list = [&](const char* separators, const auto& write) {
     std::vector<std::string> all;
     for (const auto& item : items_of(typed, separators)) all.push_back(write(item));
@@ -591,7 +624,7 @@ std::optional<std::string> as(const Key& form, const std::string& typed, bool al
     case Key::Kind::texts:
       return list(",", toml_string);
     case Key::Kind::list:
-      return list(",", [&](const std::string& item) { return one_or_pair(form, item); });
+      return list(",", [&](const std::string& item) { return one_or_pair(form, item, of_texts); });
     default:
       if (!alone && items_of(typed, ",").size() > 1) return std::nullopt;
       return toml_lines(typed);
@@ -610,6 +643,25 @@ int rank(const Key& form) {
   if (is_kind(form, {Key::Kind::number, Key::Kind::integer, Key::Kind::boolean})) return 0;
   if (is_numeric(form)) return 1;
   return is_kind(form, {Key::Kind::texts, Key::Kind::list}) ? 3 : 2;
+}
+
+/// Whether there is a comma between two digits where several numbers can be typed. Where 1,5 is the way to
+/// write 1.5, two numbers would be read without any remark.
+bool has_decimal_comma(const Field& field, const std::string& typed) {
+  const auto several = [](const Key& form) {
+    return is_kind(form, {Key::Kind::numbers, Key::Kind::integers, Key::Kind::interval, Key::Kind::list});
+  };
+  const auto items = items_of(typed, ", ");
+  if (field.of_texts ||
+      std::none_of(field.forms.begin(), field.forms.end(), [&](const Key* form) { return several(*form); }) ||
+      !std::all_of(items.begin(), items.end(), [](const auto& item) { return is_number(item, false); }))
+    return false;
+  const auto digit = [&typed](std::size_t at) {
+    return at < typed.size() && typed[at] >= '0' && typed[at] <= '9';
+  };
+  for (std::size_t at = 1; at < typed.size(); ++at)
+    if (typed[at] == ',' && digit(at - 1) && digit(at + 1)) return true;
+  return false;
 }
 
 /// The text without the values on the way to a path that are no tables, and without a table that is there
@@ -698,11 +750,17 @@ std::vector<Section> form_of(const Document& document, const std::vector<core::P
 std::string encoded(const Field& field, const std::string& typed) {
   if (field.input == Input::written || field.forms.empty()) return typed;
   auto forms = field.forms;
+  if (has_decimal_comma(field, typed))
+    refuse(field, typed, "a decimal point, as in 1.5, or a space after a comma between two numbers: 1, 5");
+  const auto order = [&field](const Key* form) {
+    return field.of_texts && is_numeric(*form) ? 4 : rank(*form);
+  };
   std::stable_sort(forms.begin(), forms.end(),
-                   [](const Key* a, const Key* b) { return rank(*a) < rank(*b); });
-  const bool alone = rank(*forms.back()) < 3;
+                   [&](const Key* a, const Key* b) { return order(a) < order(b); });
+  const bool alone =
+      std::none_of(forms.begin(), forms.end(), [](const Key* form) { return rank(*form) == 3; });
   for (const auto* form : forms)
-    if (const auto written = as(*form, typed, alone)) return *written;
+    if (const auto written = as(*form, typed, alone, field.of_texts)) return *written;
   refuse(field, typed, in_words(*forms.back()));
 }
 

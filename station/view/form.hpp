@@ -34,6 +34,10 @@ struct Field {
   std::string value = {};  ///< as a person writes it: without quotes and brackets, items separated by commas
   std::vector<std::string> allowed = {};  ///< values to choose from
   bool closed = false;                    ///< whether nothing else than these can be chosen
+  /// Whether what looks like a number is a text here: the file has texts, or the value refers to a text.
+  bool of_texts = false;
+  /// Whether another table gives the value if the file does not have it, so that the default does not hold.
+  bool inherited = false;
   /// For a table: whether it can be removed, and whether it can change places with the one before it.
   bool removable = false, movable = false;
   std::size_t heading = 0;  ///< how many names of the path are those of the table above it on the page

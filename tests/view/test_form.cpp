@@ -216,6 +216,61 @@ TEST_CASE("what is typed into a field is what the reader of protocols reads", "[
   CHECK(type(source, {"task", "kind"}, "") == source);
 }
 
+TEST_CASE("a decimal comma is refused where it would become two numbers", "[form]") {
+  const auto file = root + "/protocols/friction-2ifc.toml";
+  const Document document(core::read_file(file), file);
+  const auto form = form_of(document, {});
+  const auto* levels = find(form, {"block", "0", "levels"});
+  REQUIRE(levels != nullptr);
+  for (const char* typed : {"1,5", "0,5, 1", "-1,5 2"}) {
+    try {
+      view::changed(document, *levels, typed);
+      FAIL(typed);
+    } catch (const core::BadInput& bad) {
+      CHECK(core::say(bad.problems().front().allowed, "en").find("decimal point") != std::string::npos);
+    }
+  }
+  CHECK(view::encoded(*levels, "1, 5") == "[1, 5]");
+  CHECK(view::encoded(*levels, "1 5") == "[1, 5]");
+  CHECK(view::encoded(*levels, "1,-5") == "[1, -5]");
+}
+
+TEST_CASE("a text that looks like a number stays a text", "[form]") {
+  const std::string source =
+      "[[factor]]\nname = \"condition\"\nlevels = [\"1\", \"2\"]\n[[factor]]\nname = \"x_mm\"\nlevels = [1]\n"
+      "[[factor]]\nname = \"new\"\n[[factor]]\nname = \"wide\"\nlevels = [\"low, wide\", \"high\"]\n"
+      "[[procedure]]\nname = \"a\"\n[[questionnaire]]\nname = \"q\"\n[[questionnaire.item]]\nid = \"i\"\n"
+      "choices = [{ id = \"1\" }, { id = \"2\" }]\n[[questionnaire.item]]\nid = \"n\"\nnumber = {}\n";
+  const Document document(source, "f.toml");
+  const auto form = form_of(document, {});
+  const auto typed = [&](const Path& path, const std::string& text) {
+    const auto* field = find(form, path);
+    REQUIRE(field != nullptr);
+    return Document(view::changed(document, *field, text), "f.toml").written(path);
+  };
+  CHECK(typed({"factor", "0", "levels"}, "1, 2, 3") == "[\"1\", \"2\", \"3\"]");
+  CHECK(typed({"factor", "1", "levels"}, "1, 2") == "[1, 2]");
+  CHECK(typed({"factor", "2", "levels"}, "1, 2") == "[1, 2]");
+  CHECK(typed({"procedure", "0", "with", "condition"}, "1") == "\"1\"");
+  CHECK(typed({"procedure", "0", "with", "x_mm"}, "1") == "1");
+  CHECK(typed({"questionnaire", "0", "item", "0", "simulated"}, "2") == "\"2\"");
+  CHECK(typed({"questionnaire", "0", "item", "1", "simulated"}, "2") == "2");
+  // a list with a text that has a comma is shown and typed as it is written
+  CHECK(find(form, {"factor", "3", "levels"})->value == "[\"low, wide\", \"high\"]");
+}
+
+TEST_CASE("a key of a copy, or of a scene with a base, has no default of its own", "[form]") {
+  const Document document(
+      "[scene.a]\n[scene.b]\nbase = \"a\"\n[[procedure]]\nname = \"p\"\nkind = \"staircase\"\n[[procedure]]\n"
+      "name = \"q\"\ncopy = \"p\"\n",
+      "f.toml");
+  const auto form = form_of(document, {});
+  CHECK_FALSE(find(form, {"scene", "a", "ramp_ms"})->inherited);
+  CHECK(find(form, {"scene", "b", "ramp_ms"})->inherited);
+  CHECK_FALSE(find(form, {"procedure", "0", "discard_reversals"})->inherited);
+  CHECK(find(form, {"procedure", "1", "discard_reversals"})->inherited);
+}
+
 TEST_CASE("every problem of a check stands at its field", "[form]") {
   const auto file = root + "/protocols/friction-2ifc.toml";
   auto source = core::read_file(file);

@@ -27,6 +27,45 @@ struct Taps {
   int keys = 0;
 };
 
+/// The characters on the keyboard of the screen: all that stand in quotes in its rows.
+std::set<std::string> keys_of_the_screen() {
+  const auto file =
+      core::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/station/ui/shared/ScreenKeyboard.qml");
+  const auto begin = file.find("readonly property var layouts"),
+             end = file.find("readonly property real gap");
+  REQUIRE(begin < end);
+  REQUIRE(end < file.size());
+  std::set<std::string> keys;
+  bool quoted = false;
+  for (auto at = begin; at < end;) {
+    const bool escaped = quoted && file[at] == '\\';
+    if (escaped) ++at;
+    auto next = at + 1;
+    while ((static_cast<unsigned char>(file[next]) & 0xC0) == 0x80) ++next;
+    if (file[at] == '"' && !escaped)
+      quoted = !quoted;
+    else if (quoted)
+      keys.insert(file.substr(at, next - at));
+    at = next;
+  }
+  return keys;
+}
+
+/// Whether a character can be typed on the screen, with capitals. Chinese characters and kana need an input
+/// method, as everywhere; a line break has a key where texts are typed.
+bool on_the_screen(std::string character, const Field& field) {
+  static const auto keys = keys_of_the_screen();
+  if (field.input == Input::number)
+    return std::string("0123456789.-,e+ ").find(character) != std::string::npos;
+  if (character == "\n") return field.input == Input::text;
+  if (character == " " || static_cast<unsigned char>(character[0]) >= 0xE3) return true;
+  if (character[0] >= 'A' && character[0] <= 'Z') character[0] = static_cast<char>(character[0] + 32);
+  const auto second = character.size() > 1 ? static_cast<unsigned char>(character[1]) : 0;
+  if (static_cast<unsigned char>(character[0]) == 0xC3 && second < 0x9F)
+    character[1] = static_cast<char>(second + 0x20);
+  return keys.count(character) > 0;
+}
+
 /// The designer, as a person uses it: it knows which page is shown, and counts what is tapped.
 class Hand {
  public:
@@ -54,6 +93,12 @@ class Hand {
     } else {
       taps_.taps += 2;  // opens the keyboard and closes it
       taps_.keys += static_cast<int>(value.size() + field.value.size());
+      for (std::size_t at = 0, next = 0; at < value.size(); at = next) {
+        for (next = at + 1; next < value.size() && (static_cast<unsigned char>(value[next]) & 0xC0) == 0x80;)
+          ++next;
+        INFO(value);
+        CHECK(on_the_screen(value.substr(at, next - at), field));
+      }
     }
     text_ = view::changed(document(), field, value);
   }

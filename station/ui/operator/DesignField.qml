@@ -98,9 +98,19 @@ Item {
                 theme: root.theme
                 chosen: root.field.value === modelData
                 text: root.said(modelData)
-                // a second tap takes the choice back
-                onActivated: root.picked(chosen && !root.field.required ? "" : modelData)
+                onActivated: if (!chosen) root.picked(modelData)
             }
+        }
+        // A choice is never taken back by the tap that makes it, which is easily repeated by mistake.
+        ActionButton {
+            objectName: root.objectName + "-unset"
+            visible: root.words && root.field.present && !root.field.required
+            theme: root.theme
+            primary: false
+            quiet: true
+            size: root.theme.textBody
+            text: root.texts.text("design.not_set")
+            onActivated: root.picked("")
         }
     }
     // What is entered in a dialog has its help there.

@@ -246,9 +246,11 @@ Rectangle {
         closed: field?.closed ?? false
         numbers: field?.kind === "number"
         sentences: !numbers
+        lines: field?.kind === "text"
         emptyAllowed: root.edited?.field ? !root.edited.field.required : false
         keepText: texts.text("design.use")
         cancelText: texts.text("operator.cancel")
+        unsetText: texts.text("design.not_set")
         onAccepted: text => {
             if (root.design.change(root.edited.group, root.edited.field.index, text)) return
             entry.refused = root.trouble()

@@ -9,6 +9,8 @@ Rectangle {
     property string title
     property string keepText
     property string cancelText
+    /// With `pick`: the text of a button that takes the choice back; "" without one.
+    property string unsetText
     property var suggestions: []
     property bool emptyAllowed: false
     property bool pick: false
@@ -19,6 +21,8 @@ Rectangle {
     property var says: word => word
     /// True if sentences are typed. The keyboard then has capitals and more signs.
     property bool sentences: false
+    /// True if the text may have several lines. In the line that is typed, a line break looks like a space.
+    property bool lines: false
     /// True if a number is typed, or several. The keyboard then has nothing else.
     property bool numbers: false
     /// An explanation of what to type, and the reason why the last text was refused.
@@ -44,7 +48,8 @@ Rectangle {
     }
     function choose(word: string) {
         if (pick || (!list && says(word) !== word)) {
-            entry.text = pick && entry.text === word && emptyAllowed ? "" : word  // a second tap takes the choice back
+            if (pick && entry.text === word) return cancel()
+            entry.text = word
             keep()
         } else if (list) {
             const words = entry.text.split(",").map(part => part.trim()).filter(part => part !== "")
@@ -120,6 +125,17 @@ Rectangle {
                 onActivated: root.keep()
             }
             ActionButton {
+                objectName: "unsetEntry"
+                visible: root.pick && root.emptyAllowed && root.unsetText !== "" && entry.text !== ""
+                theme: root.theme
+                primary: false
+                text: root.unsetText
+                onActivated: {
+                    entry.text = ""
+                    root.keep()
+                }
+            }
+            ActionButton {
                 objectName: "cancelEntry"
                 theme: root.theme
                 primary: false
@@ -143,6 +159,7 @@ Rectangle {
             ScreenKeyboard {
                 visible: !root.pick && !(root.list && root.suggestions.length > 0)
                 full: root.sentences
+                lines: root.lines
                 numbers: root.numbers
                 width: parent.width
                 theme: root.theme

@@ -47,9 +47,9 @@ QVariantList chosen(const std::vector<std::size_t>& indices, const QVariantList&
   return list;
 }
 
-/// Keys and values in a line of help that is also that of the file's reference, as the words of the page for
-/// them.
-QString without_raw_names(QString help) {
+/// Keys and values in the line of help of the key `own`, which is also that of the file's reference, as the
+/// words of the page for them.
+QString without_raw_names(QString help, const std::string& own) {
   static const QRegularExpression names("`([A-Za-z_]+)`|\"([A-Za-z0-9_-]+)\"|\\b([a-z]+(?:_[A-Za-z]+)+)\\b");
   const auto& known = core::catalogue("en");
   for (qsizetype at = 0;;) {
@@ -58,6 +58,8 @@ QString without_raw_names(QString help) {
     const auto name = match.captured(match.lastCapturedIndex()).toStdString();
     std::string said;
     if (const auto key = known.find("design.keys." + name); key != known.end()) said = key->second;
+    if (const auto word = known.find("design.words." + own + "." + name); said.empty() && word != known.end())
+      said = word->second;
     if (said.empty())
       for (const auto& [key, text] : known)
         if (key.starts_with("design.words.") && key.ends_with("." + name)) said = text;
@@ -96,7 +98,7 @@ core::Phrase help_of(const view::Field& field) {
   };
   if (field.key == nullptr) return help;
   if (!field.key->help.empty())
-    add(core::plain(without_raw_names(capitalised(field.key->help)).toStdString()));
+    add(core::plain(without_raw_names(capitalised(field.key->help), field.key->name).toStdString()));
   const auto limited = std::find_if(field.forms.begin(), field.forms.end(), [](const Key* form) {
     const bool number = form->kind == Key::Kind::number || form->kind == Key::Kind::integer ||
                         form->kind == Key::Kind::numbers || form->kind == Key::Kind::integers ||
@@ -104,13 +106,15 @@ core::Phrase help_of(const view::Field& field) {
     return number && !(form->range.low <= -1e6 && form->range.high >= 1e6);
   });
   if (limited != field.forms.end()) add(core::describe((*limited)->range));
+  if (field.inherited) return help;  // absent keys are those of another table
   if (!field.key->fallback.empty())
     add(core::phrase("design.by_default",
                      {said(field.key->name, QString::fromStdString(field.key->fallback))}));
   else if (!field.key->otherwise.empty())
     add(core::phrase(
         "design.without_it",
-        {core::plain(without_raw_names(QString::fromStdString(field.key->otherwise)).toStdString())}));
+        {core::plain(without_raw_names(QString::fromStdString(field.key->otherwise), field.key->name)
+                         .toStdString())}));
   return help;
 }
 
