@@ -2,82 +2,12 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// Tests the designer of studies in the whole program, operated by taps. `taps` counts the taps.
 Item {
-    id: stage
     width: 1280
     height: 800
 
-    PageTest {
+    DesignTest {
         name: "Design"
-        when: windowShown
-        property int taps: 0
-
-        function init() {
-            taps = 0
-            room.open("1234")
-        }
-        function cleanup() { room.close() }
-
-        function shown(name) { return find(room.screen, name) !== null }
-        function ready(name) {
-            const item = find(room.screen, name)
-            return item !== null && item.enabled && item.armed !== false
-        }
-        function appears(name) {
-            tryVerify(() => ready(name), 20000, name)
-            return find(room.screen, name)
-        }
-        /// Brings a control into view, as a person does with a finger, and returns it. Waits until it stands still
-        /// there, because new fields get their positions a moment after they appear.
-        function inView(name) {
-            let last = Qt.point(-1, -1)
-            tryVerify(() => {
-                if (!ready(name)) return false
-                const item = find(room.screen, name), scroll = find(room.screen, "formScroll")
-                let inside = item
-                while (inside && inside !== scroll) inside = inside.parent
-                const y = inside ? item.mapToItem(scroll.contentItem, 0, 0).y : 0
-                if (inside) scroll.contentY = Math.max(0, Math.min(y - 100, scroll.contentHeight - scroll.height))
-                const at = item.mapToItem(null, 0, 0), still = at.x === last.x && at.y === last.y && item.height > 0
-                last = at
-                return still && at.y < stage.height
-            }, 20000, name)
-            return find(room.screen, name)
-        }
-        function tap(name, across = 0.5) {
-            const item = inView(name)
-            mouseClick(item, across * item.width, Math.min(item.height / 2, 15))
-            ++taps
-        }
-        /// Returns the name of the item that shows a key, such as "stop.trials", of a table on the shown
-        /// page.
-        function field(key, table = 0) { return "field" + table + "-" + theField(key, table).index }
-        function theField(key, table = 0) { return groupsNow()[table].fields.find(one => one.path.join(".") === key) }
-        function valueOf(key, table = 0) { return theField(key, table).value }
-        /// A copy of the tables of the page, because each look at the property itself makes all of them again.
-        function groupsNow() { return JSON.parse(JSON.stringify(designPage().design.groups)) }
-        function designPage() { return appears("designPage") }
-        function tapField(key, table = 0) { tap(field(key, table), 0.8) }
-        function keys(text) { for (const letter of text) tap("letter" + letter) }
-        function type(text) {
-            keys(text)
-            tap("keepEntry")
-        }
-        function erase(count) { for (let i = 0; i < count; ++i) tap("erase") }
-        function begin(goal, name) {
-            tap("bar-studies")
-            tap("newStudy")
-            const goals = appears("goals")
-            tryVerify(() => {
-                goals.positionViewAtIndex(goals.model.findIndex(one => one.word === goal), GridView.Contain)
-                return ready("goal-" + goal)
-            }, 20000, goal)
-            tap("goal-" + goal)
-            type(name)
-            appears("section-timing")
-        }
-        function saved(name) { return room.startOf("protocols", name + ".toml", 100000) }
 
         function test_the_form_waits_while_a_finger_is_on_it() {
             begin("contrast", "pressed")
@@ -394,89 +324,6 @@ Item {
             // a part can be taken out again
             tap("remove" + place("questionnaire"))
             tryVerify(() => place("questionnaire") === -1, 5000)
-        }
-
-        readonly property var everySection: ["study", "question", "scenes", "levels", "blocks", "timing", "other"]
-        /// All pages of the form of a text, as {section: groups}.
-        function formOf(text) {
-            const design = designPage().design, form = {}
-            design.setText(text)
-            everySection.forEach((name, index) => {
-                design.show(index)
-                form[name] = JSON.parse(JSON.stringify(design.groups))  // a copy
-            })
-            design.undo()
-            design.show(0)
-            return form
-        }
-        /// Taps what gives a field this value.
-        function give(key, table, value) {
-            const one = theField(key, table)
-            if (find(room.screen, field(key, table)) === null) tap("more" + table)
-            if (one.kind === "boolean" || (one.kind === "word" && one.allowed.length <= 4)) return tap(field(key, table) + "-" + (value === "" ? one.value : value))
-            tapField(key, table)
-            if (one.kind === "word") return tap("suggestion-" + value)
-            if (one.kind === "names" && one.allowed.length > 0) {
-                const now = one.value === "" ? [] : one.value.split(", ")
-                now.forEach(word => tap("suggestion-" + word))
-                value.split(", ").forEach(word => tap("suggestion-" + word))
-            } else {
-                find(appears("fieldEntry"), "entry").text = value  // with a real keyboard
-            }
-            tap("keepEntry")
-        }
-        /// Does the first thing on this page that differs from the wanted groups. Returns false if nothing does.
-        function oneStep(wanted) {
-            const groups = groupsNow()
-            for (let table = 0; table < groups.length; ++table) {
-                const there = wanted[table].fields, own = groups[table].fields
-                for (const one of own) {
-                    const key = one.path.join("."), name = "field" + table + "-" + one.index
-                    const other = there.find(two => two.path.join(".") === key && (two.kind === "list") === (one.kind === "list") && (two.kind === "table") === (one.kind === "table"))
-                    const value = other?.present ? other.value : ""
-                    if (one.kind === "entry") continue
-                    if (one.kind === "table" && one.present === (other?.present ?? false)) continue
-                    if (one.kind === "table" && one.present && !one.removable) continue
-                    if (one.kind === "list" && Number(other?.value ?? 0) <= Number(one.value)) continue
-                    if (one.kind === "table" || one.kind === "list") {
-                        if (find(room.screen, name) === null) tap("more" + table)
-                        tap(name + (one.present && one.kind === "table" ? "-remove" : "-add"))
-                        return true
-                    }
-                    if (value === (one.present ? one.value : "") || (value === "" && one.required)) continue
-                    give(key, table, value)
-                    return true
-                }
-            }
-            return false
-        }
-        function test_a_shipped_protocol_is_made_again_from_an_empty_study_data() {
-            return [{ tag: "friction-2ifc" }, { tag: "magnitude-free" }]
-        }
-        function test_a_shipped_protocol_is_made_again_from_an_empty_study(data) {
-            begin("empty", "again")
-            const target = room.shipped(data.tag), wanted = formOf(target)
-            tap("section-study")
-            taps = 0
-            for (let i = 0; i < 10 && oneStep(wanted.study); ++i) { /* the languages, among others */ }
-            for (const section of everySection) {
-                tap("section-" + section)
-                for (const group of wanted[section].filter(one => one.name !== "")) {
-                    tap("add-" + group.kind)
-                    const groups = groupsNow()
-                    give("name", groups.map(one => one.kind).lastIndexOf(group.kind), group.name)
-                }
-            }
-            for (let round = 0; round < 3; ++round)
-                for (const section of everySection) {
-                    tap("section-" + section)
-                    for (let i = 0; i < 300 && oneStep(wanted[section]); ++i) { /* the next one */ }
-                }
-            console.log(data.tag + ", taps besides keys: " + taps)
-            compare(room.canonical(designPage().design.text), room.canonical(target))
-            tap("section-blocks")
-            compare(groupsNow().map(one => one.kind + " " + one.name), wanted.blocks.map(one => one.kind + " " + one.name))
-            tryVerify(() => ["good", "warned"].includes(designPage().design.verdict), 60000)
         }
 
         function order() { return designPage().design.groups.map(group => group.kind + " " + group.name).join(", ") }
