@@ -326,6 +326,42 @@ Item {
             tryVerify(() => place("questionnaire") === -1, 5000)
         }
 
+        function test_a_choice_is_taken_back_only_by_its_own_control() {
+            begin("response-signal", "c")
+            const before = designPage().design.text
+            tap("section-question")
+            tapField("kind")                           // more words than fit as buttons, so they are in a dialog
+            tap("suggestion-" + valueOf("kind"))
+            verify(!shown("fieldEntry"))
+            tap("section-blocks")
+            tap(field("practice") + "-true")
+            tap(field("practice") + "-true")
+            compare(designPage().design.text, before)
+            tap(field("practice") + "-unset")
+            verify(!designPage().design.text.includes("practice = true"))
+            tap("undo")
+            compare(designPage().design.text, before)
+        }
+        function test_a_request_that_is_not_possible_is_refused_and_the_text_stays() {
+            begin("contrast", "r")
+            const design = designPage().design
+            const text = 'format = "friction-protocol/1"\nfactor = [ { name = "x_dB", levels = [1, 2] } ]\n[protocol]\nid = "r"\n[block]\nname = "a"\n[task.choices]\nid = "x"\nlabel = "y"\n'
+            const refused = request => {
+                design.setText(text)
+                compare(design.trouble, "")
+                request()
+                verify(design.trouble !== "")
+                compare(design.text, text)
+            }
+            refused(() => design.add("factor"))
+            refused(() => design.add("block"))
+            tap("section-question")
+            const choices = groupsNow()[0].fields
+            const moved = choices.find(one => one.movable)
+            verify(moved)
+            refused(() => design.moveUp(0, moved.index))
+        }
+
         function order() { return designPage().design.groups.map(group => group.kind + " " + group.name).join(", ") }
         /// Where a name of the session's parts is in the text.
         function placeOf(name) { return designPage().design.text.indexOf('name = "' + name + '"') }
@@ -344,6 +380,14 @@ Item {
             mouseMove(grip, 10, 13)
             mouseRelease(grip, 10, 13)
             mouseClick(grip)
+            compare(designPage().design.text, before)
+            verify(!shown("placeMark"))
+            // released beside the list
+            mousePress(grip, 10, 10)
+            mouseMove(grip, 10, -50)
+            tryVerify(() => shown("placeMark"), 5000)
+            mouseMove(grip, -1000, -50)
+            mouseRelease(grip, -1000, -50)
             compare(designPage().design.text, before)
             verify(!shown("placeMark"))
             // the last one to the beginning
@@ -371,6 +415,7 @@ Item {
             tap("section-blocks")
             for (let i = 0; i < 8; ++i) tap("add-consent")
             const cards = find(room.screen, "cards"), scroll = find(room.screen, "formScroll")
+            wait(1000)                                 // the form restores its place after the last change
             scroll.contentY = 0
             wait(50)
             verify(cards.height > scroll.height, cards.height)
@@ -381,6 +426,12 @@ Item {
             mouseMove(grip, 10, low())
             tryVerify(() => scroll.contentY > 0, 5000)
             tryVerify(() => cards.place === 10, 5000)
+            wait(300)                                  // longer than it takes to reach the last card
+            const top = cards.mapToItem(scroll.contentItem, 0, 0).y
+            verify(scroll.contentY <= top + cards.height + cards.step - scroll.height + 1, "no further than the cards")
+            const card = grip.mapToItem(scroll, 0, 0).y
+            verify(card >= 0 && card < scroll.height, "the lifted card is in view")
+            verify(cards.z > 0)
             mouseRelease(grip, 10, low())
             compare(designPage().design.groups[9].name, "practice")
         }

@@ -25,15 +25,21 @@ Item {
 
     implicitHeight: parts.length * step
     height: implicitHeight
+    z: held >= 0 ? 1 : 0  // the lifted card is above the forms that follow
+    onPartsChanged: letGo()
 
     function follow() {
         lifted = mapFromItem(view, 0, finger).y - grabbed
         place = Math.max(0, Math.min(parts.length, Math.round((lifted + 0.5 * theme.controlHeight) / step)))
     }
-    function drop() {
-        const from = held, to = place > held ? place - 1 : place
+    /// Ends the dragging and changes nothing.
+    function letGo() {
         held = -1
         place = -1
+    }
+    function drop() {
+        const from = held, to = place > held ? place - 1 : place
+        letGo()
         if (to !== from) design.place(from, to)
     }
 
@@ -94,11 +100,14 @@ Item {
                         if (root.held < 0 && far) root.held = card.index
                         if (root.held >= 0) move(mouse.y)
                     }
-                    onReleased: if (root.held >= 0) root.drop()
-                    onCanceled: {
-                        root.held = -1
-                        root.place = -1
+                    onReleased: mouse => {
+                        if (root.held < 0) return
+                        const at = mapToItem(root, mouse.x, mouse.y)
+                        const beside = at.x < -root.step || at.x > root.width + root.step || at.y < -2 * root.step || at.y > root.height + 2 * root.step
+                        if (beside) root.letGo()
+                        else root.drop()
                     }
+                    onCanceled: root.letGo()
                     Column {
                         anchors.centerIn: parent
                         spacing: Math.max(2, Math.round(0.4 * root.theme.unit))
@@ -137,8 +146,11 @@ Item {
         interval: 16
         repeat: true
         onTriggered: {
-            const most = Math.max(0, root.view.contentHeight - root.view.height)
-            root.view.contentY = Math.max(0, Math.min(most, root.view.contentY + Math.max(-24, Math.min(24, 0.25 * speed))))
+            // no further than to the first and the last card
+            const now = root.view.contentY, top = root.mapToItem(root.view.contentItem, 0, 0).y
+            const least = Math.max(0, Math.min(now, top - root.step))
+            const most = Math.max(now, Math.min(root.view.contentHeight - root.view.height, top + root.height + root.step - root.view.height))
+            root.view.contentY = Math.max(least, Math.min(most, now + Math.max(-24, Math.min(24, 0.25 * speed))))
             root.follow()
         }
     }
