@@ -33,7 +33,7 @@ Column {
     readonly property var keys: layouts[layout] ?? layouts.en
     readonly property var signs: ["?!'():/+*=", "<>%→\"&;€━[]"]
     readonly property var rows: numbers ? ["789", "456", "123", "0.-", ",e+ "]
-        : ["1234567890"].concat(accents ? keys.marks : keys.letters, full && !accents && layout !== "ja" ? signs : [])
+        : ["1234567890"].concat(accents ? keys.marks : keys.letters, full && layout !== "ja" ? [signs[accents ? 1 : 0]] : [])
     readonly property real gap: Math.round(0.4 * theme.unit)
     readonly property real keyWidth: numbers ? Math.min(2 * theme.controlHeight, Math.floor((width - 4 * gap) / 4.5)) : Math.floor((width - 12 * gap) / 12)
     readonly property real keyHeight: Math.min(theme.controlHeight, keyWidth)
