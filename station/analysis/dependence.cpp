@@ -119,9 +119,10 @@ std::optional<double> end_of(const Penalised& model, const Vector& best, double 
       distance += step *= 1.5;
       continue;
     }
-    if (std::min(outside - inside, std::fabs(next - distance)) <= 1e-9 * (sd + std::fabs(best[k])))
-      return best[k] + direction * next;
-    distance = next > inside && next < outside ? next : (inside + outside) / 2;
+    const double least = 1e-9 * (sd + std::fabs(best[k])), middle = (inside + outside) / 2;
+    if (std::fabs(next - distance) <= least) return best[k] + direction * next;
+    if (outside - inside <= least) return best[k] + direction * middle;  // the profile has a step there
+    distance = next > inside && next < outside ? next : middle;
   }
   return std::nullopt;
 }
@@ -141,7 +142,7 @@ std::optional<Vector> scale(Matrix& x) {
   if (!(unit.minCoeff() > 0) || !unit.allFinite()) return std::nullopt;
   x = x * unit.cwiseInverse().asDiagonal();
   Eigen::ColPivHouseholderQR<Matrix> solver(x);
-  solver.setThreshold(3e-7);  // as core::least_squares
+  solver.setThreshold(3e-7);  // as core::least_squares()
   return solver.rank() == x.cols() ? std::optional(unit) : std::nullopt;
 }
 
@@ -152,10 +153,15 @@ Estimate scaled(Estimate estimate, double unit) {
 
 /// Linear regression with intervals by Student's t.
 Regression linear(const std::vector<std::vector<double>>& rows, const std::vector<double>& answers) {
-  auto x = matrix_of(rows);
-  if (!scale(x) || x.rows() <= x.cols()) return {{}, true};
-  const auto fit = core::least_squares(rows, answers, std::vector<double>(rows.size(), 1));
-  const boost::math::students_t law(static_cast<double>(x.rows() - x.cols()));
+  const auto columns = rows.front().size();
+  if (rows.size() <= columns) return {{}, true};
+  core::LeastSquares fit;
+  try {
+    fit = core::least_squares(rows, answers, std::vector<double>(rows.size(), 1));
+  } catch (const core::UsageError&) {
+    return {{}, true};
+  }
+  const boost::math::students_t law(static_cast<double>(rows.size() - columns));
   Regression result;
   for (std::size_t k = 0; k < fit.value.size(); ++k) {
     const double half = boost::math::quantile(law, 0.975) * fit.sd[k];

@@ -68,14 +68,6 @@ struct Counters {
 /// the same frames; this is enough for simulated sessions.
 enum class Samples : std::int32_t { rendered, passed };
 
-/// A tone that is played as long as the stream is open, for example to excite the bridges of force sensors.
-/// Its phase is 0 at frame 0 of the stream, and it never restarts.
-struct Carrier {
-  double frequency_Hz = 0;
-  double amplitude = 0;
-  std::int32_t channel = 0;
-};
-
 struct StreamConfig {
   OutputConfig output;
   Samples samples = Samples::rendered;
@@ -85,7 +77,9 @@ struct StreamConfig {
   /// How many frames a synchronous stream renders ahead of playback, like the buffer of a device: commands
   /// take effect this many frames later. Real-time streams use their device's buffer.
   std::int64_t virtual_lead_frames = 0;
-  std::optional<Carrier> carrier;
+  /// A tone that is played as long as the stream is open, for example to excite the bridges of force sensors.
+  /// Its time t is 0 at frame 0 of the stream, and it never restarts.
+  std::optional<Tone> carrier;
   /// The amplifier whose audio_alive() is called after each block that a device accepted; may be null. It
   /// must outlive the stream.
   Amplifier* amplifier = nullptr;

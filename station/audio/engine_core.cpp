@@ -27,8 +27,7 @@ EngineCore::EngineCore(const StreamConfig& config) : config_(config), synth_(for
         "carrier of {} Hz and {} of full scale on channel {}: not possible at "
         "{} Hz with {} channels",
         carrier.frequency_Hz, carrier.amplitude, carrier.channel, output.rate_Hz, output.channels));
-  synth_.set_carrier(
-      {0, phase_increment(carrier.frequency_Hz, output.rate_Hz), carrier.amplitude, carrier.channel});
+  synth_.set_carrier(rendered(carrier, output.rate_Hz));
 }
 
 void EngineCore::send(const Command& command) {

@@ -41,7 +41,7 @@ Response impulse_response(const PreparedNoise& noise) {
 
 using Channels = std::array<double, max_channels>;
 
-Channels sum_of(const std::array<PreparedTone, max_tones>& tones, int count) {
+Channels sum_of(const std::array<Partial, max_tones>& tones, int count) {
   Channels sum{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
     sum[static_cast<std::size_t>(tones[i].channel)] += tones[i].amplitude;
@@ -61,6 +61,15 @@ Channels with_extras(Channels tones, const PreparedBurst& burst) {
 }
 
 }  // namespace
+
+Partial rendered(const Tone& tone, int rate_Hz) {
+  return {phase_of_angle(tone.phase_rad),
+          phase_increment(tone.frequency_Hz, rate_Hz),
+          0,
+          tone.amplitude,
+          0,
+          tone.channel};
+}
 
 double noise_rms(const PreparedNoise& noise) { return std::sqrt(impulse_response(noise).energy / 3); }
 
@@ -112,7 +121,7 @@ void check_frequency(const char* what, double frequency_Hz, const Format& format
            what, frequency_Hz, highest, limits.highest_relative_Hz, format.rate_Hz);
 }
 
-PreparedTone prepare(const Tone& tone, const Format& format, const SynthLimits& limits) {
+Partial prepare(const Tone& tone, const Format& format, const SynthLimits& limits) {
   check_channel("tone", tone.channel, format);
   check_frequency("tone", tone.frequency_Hz, format, limits);
   if (!(tone.amplitude >= 0 && std::isfinite(tone.amplitude)))
@@ -120,8 +129,7 @@ PreparedTone prepare(const Tone& tone, const Format& format, const SynthLimits& 
            tone.amplitude);
   if (!std::isfinite(tone.phase_rad))
     refuse("tone of {} Hz with a phase that is not finite", tone.frequency_Hz);
-  return {phase_of_angle(tone.phase_rad), phase_increment(tone.frequency_Hz, format.rate_Hz), tone.amplitude,
-          tone.channel};
+  return rendered(tone, format.rate_Hz);
 }
 
 int checked_count(const ToneSet& set) {
@@ -132,8 +140,8 @@ int checked_count(const ToneSet& set) {
 
 // Prepares a change of a burst. The first `before_count` elements of `before` are the burst's tones before
 // the change.
-PreparedChange prepare(const Change& change, const std::array<PreparedTone, max_tones>& before,
-                       int before_count, const Format& format, const SynthLimits& limits) {
+PreparedChange prepare(const Change& change, const std::array<Partial, max_tones>& before, int before_count,
+                       const Format& format, const SynthLimits& limits) {
   PreparedChange out;
   if (change.at_frame < 0 || change.frames < 0)
     refuse("change at frame {} with a length of {} frames; neither number may be negative", change.at_frame,
@@ -160,7 +168,7 @@ void prepare_changes(const Burst& burst, const Format& format, const SynthLimits
                      PreparedBurst& out) {
   if (burst.change_count < 0 || burst.change_count > max_changes)
     refuse("{} changes; the number of changes must be from 0 to {}", burst.change_count, max_changes);
-  std::array<PreparedTone, max_tones> before = out.tones;
+  std::array<Partial, max_tones> before = out.tones;
   std::int64_t free_from = 0;
   for (int c = 0; c < burst.change_count; ++c) {
     const auto k = static_cast<std::size_t>(c);
@@ -181,6 +189,10 @@ void prepare_changes(const Burst& burst, const Format& format, const SynthLimits
     free_from = change.at_frame + change.frames;
   }
   out.change_count = burst.change_count;
+  // A tone that comes only with a later change runs silently until then.
+  for (std::size_t k = 0; k < static_cast<std::size_t>(out.change_count); ++k)
+    for (auto i = static_cast<std::size_t>(out.changes[k].count); i < max_tones; ++i)
+      out.changes[k].to[i] = out.tones[i];
 }
 
 // Prepares the trigger codes. Each code and the silent bits after it must end before the next code begins.

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "station/audio/burst.hpp"
+#include "station/audio/oscillator.hpp"
 #include "station/core/limits.hpp"
 
 namespace turnpoint::audio {
@@ -39,13 +40,9 @@ class BurstRefused : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A tone in the synthesiser's units: phases and increments in 2^-64 cycles.
-struct PreparedTone {
-  std::uint64_t phase = 0;
-  std::uint64_t increment = 0;
-  double amplitude = 0;
-  std::int32_t channel = 0;
-};
+/// Returns a tone as the synthesiser renders it at this rate, from the first frame of its burst. Checks
+/// nothing.
+Partial rendered(const Tone& tone, int rate_Hz);
 
 /// A checked change to other tones: tone i of the burst becomes tone i of `to`. `count` is at least the
 /// number of tones of the burst.
@@ -56,7 +53,7 @@ struct PreparedChange {
   /// true for a change that was sent while the burst plays; if it arrives late, it begins at once and is
   /// played in full
   bool live = false;
-  std::array<PreparedTone, max_tones> to{};
+  std::array<Partial, max_tones> to{};
 };
 
 /// Masking noise in the form that the synthesiser uses: a high-pass and a low-pass filter of second order,
@@ -95,7 +92,7 @@ struct PreparedBurst {
   std::int64_t length_frames = 0;
   Ramp ramp;
   std::int32_t tone_count = 0;
-  std::array<PreparedTone, max_tones> tones{};
+  std::array<Partial, max_tones> tones{};
   std::int32_t change_count = 0;
   std::array<PreparedChange, max_changes> changes{};
   PreparedMarker marker;

@@ -22,7 +22,7 @@ struct Synth::State {
   Format format;
   std::array<Slot, max_voices> slots;
   std::int64_t next_frame = 0;
-  PreparedTone carrier;  ///< an amplitude of 0 means that there is no carrier
+  Partial carrier;  ///< an amplitude of 0 means that there is no carrier
   Mix mix;
   Scratch scratch;
   std::array<SynthEvent, 8 * max_voices> events;
@@ -57,9 +57,7 @@ struct Synth::State {
     }
     if (carrier.amplitude != 0) {
       const auto c = static_cast<std::size_t>(carrier.channel);
-      add_steady(mix.samples[c].data(), frames,
-                 {carrier.phase + carrier.increment * static_cast<std::uint64_t>(frame), carrier.increment, 0,
-                  carrier.amplitude, 0});
+      add_steady(mix.samples[c].data(), frames, advanced(carrier, static_cast<std::uint64_t>(frame)));
       std::fill_n(mix.dithered[c].begin(), frames, std::uint8_t{1});
     }
     step(frame, frames, [&](Voice& voice, std::int64_t at) { voice.add(at, mix, scratch); });
@@ -121,7 +119,7 @@ Synth::Synth(const Format& format) : state_(new State) {
 
 Synth::~Synth() = default;
 
-void Synth::set_carrier(const PreparedTone& carrier) noexcept { state_->carrier = carrier; }
+void Synth::set_carrier(const Partial& carrier) noexcept { state_->carrier = carrier; }
 
 bool Synth::start(const PreparedBurst& burst) noexcept {
   if (burst.start_frame < state_->next_frame) {

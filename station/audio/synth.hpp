@@ -38,7 +38,7 @@ class Synth {
   Synth& operator=(const Synth&) = delete;
 
   /// Adds a tone without end, whose phase is 0 at frame 0. Call this before the first render().
-  void set_carrier(const PreparedTone& carrier) noexcept;
+  void set_carrier(const Partial& carrier) noexcept;
   /// Accepts a burst. Returns false if all voices are in use.
   [[nodiscard]] bool start(const PreparedBurst& burst) noexcept;
   /// Changes a waiting or sounding burst, in addition to the burst's own changes; `at_frame` counts from the

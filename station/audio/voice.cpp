@@ -20,11 +20,6 @@ double section(const double (&c)[5], double (&state)[2], double x) noexcept {
 
 void Voice::begin(const PreparedBurst& burst) noexcept {
   burst_ = burst;
-  for (int i = 0; i < max_tones; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const PreparedTone& tone = burst_.tones[k];
-    partials_[k] = {tone.phase, tone.increment, 0, tone.amplitude, 0};
-  }
   origin_ = 0;
   glide_end_ = never;
   next_change_ = 0;
@@ -73,17 +68,12 @@ void Voice::begin_glide(std::int64_t at, const PreparedChange& change) noexcept 
     // A tone that is new in this change gets the phase that it would have if it had run silently since the
     // onset.
     if (i >= burst_.tone_count) {
-      burst_.tones[k] = change.to[k];
-      const std::uint64_t gone = target_[k].increment * static_cast<std::uint64_t>(origin_);
-      partials_[k] = {target_[k].phase + gone, target_[k].increment, 0, 0, 0};
+      burst_.tones[k] = advanced(target_[k], static_cast<std::uint64_t>(origin_));
+      burst_.tones[k].amplitude = 0;
     }
-    Partial p = advanced(partials_[k], since);
-    const double amplitude = p.amplitude + p.amplitude_change * along;
-    const auto difference = static_cast<std::int64_t>(target_[k].increment - p.increment);
-    p.curvature = static_cast<std::uint64_t>(difference / glide_frames_);
-    p.amplitude = amplitude;
-    p.amplitude_change = target_[k].amplitude - amplitude;
-    partials_[k] = p;
+    Partial tone = advanced(burst_.tones[k], since);
+    tone.amplitude += tone.amplitude_change * along;
+    burst_.tones[k] = gliding(tone, target_[k], glide_frames_);
   }
   burst_.tone_count = count;
   origin_ = at;
@@ -93,8 +83,7 @@ void Voice::begin_glide(std::int64_t at, const PreparedChange& change) noexcept 
 void Voice::end_glide(std::int64_t at) noexcept {
   for (int i = 0; i < burst_.tone_count; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    Partial p = advanced(partials_[k], static_cast<std::uint64_t>(at - origin_));
-    partials_[k] = {p.phase, target_[k].increment, 0, target_[k].amplitude, 0};
+    burst_.tones[k] = after_glide(burst_.tones[k], target_[k], at - origin_);
   }
   origin_ = at;
   glide_end_ = never;
@@ -137,10 +126,10 @@ void Voice::tones(std::int64_t at, int offset, int count, Scratch& scratch) noex
   if (gliding)
     for (int n = 0; n < count; ++n) shape[n] = ramp_at(at + n - origin_, glide_frames_);
   for (int i = 0; i < burst_.tone_count; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const Partial p = advanced(partials_[k], static_cast<std::uint64_t>(at - origin_));
+    const Partial p =
+        advanced(burst_.tones[static_cast<std::size_t>(i)], static_cast<std::uint64_t>(at - origin_));
     if (p.amplitude == 0 && p.amplitude_change == 0) continue;
-    double* sum = scratch.dry[static_cast<std::size_t>(burst_.tones[k].channel)].data() + offset;
+    double* sum = scratch.dry[static_cast<std::size_t>(p.channel)].data() + offset;
     gliding ? add_gliding(sum, count, p, shape) : add_steady(sum, count, p);
   }
 }

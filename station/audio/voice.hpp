@@ -83,12 +83,11 @@ class Voice {
   double stop_gain(std::int64_t at) const noexcept;
   void noise(std::int64_t at, int first, int last, Mix& mix, const Scratch& scratch, bool gated) noexcept;
 
-  PreparedBurst burst_;
-  std::array<Partial, max_tones> partials_;
-  std::int64_t origin_ = 0;         ///< frame of the burst at which the frame count n of `partials_` is 0
+  PreparedBurst burst_;             ///< with its tones as they are rendered now
+  std::int64_t origin_ = 0;         ///< frame of the burst at which the frame count n of its tones is 0
   std::int64_t glide_end_ = never;  ///< frame at which the current glide ends
   std::int64_t glide_frames_ = 1;
-  std::array<PreparedTone, max_tones> target_;
+  std::array<Partial, max_tones> target_;
   int next_change_ = 0;
   bool live_waits_ = false;
   PreparedChange live_;

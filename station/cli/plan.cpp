@@ -227,9 +227,7 @@ void plan(const Options& options, Context& context) {
                factors.at(name));
   scene::Planner planner(rig);
   const auto result = planner.plan(protocol::resolve(protocol, options.scene, factors, 0));
-  std::vector<physics::Tone> tones;
-  for (const auto& tone : result.tones)
-    tones.push_back({tone.frequency_Hz, tone.amplitude_m, tone.phase_rad});
+  const std::vector<physics::Tone> tones(result.tones.begin(), result.tones.end());
   const auto sound = scene::sound_bound(rig, tones, result.model);
   std::optional<scene::DrivePlan> base;
   if (const auto& from = protocol.scenes.at(options.scene); from.friction_contrast_dB)

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <memory>
-#include <numbers>
 
 #include "station/audio/engine.hpp"
 #include "station/cli/command.hpp"
@@ -14,6 +13,7 @@
 #include "station/maintenance/play_armed.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/transducer.hpp"
+#include "station/session/burst.hpp"
 #include "station/session/places.hpp"
 #include "station/session/stage.hpp"
 
@@ -43,16 +43,9 @@ audio::Burst burst_for(const rig::Rig& rig, const Options& options) {
   if (tones.size() > static_cast<std::size_t>(audio::max_tones))
     throw UsageError(
         fmt::format("synth: {} tones were given; at most {} are allowed", tones.size(), audio::max_tones));
-  for (const auto& tone : tones) {
-    scene::DrivenTone driven;
-    driven.frequency_Hz = tone.frequency_Hz;
-    driven.amplitude_m = tone.amplitude_m;
-    driven.phase_rad = tone.phase_rad;
-    scene::assign_transducer(rig, driven);
-    auto& played = burst.tones.tones[static_cast<std::size_t>(burst.tones.count++)];
-    played = {driven.frequency_Hz, driven.full_scale, driven.output_phase_rad + std::numbers::pi / 2,
-              driven.channel};
-  }
+  for (const auto& tone : tones)
+    burst.tones.tones[static_cast<std::size_t>(burst.tones.count++)] =
+        session::driven(scene::on_transducer(rig, tone));
   return burst;
 }
 

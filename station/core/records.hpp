@@ -195,38 +195,47 @@ struct FingerRow {
   std::optional<double> mu;
 };
 
-/// The result of one trial. It is committed as a whole before the next trial begins.
-struct TrialRow {
-  int segment_index = 1;   ///< number of the program run, from 1; set by the session log, not by the caller
-  int trial_index = 0;     ///< number of the trial within the session, from 0; every presented trial counts
-  int trial_in_block = 0;  ///< number of the trial within its block; part of the key of its random draws
-  TrialType type = TrialType::experimental;
-  std::string procedure;
-  std::optional<double> level;
-  std::map<std::string, FactorValue> factors;
+/// What the last scene of a trial presented, as it was planned.
+struct PresentedRow {
   std::optional<double> boundary_mm, frequency_Hz, amplitude;
-  std::optional<std::string> correct_response, response;
+  int xruns = 0;
+};
+
+/// What the participant answered.
+struct ResponseRow {
+  std::optional<std::string> response;
   std::optional<bool> correct;
-  Outcome outcome = Outcome::answered;
-  /// time of response_zero, from which response times count, on CLOCK_MONOTONIC or in virtual time
-  std::int64_t onset_ns = 0;
-  double onset_s = 0;  ///< time of response_zero from the start of the program run (segment)
-  double duration_s = 0;
-  std::optional<double> response_time_s, decision_time_s, movement_time_s;
   /// how sure the participant was, from 1 (guessed) up; only if the task asks for it
   std::optional<int> confidence;
   std::optional<double> confidence_time_s;  ///< time from the answer to the statement of confidence
   /// what the result was worth to the participant; empty without points in the protocol, and for void trials
   std::optional<double> points;
+  int extra_touches = 0;
+};
+
+/// When a trial happened, and how its times were measured.
+struct TimingRow {
+  /// time of response_zero, from which response times count, on CLOCK_MONOTONIC or in virtual time
+  std::int64_t onset_ns = 0;
+  double onset_s = 0;  ///< time of response_zero from the start of the program run (segment)
+  double duration_s = 0;
+  std::optional<double> response_time_s, decision_time_s, movement_time_s;
   /// response_time_quality: "kernel", "toolkit" or "simulated", by the origin of the time stamp
   std::string response_zero, response_time_quality;
   double response_offset_s = 0;
   std::optional<double> deadline_s;
-  int xruns = 0, extra_touches = 0;
-  std::optional<double> threshold_est, threshold_sd;
   /// slope and residual of the line that is fitted to times over frames (audio/frame_clock.hpp)
   std::optional<double> clock_slope_ns_per_frame, clock_residual_ns;
-  std::uint64_t state_hash = 0;  ///< hash of the state of the block's procedures after this trial
+};
+
+/// What the procedures of the block know after a trial.
+struct LearnedRow {
+  std::optional<double> threshold_est, threshold_sd;
+  std::uint64_t state_hash = 0;  ///< hash of the state of the block's procedures
+};
+
+/// What pick-ups say about the stimuli of a trial.
+struct SurfaceRow {
   /// The verdict on the stimuli of the trial; of several intervals, the worst verdict counts.
   Proof proof = Proof::unproven;
   ProofCause proof_cause = ProofCause::none;
@@ -238,6 +247,24 @@ struct TrialRow {
   /// What the pick-up captured in the silence before the first stimulus, relative to the planned vibration:
   /// everything (rms), and the strongest tone; the latter is empty if no tone stands out of the noise.
   std::optional<double> silence_dB, silence_tone_dB;
+};
+
+/// The result of one trial. It is committed as a whole before the next trial begins.
+struct TrialRow {
+  int segment_index = 1;   ///< number of the program run, from 1; set by the session log, not by the caller
+  int trial_index = 0;     ///< number of the trial within the session, from 0; every presented trial counts
+  int trial_in_block = 0;  ///< number of the trial within its block; part of the key of its random draws
+  TrialType type = TrialType::experimental;
+  std::string procedure;
+  std::optional<double> level;
+  std::map<std::string, FactorValue> factors;
+  std::optional<std::string> correct_response;
+  Outcome outcome = Outcome::answered;
+  PresentedRow presented;
+  ResponseRow given;
+  TimingRow timing;
+  LearnedRow learned;
+  SurfaceRow surface;
   FingerRow finger;
   std::vector<ToneRow> tones;
   std::vector<SignalRow> signal_rows;  ///< signals of the trial; written, but not read back with the trial

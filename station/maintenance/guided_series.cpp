@@ -35,18 +35,12 @@ constexpr int kValidDays = 90;
 double at(double low, double high, int k, int count) { return low + (high - low) * k / (count - 1); }
 
 SeriesPoint with_displacement(const rig::Rig& rig, double frequency_Hz, double displacement_um) {
-  scene::DrivenTone tone;
-  tone.frequency_Hz = frequency_Hz;
-  tone.amplitude_m = 1e-6 * displacement_um;
-  scene::assign_transducer(rig, tone);
+  const auto tone = scene::on_transducer(rig, {frequency_Hz, 1e-6 * displacement_um, 0});
   return {tone.transducer, frequency_Hz, tone.full_scale, displacement_um, {}, {}};
 }
 
 SeriesPoint with_amplitude(const rig::Rig& rig, const std::string& transducer, double frequency_Hz) {
-  scene::DrivenTone tone;
-  tone.frequency_Hz = frequency_Hz;
-  tone.amplitude_m = 1e-6;
-  scene::assign_transducer(rig, tone);
+  const auto tone = scene::on_transducer(rig, {frequency_Hz, 1e-6, 0});
   return {transducer.empty() ? tone.transducer : transducer,
           frequency_Hz,
           kQuiet,

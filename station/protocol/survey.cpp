@@ -62,7 +62,7 @@ Sight sight_of(const Combination& combination, const scene::DrivePlan& plan) {
   for (const auto& tone : plan.tones) {
     sight.lowest_Hz = sight.lowest_Hz == 0 ? tone.frequency_Hz : std::min(sight.lowest_Hz, tone.frequency_Hz);
     sight.highest_Hz = std::max(sight.highest_Hz, tone.frequency_Hz);
-    sight.tones.push_back({tone.frequency_Hz, tone.amplitude_m, tone.phase_rad});
+    sight.tones.push_back(tone);
   }
   if (plan.boundary_m) sight.boundary_mm = 1e3 * *plan.boundary_m;
   sight.displacement_um = 1e6 * plan.peak_displacement_m;

@@ -140,10 +140,10 @@ Rehearsal rehearse(const protocol::Protocol& protocol, const protocol::Visit& vi
       const auto doing = done_by(rehearser, *spec, protocol, seed);
       const auto& result = bench.run(doing);
       trial::fill_result(row, result, *spec, protocol, 0, doing.setting ? doing.setting : doing.reply.value);
-      trial::TrialEnd end{row.outcome, result.response, row.correct, {}};
+      trial::TrialEnd end{row.outcome, result.response, row.given.correct, {}};
       if (result.response) end.setting = doing.setting;
       director.record(end);
-      director.spend(row.duration_s);
+      director.spend(row.timing.duration_s);
       now_ns = bench.now_ns();
       record.trials.push_back(std::move(row));
       if (++rehearsal.trials > most_trials)

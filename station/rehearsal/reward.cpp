@@ -35,10 +35,10 @@ struct Earned {
   int valued = 0, judged = 0, right = 0, answered = 0;
 
   void add(const core::TrialRow& row) {
-    duration_s += row.duration_s;
-    if (row.points) points += *row.points, ++valued;
-    if (row.correct) ++judged, right += *row.correct ? 1 : 0;
-    if (row.response_time_s) response_time_s += *row.response_time_s, ++answered;
+    duration_s += row.timing.duration_s;
+    if (row.given.points) points += *row.given.points, ++valued;
+    if (row.given.correct) ++judged, right += *row.given.correct ? 1 : 0;
+    if (row.timing.response_time_s) response_time_s += *row.timing.response_time_s, ++answered;
   }
   void add(const Earned& more) {
     points += more.points, duration_s += more.duration_s, response_time_s += more.response_time_s;

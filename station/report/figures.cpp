@@ -457,8 +457,9 @@ std::optional<Figure> quantile_probability_figure(const Summary& summary) {
 namespace {
 
 /// Where the person could move by changing nothing but the boundary: accuracy over the mean time of right
-/// answers, with the fitted drifts and the fitted time outside the decision, averaged over the conditions.
-Line boundary_curve(const Summary& summary, const std::string& name) {
+/// answers up to `latest_s`, with the fitted drifts and the fitted time outside the decision, averaged over
+/// the conditions.
+Line boundary_curve(const Summary& summary, const std::string& name, double latest_s) {
   constexpr double s2 = analysis::kDiffusionScale * analysis::kDiffusionScale;
   struct Cell {
     double drift, weight;
@@ -486,7 +487,9 @@ Line boundary_curve(const Summary& summary, const std::string& name) {
           std::fabs(x) < 1e-6 ? boundary * boundary / (4 * s2) : boundary / (2 * drift) * std::tanh(x / 2);
       all += weight, right += weight * p, right_s += weight * p * decision_s;
     }
-    line.x.push_back(analysis::mean(outside_s) + right_s / right);
+    const double time_s = analysis::mean(outside_s) + right_s / right;
+    if (time_s > latest_s) break;
+    line.x.push_back(time_s);
     line.y.push_back(right / all);
   }
   return line;
@@ -519,10 +522,10 @@ std::optional<Chart> conditions_chart(const Summary& summary, const Words& words
     points.push_back(point);
   }
   if (points.size() < 2) return std::nullopt;
-  if (auto curve = boundary_curve(summary, words("figure.boundary_curve")); !curve.x.empty())
+  chart.x = report::fitted(words("figure.correct_time"), times_s, 0.3);
+  if (auto curve = boundary_curve(summary, words("figure.boundary_curve"), chart.x.high); !curve.x.empty())
     chart.layers.push_back(std::move(curve));
   chart.layers.insert(chart.layers.end(), points.begin(), points.end());
-  chart.x = report::fitted(words("figure.correct_time"), times_s, 0.3);
   chart.y = {words("figure.proportion", words("figure.correct")),
              std::min(0.45, *std::min_element(accuracies.begin(), accuracies.end()) - 0.03), 1.03};
   return chart;

@@ -51,7 +51,7 @@ std::optional<std::vector<Learned>> replay(const std::vector<core::TrialRow>& tr
       replayed.record(procedure::Answer::none);
       continue;
     }
-    const auto answer = protocol::learned_from(spec, row.response.value_or(""), row.correct);
+    const auto answer = protocol::learned_from(spec, row.given.response.value_or(""), row.given.correct);
     replayed.record(answer);
     learned.push_back({&row, answer == procedure::Answer::one});
   }

@@ -59,28 +59,28 @@ analysis::TrialRecord record_of(const core::TrialRow& row, const core::BlockStar
   record.procedure = row.procedure;
   record.level = row.level;
   record.right_choice = index_of(row.correct_response, protocol);
-  record.response = index_of(row.response, protocol);
-  record.correct = row.correct;
-  record.unsure = row.response == protocol::kUnsure && !protocol.task.unsure.empty();
+  record.response = index_of(row.given.response, protocol);
+  record.correct = row.given.correct;
+  record.unsure = row.given.response == protocol::kUnsure && !protocol.task.unsure.empty();
   if (protocol.task.present) record.present = protocol::holds(*protocol.task.present, factors_of(row));
-  if (row.response &&
+  if (row.given.response &&
       (protocol.task.kind == protocol::TaskKind::adjustment || protocol::judges(protocol.task)))
-    record.setting = core::read_number(*row.response);
+    record.setting = core::read_number(*row.given.response);
   record.start_side = side_of(row, protocol);
-  record.confidence = row.confidence;
+  record.confidence = row.given.confidence;
   record.outcome = row.outcome;
-  record.response_time_s = row.response_time_s;
-  record.duration_s = row.duration_s;
-  record.points = row.points;
-  record.deadline_s = row.deadline_s;
+  record.response_time_s = row.timing.response_time_s;
+  record.duration_s = row.timing.duration_s;
+  record.points = row.given.points;
+  record.deadline_s = row.timing.deadline_s;
   const auto factors = factors_of(row);
   record.anticipation_s = protocol::evaluate(protocol.timing.anticipation_s, factors);
-  if (protocol.task.kind == protocol::TaskKind::two_interval && row.correct &&
+  if (protocol.task.kind == protocol::TaskKind::two_interval && row.given.correct &&
       !protocol.task.correct_answer.empty())
     for (int scene = 0; scene < 2; ++scene)
       for (const auto& [name, comparison] : protocol.task.correct_answer)
         if (name == protocol::scene_of(protocol.task, scene) && protocol::holds(comparison, factors))
-          record.right_scene = scene, record.chosen_scene = *row.correct ? scene : 1 - scene;
+          record.right_scene = scene, record.chosen_scene = *row.given.correct ? scene : 1 - scene;
   if (protocol.timing.signal) record.signal_s = protocol::evaluate(protocol.timing.signal->after_s, factors);
   record.instruction = protocol::condition_of(protocol, factors, block.instruction);
   if (protocol.analysis.difficulty)
@@ -103,7 +103,7 @@ void add_finger(const core::TrialRow& row, const analysis::TrialRecord& trial, S
   added.speed_mm_s = finger.speed_mm_s;
   added.mu_low = finger.mu_low;
   added.mu_high = finger.mu_high;
-  added.planned_mm = row.boundary_mm;
+  added.planned_mm = row.presented.boundary_mm;
   added.felt_mm = finger.boundary_felt_mm;
   added.felt_se_mm = finger.boundary_se_mm;
   data.finger.push_back(std::move(added));

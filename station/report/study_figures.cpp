@@ -177,11 +177,28 @@ std::optional<Figure> group_trade_figure(const Study& study) {
   std::vector<std::string> conditions;
   for (const auto& mean : study.means)
     if (mean.measure == analysis::kCorrect) conditions.push_back(mean.condition);
+  const auto mean_of = [&study](const std::string& measure, const std::string& condition) {
+    const auto found = std::find_if(study.means.begin(), study.means.end(), [&](const auto& mean) {
+      return mean.measure == measure && mean.condition == condition;
+    });
+    return found == study.means.end() ? std::nullopt : found->mean;
+  };
   int series = 0;
+  std::map<std::string, Line> joined;  // one person's conditions
+  std::vector<Layer> means;
   for (const auto& condition : conditions) {
-    Points points;
-    points.series = series++;
+    Points points, mean;
+    points.series = mean.series = series++;
     points.name = conditions.size() > 1 ? condition : "";
+    if (const auto time = mean_of(analysis::kMedianTime, condition),
+        accuracy = mean_of(analysis::kCorrect, condition);
+        time && accuracy) {
+      mean.add(time->value, accuracy->value, accuracy->interval.low, accuracy->interval.high);
+      means.push_back(Span{time->interval.low, time->interval.high, accuracy->value, mean.series});
+      means.push_back(mean);
+      times.insert(times.end(), {time->interval.low, time->interval.high});
+      accuracies.push_back(accuracy->interval.low);
+    }
     for (const auto& person : study.persons) {
       std::optional<double> time, accuracy;
       for (const auto& measure : person.measures) {
@@ -190,13 +207,20 @@ std::optional<Figure> group_trade_figure(const Study& study) {
         if (measure.measure == analysis::kCorrect) accuracy = measure.value;
       }
       if (!time || !accuracy || !person.excluded.empty()) continue;
-      points.x.push_back(*time), points.y.push_back(*accuracy);
+      points.x.push_back(*time), points.y.push_back(*accuracy), points.open.push_back(true);
+      auto& line = joined[person.person];
+      line.x.push_back(*time), line.y.push_back(*accuracy);
     }
     times.insert(times.end(), points.x.begin(), points.x.end());
     accuracies.insert(accuracies.end(), points.y.begin(), points.y.end());
     if (!points.x.empty()) chart.layers.push_back(std::move(points));
   }
   if (times.empty()) return std::nullopt;
+  chart.layers.insert(chart.layers.end(), means.begin(), means.end());
+  for (auto& [person, line] : joined) {
+    line.series = report::kNeutral, line.faint = true;
+    if (line.x.size() > 1) chart.layers.insert(chart.layers.begin(), std::move(line));
+  }
   chart.x = report::fitted("Median response time (s)", times, 0.1);
   const double lowest = *std::min_element(accuracies.begin(), accuracies.end());
   chart.y = {"Proportion correct (0 to 1)", std::min(0.45, lowest - 0.03), 1.03};
@@ -236,11 +260,8 @@ std::optional<Chart> course_chart(const Study& study, const std::string& heights
         if (time.measure != wanted || time.condition != condition || !time.mean) continue;
         const auto &x = *time.mean, &y = *height.mean;
         points.add(x.value, y.value, y.interval.low, y.interval.high);
-        Line reach;
-        reach.series = points.series;
-        reach.x = {x.interval.low, x.interval.high}, reach.y = {y.value, y.value};
-        chart.layers.push_back(reach);
-        xs.insert(xs.end(), reach.x.begin(), reach.x.end());
+        chart.layers.push_back(Span{x.interval.low, x.interval.high, y.value, points.series});
+        xs.insert(xs.end(), {x.interval.low, x.interval.high});
         ys.insert(ys.end(), {y.interval.low, y.interval.high});
       }
     }
@@ -281,6 +302,7 @@ std::optional<Figure> group_course_figure(const Study& study) {
         analysis::kMedianTime, true);
   if (figure.charts.empty()) return std::nullopt;
   figure.title = "Accuracy over time, means of the participants";
+  figure.caption = Words("en")("figure.caption_course", std::to_string(persons_of(study)));
   figure.columns = figure.charts.size() > 1 ? 2 : 1;
   figure.chart_width_px = figure.columns > 1 ? 400 : 620;
   figure.chart_height_px = 330;

@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "physics/boundary_budget.hpp"
 #include "physics/centre_line.hpp"
@@ -89,9 +90,9 @@ struct Planner::State : ToneDesigner {
   physics::Tolerance tolerance_of(const Scene& scene) const;
   physics::PlanChoice choose(const Scene& scene, const std::vector<Tone>& tones,
                              std::optional<Model> placed_by) const;
-  bool place_by_field(const std::vector<WantedTone>& wanted, std::vector<double>& frequencies_Hz) const;
-  Solution solve(const Scene& scene, const std::vector<WantedTone>& wanted);
-  const Solution& solution_for(const Scene& scene, const std::vector<WantedTone>& wanted);
+  bool place_by_field(const std::vector<ToneTarget>& wanted, std::vector<double>& frequencies_Hz) const;
+  Solution solve(const Scene& scene, const std::vector<ToneTarget>& wanted);
+  const Solution& solution_for(const Scene& scene, const std::vector<ToneTarget>& wanted);
   void drive(DrivePlan& plan, const std::vector<Tone>& tones, const Solution& solution) const;
   double drive_under_finger_m(const Scene& scene, double frequency_Hz);
 
@@ -129,14 +130,14 @@ physics::PlanChoice Planner::State::choose(const Scene& scene, const std::vector
 
 /// For each tone that has a boundary: finds the frequency for which the tone's edge lies at this boundary
 /// according to the model `modes`. Returns false if there is no such frequency.
-bool Planner::State::place_by_field(const std::vector<WantedTone>& wanted,
+bool Planner::State::place_by_field(const std::vector<ToneTarget>& wanted,
                                     std::vector<double>& frequencies_Hz) const {
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (!wanted[i].boundary_m) continue;
     auto options = edge_options(wanted[i].edge, wanted[i].displacement_m);
     options.model = Model::modes;
     const auto found =
-        physics::solve_frequency_Hz(surface, options, *wanted[i].boundary_m, wanted[i].frequency_Hz);
+        physics::solve_frequency_Hz(surface, options, *wanted[i].boundary_m, *wanted[i].frequency_Hz);
     if (!found) return false;
     frequencies_Hz[i] = *found;
   }
@@ -145,22 +146,22 @@ bool Planner::State::place_by_field(const std::vector<WantedTone>& wanted,
 
 /// Returns the uncertainty of the scene's boundary, which is the boundary of its furthest tone.
 double boundary_uncertainty_m(const physics::Surface& surface, const Scene& scene,
-                              const std::vector<WantedTone>& wanted) {
+                              const std::vector<ToneTarget>& wanted) {
   if (wanted.empty()) return 0;
   const auto& furthest = *std::max_element(wanted.begin(), wanted.end(), [](const auto& a, const auto& b) {
-    return a.frequency_Hz < b.frequency_Hz;
+    return *a.frequency_Hz < *b.frequency_Hz;
   });
   auto at = furthest.boundary_m ? furthest.boundary_m : scene.boundary_m;
-  if (!at) at = physics::turning_point_m(surface, furthest.frequency_Hz);
-  return at ? physics::boundary_budget(surface, furthest.frequency_Hz, *at).total_m : 0;
+  if (!at) at = physics::turning_point_m(surface, *furthest.frequency_Hz);
+  return at ? physics::boundary_budget(surface, *furthest.frequency_Hz, *at).total_m : 0;
 }
 
-Solution Planner::State::solve(const Scene& scene, const std::vector<WantedTone>& wanted) {
+Solution Planner::State::solve(const Scene& scene, const std::vector<ToneTarget>& wanted) {
   Solution solution;
   std::vector<Tone> tones;
   for (const auto& tone : wanted) {
-    tones.push_back({on_grid(tone.frequency_Hz, kGridPerHz), 1, 0});
-    solution.frequencies_Hz.push_back(tone.frequency_Hz);
+    tones.push_back({on_grid(*tone.frequency_Hz, kGridPerHz), 1, 0});
+    solution.frequencies_Hz.push_back(*tone.frequency_Hz);
   }
   // Zones are designed with the first mode. Their boundary has the error of that model, whichever model is
   // later chosen for the field.
@@ -182,13 +183,13 @@ Solution Planner::State::solve(const Scene& scene, const std::vector<WantedTone>
   return solution;
 }
 
-const Solution& Planner::State::solution_for(const Scene& scene, const std::vector<WantedTone>& wanted) {
+const Solution& Planner::State::solution_for(const Scene& scene, const std::vector<ToneTarget>& wanted) {
   auto key = fmt::format("{} {} {} {} {}", physics::format(scene.edge),
                          scene.tolerance.boundary_m.value_or(0), scene.tolerance.level_dB.value_or(0),
                          scene.tolerance.friction.value_or(0), scene.zone || scene.tones.size() > 1);
   for (const auto& tone : wanted)
-    key +=
-        fmt::format(" {} {} {}", tone.frequency_Hz, physics::format(tone.edge), tone.boundary_m.value_or(-1));
+    key += fmt::format(" {} {} {}", *tone.frequency_Hz, physics::format(tone.edge),
+                       tone.boundary_m.value_or(-1));
   const auto found = solutions.find(key);
   if (found != solutions.end()) return found->second;
   if (solutions.size() >= kSolutions) solutions.clear();
@@ -197,22 +198,17 @@ const Solution& Planner::State::solution_for(const Scene& scene, const std::vect
 
 void Planner::State::drive(DrivePlan& plan, const std::vector<Tone>& tones, const Solution& solution) const {
   for (std::size_t i = 0; i < tones.size(); ++i) {
-    const auto& tone = tones[i];
     const auto& info = solution.fields[i].info;
-    DrivenTone driven;
-    driven.frequency_Hz = tone.frequency_Hz;
-    driven.amplitude_m = tone.amplitude_m;
-    driven.phase_rad = tone.phase_rad;
-    driven.turning_point_m = info.turning_point_m;
-    driven.last_peak_m = info.last_peak_m;
-    driven.gain = info.gain;
-    driven.displacement_m = info.gain * tone.amplitude_m;
-    assign_transducer(rig, driven);
-    if (driven.frequency_Hz >= core::kHighestShareOfRate * rig.output.rate_Hz)
+    auto tone = on_transducer(rig, tones[i]);
+    tone.turning_point_m = info.turning_point_m;
+    tone.last_peak_m = info.last_peak_m;
+    tone.gain = info.gain;
+    tone.displacement_m = info.gain * tone.amplitude_m;
+    if (tone.frequency_Hz >= core::kHighestShareOfRate * rig.output.rate_Hz)
       throw Unreachable(
-          phrase("problem.too_high", {plain(number(driven.frequency_Hz)), plain(rig.output.rate_Hz),
+          phrase("problem.too_high", {plain(number(tone.frequency_Hz)), plain(rig.output.rate_Hz),
                                       plain(number(core::kHighestShareOfRate * rig.output.rate_Hz))}));
-    plan.tones.push_back(driven);
+    plan.tones.push_back(std::move(tone));
   }
   std::stable_sort(plan.tones.begin(), plan.tones.end(),
                    [](const auto& a, const auto& b) { return a.frequency_Hz > b.frequency_Hz; });
@@ -362,8 +358,7 @@ void refuse_beyond_limits(const rig::Rig& rig, const DrivePlan& plan) {
 Planner::Profile Planner::profile(const DrivePlan& plan, int points) {
   if (state_->rig.surface.plate_theory == rig::PlateTheory::automatic)
     return by_theory(plan.theory).profile(plan, points);
-  std::vector<Tone> tones;
-  for (const auto& tone : plan.tones) tones.push_back({tone.frequency_Hz, tone.amplitude_m, tone.phase_rad});
+  const std::vector<Tone> tones(plan.tones.begin(), plan.tones.end());
   Profile profile;
   profile.x_m = physics::linspace_points(state_->surface, points);
   profile.displacement_m =

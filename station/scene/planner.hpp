@@ -12,6 +12,7 @@
 #include "physics/model.hpp"
 #include "physics/planner.hpp"
 #include "physics/surface.hpp"
+#include "physics/tone.hpp"
 #include "physics/warning.hpp"
 #include "station/core/texts.hpp"
 #include "station/rig/physical.hpp"
@@ -27,23 +28,20 @@ class Unreachable : public core::Refusal {
   using Refusal::Refusal;
 };
 
-/// One tone as the drive will play it.
-struct DrivenTone {
-  double frequency_Hz = 0;
-  double amplitude_m = 0;  ///< peak displacement of the drive edge
-  double phase_rad = 0;    ///< phase of the motion of the drive edge
-  std::string transducer;
+/// One tone of a plan: the motion of the drive edge, the transducer that causes it, and what it does to the
+/// surface.
+struct PlannedTone : physics::Tone {
+  std::string transducer = {};
   int channel = 0;
   double full_scale = 0;  ///< peak value of the tone at the converter; 1 is full scale
   /// phase at the converter: `phase_rad` minus the phase shift of the transducer
   double output_phase_rad = 0;
-  std::optional<double> boundary_m;  ///< where the boundary would be with this tone alone
-  std::optional<double> turning_point_m, last_peak_m;
+  std::optional<double> turning_point_m = {}, last_peak_m = {};
   /// peak displacement at the tone's last maximum, or the largest peak displacement if there is no maximum
   double displacement_m = 0;
   double gain = 0;
   /// standard deviation of the level at the last maximum; see level_of(), set by add_level_uncertainty()
-  std::optional<double> level_sd_dB;
+  std::optional<double> level_sd_dB = {};
 };
 
 /// How this rig presents a scene: the tones, the chosen model with the reason and its error bounds, and the
@@ -51,7 +49,7 @@ struct DrivenTone {
 /// are separate.
 struct DrivePlan {
   Scene scene;
-  std::vector<DrivenTone> tones;  ///< all tones, in order of falling frequency
+  std::vector<PlannedTone> tones;  ///< all tones, in order of falling frequency
   physics::Model model = physics::Model::mode;
   bool inside_tolerance = true;
   core::Phrase beyond_tolerance;  ///< says which error bounds are too large; empty if inside_tolerance

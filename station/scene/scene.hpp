@@ -7,7 +7,8 @@
 
 namespace turnpoint::scene {
 
-/// One explicit tone. Exactly one of its boundary and its frequency is set.
+/// A tone that a scene asks for. In a scene, exactly one of its boundary and its frequency is set. The
+/// planner finds the frequency of a tone with a boundary from the surface's first mode.
 struct ToneTarget {
   std::optional<double> boundary_m, frequency_Hz;
   physics::Edge edge;

@@ -68,25 +68,23 @@ double ToneDesigner::target_displacement(const Scene& scene) const {
       phrase("problem.friction_too_low", {plain(number(wanted)), plain(number(friction.lowest_friction()))}));
 }
 
-std::vector<WantedTone> ToneDesigner::single(const Scene& scene) {
+std::vector<ToneTarget> ToneDesigner::single(const Scene& scene) {
   const double displacement = target_displacement(scene) * std::pow(10.0, scene.rove_dB / 20);
   const double frequency = frequency_for(*scene.boundary_m, scene.edge, displacement);
-  return {{frequency, displacement, 0, scene.edge, scene.boundary_m}};
+  return {{scene.boundary_m, frequency, scene.edge, displacement, 0}};
 }
 
-std::vector<WantedTone> ToneDesigner::explicit_tones(const Scene& scene) {
-  std::vector<WantedTone> tones;
-  for (const auto& target : scene.tones) {
-    const double displacement = target.displacement_m * std::pow(10.0, scene.rove_dB / 20);
-    const double frequency = target.frequency_Hz
-                                 ? *target.frequency_Hz
-                                 : frequency_for(*target.boundary_m, target.edge, displacement);
-    tones.push_back({frequency, displacement, target.phase_rad, target.edge, target.boundary_m});
+std::vector<ToneTarget> ToneDesigner::explicit_tones(const Scene& scene) {
+  auto tones = scene.tones;
+  for (auto& tone : tones) {
+    tone.displacement_m *= std::pow(10.0, scene.rove_dB / 20);
+    if (!tone.frequency_Hz)
+      tone.frequency_Hz = frequency_for(*tone.boundary_m, tone.edge, tone.displacement_m);
   }
   return tones;
 }
 
-std::vector<WantedTone> ToneDesigner::zone(const Scene& scene, DrivePlan& plan) {
+std::vector<ToneTarget> ToneDesigner::zone(const Scene& scene, DrivePlan& plan) {
   const auto& wanted = *scene.zone;
   const double designed_for = wanted.design_friction.value_or(wanted.friction);
   const auto key = fmt::format("{} {} {} {} {}", *scene.boundary_m, physics::format(scene.edge),
@@ -109,16 +107,16 @@ std::vector<WantedTone> ToneDesigner::zone(const Scene& scene, DrivePlan& plan) 
   double scale = 1;
   if (wanted.friction != designed_for) scale = scale_to_friction(surface, friction, rig, tones, scene);
   scale *= std::pow(10.0, scene.rove_dB / 20);
-  std::vector<WantedTone> list;
+  std::vector<ToneTarget> list;
   for (const auto& tone : tones) {
     const double frequency_Hz = on_grid(tone.frequency_Hz, kGridPerHz);
     const double drive_m = physics::drive_amplitude_m(surface, frequency_Hz, 1);
-    list.push_back({frequency_Hz, scale * tone.amplitude_m / drive_m, tone.phase_rad, scene.edge, {}});
+    list.push_back({{}, frequency_Hz, scene.edge, scale * tone.amplitude_m / drive_m, tone.phase_rad});
   }
   return list;
 }
 
-std::vector<WantedTone> ToneDesigner::tones_for(const Scene& scene, DrivePlan& plan) {
+std::vector<ToneTarget> ToneDesigner::tones_for(const Scene& scene, DrivePlan& plan) {
   if (scene.zone) return zone(scene, plan);
   if (!scene.tones.empty()) return explicit_tones(scene);
   return single(scene);

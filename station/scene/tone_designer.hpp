@@ -21,26 +21,16 @@ namespace turnpoint::scene {
 inline constexpr double kGridPerHz = 1e6, kGridPerMetre = 1e15, kGridPerRadian = 1e9;
 inline double on_grid(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
 
-/// A tone that a scene needs. Its frequency comes from the surface's first mode; the vibration model for the
-/// final plan is chosen later.
-struct WantedTone {
-  double frequency_Hz = 0;
-  double displacement_m = 0;  ///< peak displacement at the tone's last maximum along the surface
-  double phase_rad = 0;
-  physics::Edge edge;
-  /// position at which the tone's edge must lie; empty if the tone is part of a zone
-  std::optional<double> boundary_m;
-};
-
 /// Finds the tones that a scene needs, by computing with the first mode of this rig's surface. Caches
 /// boundary maps and zone designs.
 class ToneDesigner {
  public:
   explicit ToneDesigner(const rig::Rig& r) : rig(r), surface(surface_of(r)), friction(friction_of(r)) {}
 
-  /// Returns the tones of a scene. If the scene is a zone of uniform friction, also sets `plan.boundary_m`.
-  /// Throws Unreachable if no frequency of this rig can produce the scene.
-  std::vector<WantedTone> tones_for(const Scene& scene, DrivePlan& plan);
+  /// Returns the tones of a scene, all with a frequency; those that must place an edge have a boundary, too.
+  /// The vibration model for the final plan is chosen later. If the scene is a zone of uniform friction, also
+  /// sets `plan.boundary_m`. Throws Unreachable if no frequency of this rig can produce the scene.
+  std::vector<ToneTarget> tones_for(const Scene& scene, DrivePlan& plan);
   /// Returns the map of boundaries for an edge defined by a percentage, a peak or a turning point. The map
   /// covers the tones that this rig can play.
   const physics::BoundaryMap& map_for(const physics::Edge& edge);
@@ -54,9 +44,9 @@ class ToneDesigner {
  private:
   double frequency_for(double boundary_m, const physics::Edge& edge, double displacement_m);
   double target_displacement(const Scene& scene) const;
-  std::vector<WantedTone> single(const Scene& scene);
-  std::vector<WantedTone> explicit_tones(const Scene& scene);
-  std::vector<WantedTone> zone(const Scene& scene, DrivePlan& plan);
+  std::vector<ToneTarget> single(const Scene& scene);
+  std::vector<ToneTarget> explicit_tones(const Scene& scene);
+  std::vector<ToneTarget> zone(const Scene& scene, DrivePlan& plan);
 
   std::map<std::string, std::shared_ptr<const physics::BoundaryMap>> maps_;
   std::map<std::string, physics::ZoneDesign> designs_;

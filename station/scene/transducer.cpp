@@ -27,16 +27,13 @@ std::pair<double, double> response_at(const rig::Transducer& transducer, double 
 
 }  // namespace
 
-void assign_transducer(const rig::Rig& rig, DrivenTone& tone) {
+PlannedTone on_transducer(const rig::Rig& rig, const physics::Tone& tone) {
   core::Phrase bands;
   for (const auto& transducer : rig.transducers) {
     if (tone.frequency_Hz >= transducer.low_Hz && tone.frequency_Hz <= transducer.high_Hz) {
       const auto [gain_m, phase_rad] = response_at(transducer, tone.frequency_Hz);
-      tone.transducer = transducer.name;
-      tone.channel = transducer.channel;
-      tone.full_scale = tone.amplitude_m / gain_m;
-      tone.output_phase_rad = tone.phase_rad - phase_rad;
-      return;
+      return {tone, transducer.name, transducer.channel, tone.amplitude_m / gain_m,
+              tone.phase_rad - phase_rad};
     }
     if (!bands.values.empty()) bands.values.push_back(plain(", "));
     bands.values.push_back(

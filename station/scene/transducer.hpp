@@ -4,10 +4,9 @@
 
 namespace turnpoint::scene {
 
-/// Assigns the tone to the first transducer whose band contains its frequency. Fills in the tone's
-/// transducer, channel, full_scale and output phase. If no band contains it, throws Unreachable with a list
-/// of the bands.
-void assign_transducer(const rig::Rig& rig, DrivenTone& tone);
+/// Assigns a tone to the first transducer whose band contains its frequency: returns it with transducer,
+/// channel, full_scale and output phase. If no band contains it, throws Unreachable with a list of the bands.
+PlannedTone on_transducer(const rig::Rig& rig, const physics::Tone& tone);
 
 /// Return the lowest and the highest frequency that the transducers can play. The lowest is at least
 /// `preferred_Hz`, unless all bands lie below it. The highest is at most `limit_Hz`.

@@ -34,7 +34,7 @@ const Transfer* calibration_of(const PickUp& pick_up, int channel) {
 
 }  // namespace
 
-audio::Partial tone_at(const GlidingTone& tone, std::int64_t frames, std::int64_t frame) noexcept {
+audio::Partial tone_at(const PlayedTone& tone, std::int64_t frames, std::int64_t frame) noexcept {
   audio::Partial partial = tone.partial;
   const std::int64_t gliding = std::clamp<std::int64_t>(frame, 0, frames);
   partial = audio::advanced(partial, static_cast<std::uint64_t>(gliding));
@@ -45,13 +45,14 @@ audio::Partial tone_at(const GlidingTone& tone, std::int64_t frames, std::int64_
   return partial;
 }
 
-GlideResponse::GlideResponse(const Glide& glide, const GlidingTone& tone, const PickUp& pick_up, int rate_Hz,
+GlideResponse::GlideResponse(const Glide& glide, const PlayedTone& tone, const PickUp& pick_up, int rate_Hz,
                              std::int64_t tail_frames) {
   const auto hertz = [rate_Hz](std::uint64_t increment) {
     return static_cast<double>(static_cast<std::int64_t>(increment)) * 0x1p-64 * rate_Hz;
   };
+  const int channel = tone.partial.channel;
   const std::uint64_t from = tone.partial.increment, to = tone_at(tone, glide.frames, glide.frames).increment;
-  if (!response(pick_up, tone.channel, hertz(from)) || !response(pick_up, tone.channel, hertz(to))) return;
+  if (!response(pick_up, channel, hertz(from)) || !response(pick_up, channel, hertz(to))) return;
   const double seconds = static_cast<double>(glide.frames) / rate_Hz;
   const double band_Hz = std::fabs(hertz(to - from)) + kMargin_Hz + kPerGlide / seconds;
   step_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(rate_Hz / band_Hz));
@@ -68,7 +69,7 @@ GlideResponse::GlideResponse(const Glide& glide, const GlidingTone& tone, const 
     turn[k] = turned(now.phase - middle * static_cast<std::uint64_t>(frame));
     values_[k] = now.amplitude * turn[k];
   }
-  const Transfer& calibrated = *calibration_of(pick_up, tone.channel);
+  const Transfer& calibrated = *calibration_of(pick_up, channel);
   const double low_Hz = calibrated.frequency_Hz.front(), high_Hz = calibrated.frequency_Hz.back();
   const auto count = static_cast<double>(values_.size());
   Eigen::FFT<double> transform;
@@ -77,7 +78,7 @@ GlideResponse::GlideResponse(const Glide& glide, const GlidingTone& tone, const 
   for (std::size_t k = 0; k < spectrum.size(); ++k) {
     const double place = static_cast<double>(k) - (2 * k < values_.size() ? 0 : count);
     const double frequency_Hz = hertz(middle) + place / count * rate_Hz / static_cast<double>(step_);
-    spectrum[k] *= *response(pick_up, tone.channel, std::clamp(frequency_Hz, low_Hz, high_Hz));
+    spectrum[k] *= *response(pick_up, channel, std::clamp(frequency_Hz, low_Hz, high_Hz));
   }
   transform.inv(values_, spectrum);
   for (std::size_t k = 0; k < values_.size(); ++k) values_[k] *= std::conj(turn[k]);
@@ -130,7 +131,7 @@ GlideProof::GlideProof(const Glide& glide, std::int64_t first_frame, std::int64_
 
 // Joins tones of equal frequency, and computes what each pick-up captures of them.
 void GlideProof::add_lines(const std::vector<PickUp>& pick_ups, std::int64_t tail_frames) {
-  for (const GlidingTone& tone : glide_.tones) {
+  for (const PlayedTone& tone : glide_.tones) {
     auto same = std::find_if(lines_.begin(), lines_.end(), [&](const Line& line) {
       const auto& partial = line.tones.front().partial;
       return partial.increment == tone.partial.increment && partial.curvature == tone.partial.curvature;
@@ -139,14 +140,14 @@ void GlideProof::add_lines(const std::vector<PickUp>& pick_ups, std::int64_t tai
     same->tones.push_back(tone);
   }
   for (Line& line : lines_) {
-    for (const GlidingTone& tone : line.tones) {
+    for (const PlayedTone& tone : line.tones) {
       const auto turn = static_cast<std::int64_t>(tone.partial.phase - line.tones.front().partial.phase);
       line.turns.push_back(std::polar(1.0, 2 * M_PI * 0x1p-64 * static_cast<double>(turn)));
     }
     line.responses.resize(pick_ups_);
     for (std::size_t p = 0; p < pick_ups_; ++p) {
       bool known = true;
-      for (const GlidingTone& tone : line.tones) {
+      for (const PlayedTone& tone : line.tones) {
         line.responses[p].emplace_back(glide_, tone, pick_ups[p], rate_Hz_, tail_frames);
         known = known && line.responses[p].back().calibrated();
       }
@@ -162,7 +163,7 @@ void GlideProof::fill_waves(const AlignedBlock& block) noexcept {
     return high_pass_gain(static_cast<double>(increment) * 0x1p-64 * rate_Hz_, rate_Hz_, step);
   };
   for (std::size_t l = 0; l < lines_.size(); ++l) {
-    const GlidingTone& tone = lines_[l].tones.front();
+    const PlayedTone& tone = lines_[l].tones.front();
     audio::Partial now = tone_at(tone, glide_.frames, first);
     const double gain = gain_of(now.increment);
     const double rise = gain_of(tone_at(tone, glide_.frames, first + block_frames_).increment) - gain;
@@ -178,7 +179,7 @@ void GlideProof::fill_waves(const AlignedBlock& block) noexcept {
       if (first + n >= 0 && first + n < glide_.frames) now.increment += tone.partial.curvature;
     }
     double planned = 0;
-    for (const GlidingTone& one : lines_[l].tones)
+    for (const PlayedTone& one : lines_[l].tones)
       planned += tone_at(one, glide_.frames, first + block_frames_ / 2).amplitude;
     planned_[l] += planned * planned * (gain + rise / 2) * (gain + rise / 2) * block_frames_;
   }
@@ -349,9 +350,9 @@ std::vector<GlideToneProof> GlideProof::result(double unseen_dB) const {
       made.seen = true;
     }
     if (made.seen) made.phase_error_deg = std::arg(sum) * 180 / M_PI;
-    for (const GlidingTone& tone : lines_[l].tones) {
+    for (const PlayedTone& tone : lines_[l].tones) {
       made.tone = tone.index;
-      made.drive_channel = tone.channel;
+      made.drive_channel = tone.partial.channel;
       tones.push_back(made);
     }
   }

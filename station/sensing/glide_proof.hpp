@@ -13,7 +13,7 @@ namespace turnpoint::sensing {
 
 /// The tone at a frame counted from the first frame of its glide of `frames` frames. Before and after the
 /// glide its frequency is constant.
-audio::Partial tone_at(const GlidingTone& tone, std::int64_t frames, std::int64_t frame) noexcept;
+audio::Partial tone_at(const PlayedTone& tone, std::int64_t frames, std::int64_t frame) noexcept;
 
 /// What a pick-up captures of a tone that glides. A tone that passes a resonance in a few milliseconds is
 /// neither as strong nor as late as a steady tone of the same frequency. So the tone is filtered with the
@@ -21,7 +21,7 @@ audio::Partial tone_at(const GlidingTone& tone, std::int64_t frames, std::int64_
 class GlideResponse {
  public:
   /// Computes the response until `tail_frames` after the end of the glide.
-  GlideResponse(const Glide& glide, const GlidingTone& tone, const PickUp& pick_up, int rate_Hz,
+  GlideResponse(const Glide& glide, const PlayedTone& tone, const PickUp& pick_up, int rate_Hz,
                 std::int64_t tail_frames);
 
   /// False if the calibration does not cover the whole glide; at() is then 0.
@@ -62,7 +62,7 @@ class GlideProof {
  private:
   /// All tones that have the same frequency throughout the glide. Only their sum can be measured.
   struct Line {
-    std::vector<GlidingTone> tones;
+    std::vector<PlayedTone> tones;
     std::vector<std::complex<double>> turns;            ///< e^(i phase) of each tone relative to the first
     std::vector<std::vector<GlideResponse>> responses;  ///< [pick-up][tone]
     std::vector<double> best;  ///< each pick-up's largest response; 0 if it is not calibrated for this line

@@ -198,7 +198,7 @@ IntervalProof::State::State(const IntervalPlan& plan)
       shape_(LockInShape::of_rate(plan.rate_Hz)),
       blocks_(plan.rate_Hz, plan.capture_channels, inputs_of(plan), shape_.block_frames,
               high_pass_step(plan.rate_Hz)),
-      tones_(plan.burst, plan.rate_Hz),
+      tones_(plan.burst),
       fit_(audio::max_tones) {
   begin_ =
       static_cast<std::int64_t>(std::floor(static_cast<double>(plan.burst.start_frame) + plan.delay_frames));
@@ -250,7 +250,7 @@ void IntervalProof::State::add_stretch(Stretch plan) {
   made.lines = planned_lines(plan, plan_.pick_ups, plan_.rate_Hz);
   std::vector<FollowedTone> followed;
   for (const PlannedLine& line : made.lines)
-    followed.push_back({{line.phase, line.increment, 0, 0, 0}, plan.origin_frame});
+    followed.push_back({line.tones.front().partial, plan.origin_frame});
   made.sums = std::make_unique<ToneSums>(followed, pick_ups(), shape_.block_frames, shape_.window_frames,
                                          plan_.delay_frames);
   made.plan = std::move(plan);
@@ -310,9 +310,9 @@ void IntervalProof::State::add_windows(std::size_t stretch) {
 double IntervalProof::State::planned_delay_frames(const std::vector<PlannedLine>& lines) const {
   double delay_s = 0, weights = 0;
   for (const PlannedLine& line : lines)
-    for (const PlannedTone& tone : line.tones) {
+    for (const PlayedTone& tone : line.tones) {
       const double weight = std::norm(line.expected[main_] * line.gain);
-      delay_s += weight * group_delay_s(plan_.pick_ups[main_], tone.channel, tone.frequency_Hz);
+      delay_s += weight * group_delay_s(plan_.pick_ups[main_], tone.partial.channel, line.frequency_Hz);
       weights += weight;
     }
   if (!(weights > 0)) return std::numeric_limits<double>::quiet_NaN();
@@ -519,7 +519,7 @@ void IntervalProof::State::measure_tones() {
       const ToneProof& last = result_.tones.back();
       if (!last.seen) continue;
       double amplitude = 0;
-      for (const PlannedTone& tone : line.tones) amplitude += tone.amplitude;
+      for (const PlayedTone& tone : line.tones) amplitude += tone.partial.amplitude;
       planned += amplitude * amplitude;
       measured += amplitude * amplitude * std::pow(10, last.ratio_dB / 10);
     }
@@ -560,9 +560,9 @@ void IntervalProof::State::measure_tone(std::size_t stretch, const PlannedLine& 
   } else {
     made.worst_ratio_dB = 0;
   }
-  for (const PlannedTone& tone : line.tones) {
+  for (const PlayedTone& tone : line.tones) {
     made.tone = tone.index;
-    made.drive_channel = tone.channel;
+    made.drive_channel = tone.partial.channel;
     result_.tones.push_back(made);
   }
 }
@@ -628,7 +628,7 @@ std::span<const double> IntervalProof::State::unexplained() {
     const double size = std::abs(a);
     for (double& sample : rest) {
       sample -= size * audio::sine_of_phase(phase);
-      phase += lines[l].increment;
+      phase += lines[l].tones.front().partial.increment;
     }
   }
   return rest;

@@ -6,42 +6,23 @@
 
 namespace turnpoint::sensing {
 
-PlannedTones::Running PlannedTones::running(const audio::PreparedTone& tone) {
-  Running made;
-  made.partial.phase = tone.phase;
-  made.partial.increment = tone.increment;
-  made.partial.amplitude = tone.amplitude;
-  made.channel = tone.channel;
-  return made;
-}
-
-PlannedTones::PlannedTones(const audio::PreparedBurst& burst, int rate_Hz)
-    : start_frame_(burst.start_frame), rate_Hz_(rate_Hz) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(burst.tone_count); ++i)
-    tones_.push_back(running(burst.tones[i]));
-}
+PlannedTones::PlannedTones(const audio::PreparedBurst& burst)
+    : tones_(burst.tones.begin(), burst.tones.begin() + burst.tone_count), start_frame_(burst.start_frame) {}
 
 // Applies a change as the synthesiser does: frequencies glide linearly, and the phase does not jump.
 Glide PlannedTones::change(const audio::PreparedChange& change) {
   const auto since = static_cast<std::uint64_t>(change.at_frame - origin_);
   const std::int64_t frames = std::max<std::int64_t>(1, change.frames);
   for (std::size_t i = tones_.size(); i < static_cast<std::size_t>(change.count); ++i) {
-    Running added = running(change.to[i]);
-    added.partial.amplitude = 0;
-    added.partial.phase += added.partial.increment * static_cast<std::uint64_t>(origin_);
-    tones_.push_back(added);
+    tones_.push_back(audio::advanced(change.to[i], static_cast<std::uint64_t>(origin_)));
+    tones_.back().amplitude = 0;
   }
   Glide glide{++changes_, start_frame_ + change.at_frame, frames, {}};
   for (std::size_t i = 0; i < tones_.size(); ++i) {
-    audio::Partial partial = audio::advanced(tones_[i].partial, since);
     const auto& to = change.to[i];
-    partial.curvature =
-        static_cast<std::uint64_t>(static_cast<std::int64_t>(to.increment - partial.increment) / frames);
-    partial.amplitude_change = to.amplitude - partial.amplitude;
-    if (partial.amplitude != 0 || to.amplitude != 0)
-      glide.tones.push_back({static_cast<int>(i), tones_[i].channel, partial});
-    partial = audio::advanced(partial, static_cast<std::uint64_t>(frames));
-    tones_[i].partial = {partial.phase, to.increment, 0, to.amplitude, 0};
+    const auto partial = audio::gliding(audio::advanced(tones_[i], since), to, frames);
+    if (partial.amplitude != 0 || to.amplitude != 0) glide.tones.push_back({static_cast<int>(i), partial});
+    tones_[i] = audio::after_glide(partial, to, frames);
   }
   origin_ = change.at_frame + frames;
   return glide;
@@ -49,18 +30,13 @@ Glide PlannedTones::change(const audio::PreparedChange& change) {
 
 Stretch PlannedTones::stretch(std::int64_t first_frame, std::int64_t end_frame) const {
   Stretch stretch{changes_, origin_frame(), first_frame, end_frame, {}};
-  for (std::size_t i = 0; i < tones_.size(); ++i) {
-    const auto& [partial, channel] = tones_[i];
-    if (partial.amplitude == 0) continue;
-    stretch.tones.push_back({static_cast<int>(i), channel,
-                             static_cast<double>(partial.increment) * 0x1p-64 * rate_Hz_, partial.amplitude,
-                             partial.phase, partial.increment});
-  }
+  for (std::size_t i = 0; i < tones_.size(); ++i)
+    if (tones_[i].amplitude != 0) stretch.tones.push_back({static_cast<int>(i), tones_[i]});
   return stretch;
 }
 
-std::vector<Stretch> planned_stretches(const audio::PreparedBurst& burst, int rate_Hz) {
-  PlannedTones tones(burst, rate_Hz);
+std::vector<Stretch> planned_stretches(const audio::PreparedBurst& burst) {
+  PlannedTones tones(burst);
   const std::int64_t start = burst.start_frame, risen = start + burst.ramp.frames,
                      falls = start + burst.length_frames - burst.ramp.frames;
   std::vector<Stretch> stretches;
@@ -78,30 +54,30 @@ std::vector<Stretch> planned_stretches(const audio::PreparedBurst& burst, int ra
 std::vector<PlannedLine> planned_lines(const Stretch& stretch, const std::vector<PickUp>& pick_ups,
                                        int rate_Hz) {
   std::vector<PlannedLine> lines;
-  for (const PlannedTone& tone : stretch.tones) {
-    auto same = std::find_if(lines.begin(), lines.end(),
-                             [&](const PlannedLine& line) { return line.increment == tone.increment; });
+  for (const auto& [index, tone] : stretch.tones) {
+    auto same = std::find_if(lines.begin(), lines.end(), [&](const PlannedLine& line) {
+      return line.tones.front().partial.increment == tone.increment;
+    });
     if (same == lines.end()) {
       PlannedLine line;
-      line.phase = tone.phase;
-      line.increment = tone.increment;
-      line.frequency_Hz = tone.frequency_Hz;
-      line.gain = high_pass_gain(tone.frequency_Hz, rate_Hz, high_pass_step(rate_Hz));
+      line.frequency_Hz = static_cast<double>(tone.increment) * 0x1p-64 * rate_Hz;
+      line.gain = high_pass_gain(line.frequency_Hz, rate_Hz, high_pass_step(rate_Hz));
       line.expected.resize(pick_ups.size());
       line.seen.resize(pick_ups.size(), 1);
       same = lines.insert(lines.end(), line);
     }
-    same->tones.push_back(tone);
-    const double turn = 2 * M_PI * 0x1p-64 * static_cast<double>(tone.phase - same->phase);
+    same->tones.push_back({index, tone});
+    const double turn =
+        2 * M_PI * 0x1p-64 * static_cast<double>(tone.phase - same->tones.front().partial.phase);
     for (std::size_t p = 0; p < pick_ups.size(); ++p)
-      if (const auto h = response(pick_ups[p], tone.channel, tone.frequency_Hz))
+      if (const auto h = response(pick_ups[p], tone.channel, same->frequency_Hz))
         same->expected[p] += *h * std::polar(tone.amplitude, turn);
       else
         same->seen[p] = 0;
   }
   for (PlannedLine& line : lines) {
     double planned = 0;
-    for (const PlannedTone& tone : line.tones) planned += tone.amplitude;
+    for (const PlayedTone& tone : line.tones) planned += tone.partial.amplitude;
     for (std::size_t p = 0; p < pick_ups.size(); ++p)
       line.seen[p] *= std::abs(line.expected[p]) / (planned * best_response(pick_ups[p]));
   }

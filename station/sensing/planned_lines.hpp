@@ -11,29 +11,20 @@
 
 namespace turnpoint::sensing {
 
-/// One tone of a Stretch. (Within a Stretch, no tone begins, ends or changes.)
-struct PlannedTone {
-  int index = 0;    ///< index in the burst's tone set
-  int channel = 0;  ///< output channel on which it is played
-  double frequency_Hz = 0;
-  double amplitude = 0;     ///< amplitude as a fraction of full scale
-  std::uint64_t phase = 0;  ///< phase at origin_frame, in 2^-64 cycles
-  std::uint64_t increment = 0;
+/// One tone of a Stretch or of a Glide.
+struct PlayedTone {
+  int index = 0;  ///< index in the burst's tone set
+  /// the tone from the stretch's origin_frame, or from the glide's first frame
+  audio::Partial partial;
 };
 
 /// A stretch is a part of a burst, between ramps and changes, in which frequencies and amplitudes are
 /// constant.
 struct Stretch {
   int changes = 0;                              ///< number of changes that come before it
-  std::int64_t origin_frame = 0;                ///< absolute frame at which the tones have their `phase`
+  std::int64_t origin_frame = 0;                ///< absolute frame that is frame 0 of the tones
   std::int64_t first_frame = 0, end_frame = 0;  ///< absolute frames: the first, and the one after the last
-  std::vector<PlannedTone> tones;               ///< tones of amplitude 0 are left out
-};
-
-/// One tone of a Glide. Frame 0 of the partial is the glide's first frame.
-struct GlidingTone {
-  int index = 0, channel = 0;
-  audio::Partial partial;
+  std::vector<PlayedTone> tones;                ///< tones of amplitude 0 are left out
 };
 
 /// A glide is a change of a burst, from the tones of one stretch to those of the next.
@@ -41,13 +32,13 @@ struct Glide {
   int changes = 0;               ///< number of this change, from 1
   std::int64_t first_frame = 0;  ///< absolute frame
   std::int64_t frames = 1;
-  std::vector<GlidingTone> tones;  ///< tones that are silent before and after are left out
+  std::vector<PlayedTone> tones;  ///< tones that are silent before and after are left out
 };
 
 /// Follows the tones of a burst from change to change, as the synthesiser plays them.
 class PlannedTones {
  public:
-  PlannedTones(const audio::PreparedBurst& burst, int rate_Hz);
+  explicit PlannedTones(const audio::PreparedBurst& burst);
 
   /// Applies a change, and returns it as a glide. The changes of a burst must be applied in order.
   Glide change(const audio::PreparedChange& change);
@@ -57,30 +48,22 @@ class PlannedTones {
   std::int64_t origin_frame() const { return start_frame_ + origin_; }
 
  private:
-  // A tone while the burst plays. Its phase is counted from origin_.
-  struct Running {
-    audio::Partial partial;
-    int channel = 0;
-  };
-  static Running running(const audio::PreparedTone& tone);
-
-  std::vector<Running> tones_;
+  std::vector<audio::Partial> tones_;  // their frame 0 is origin_
   std::int64_t start_frame_, origin_ = 0;
-  int rate_Hz_, changes_ = 0;
+  int changes_ = 0;
 };
 
 /// Returns the stretches of a burst as the synthesiser plays it. Changes that are sent while the burst plays
 /// are not included.
-std::vector<Stretch> planned_stretches(const audio::PreparedBurst& burst, int rate_Hz);
+std::vector<Stretch> planned_stretches(const audio::PreparedBurst& burst);
 
 /// All tones with the same frequency in one steady part of a burst. Only their sum can be measured.
 struct PlannedLine {
-  std::uint64_t phase = 0, increment = 0;  ///< phase of the first of these tones, in 2^-64 cycles
   double frequency_Hz = 0;
   double gain = 1;  ///< gain of the high-pass filter at this frequency (high_pass_gain())
-  std::vector<PlannedTone> tones;
-  /// The complex amplitude that each pick-up should capture, relative to `phase` and before the high-pass
-  /// filter.
+  std::vector<PlayedTone> tones;
+  /// The complex amplitude that each pick-up should capture, relative to the phase of the first tone and
+  /// before the high-pass filter.
   std::vector<std::complex<double>> expected;
   /// each pick-up's response as a fraction of its largest response; 0 if not calibrated
   std::vector<double> seen;

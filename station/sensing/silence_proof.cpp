@@ -23,7 +23,7 @@ struct Compared {
 
 Compared compared_with(const IntervalPlan& plan) {
   if (plan.pick_ups.empty()) throw std::logic_error("sensing: a proof needs a pick-up");
-  const auto stretches = planned_stretches(plan.burst, plan.rate_Hz);
+  const auto stretches = planned_stretches(plan.burst);
   if (stretches.empty()) return {plan.pick_ups.front().channel, 0};
   const auto lines = planned_lines(stretches.front(), plan.pick_ups, plan.rate_Hz);
   const std::size_t main = main_pick_up(lines, plan.pick_ups.size());

@@ -30,7 +30,7 @@ std::pair<std::int64_t, std::int64_t> last_interval(const core::TrialRow& row) {
 }  // namespace
 
 void AlongStrip::add(const core::TrialRow& row, const core::SignalRow& finger, double frames_per_s) {
-  if (!row.boundary_mm || finger.channels.size() != 4 || finger.points < 2) return;
+  if (!row.presented.boundary_mm || finger.channels.size() != 4 || finger.points < 2) return;
   const auto values = store::decode(finger);
   const auto [first, end] = last_interval(row);
   if (first >= end || row.finger.sensing == "wire" || row.finger.sensing == "lost") return;
@@ -42,7 +42,7 @@ void AlongStrip::add(const core::TrialRow& row, const core::SignalRow& finger, d
     track.push_back({static_cast<std::int64_t>(k), values[0][k], values[1][k], values[2][k], values[3][k],
                      values[0][k] > sensing::contact_N});
   }
-  for (auto& point : track) point.position_mm -= *row.boundary_mm;
+  for (auto& point : track) point.position_mm -= *row.presented.boundary_mm;
   const auto strokes = sensing::find_strokes(track);
   for (auto& stroke : sensing::friction_profile(track, strokes, profile_.bins).strokes)
     profile_.strokes.push_back(std::move(stroke));

@@ -11,19 +11,16 @@
 
 namespace turnpoint::session {
 
+// The drive plays sines, while the surface model counts phase as for a cosine, so shift by a quarter turn.
+audio::Tone driven(const scene::PlannedTone& tone) {
+  return {tone.frequency_Hz, tone.full_scale, tone.output_phase_rad + std::numbers::pi / 2, tone.channel};
+}
+
 audio::ToneSet tones_of(const scene::DrivePlan& plan) {
   if (plan.tones.size() > static_cast<std::size_t>(audio::max_tones))
     throw std::length_error("a scene has more tones than the drive can play at once");
   audio::ToneSet set;
-  for (const auto& tone : plan.tones) {
-    auto& driven = set.tones[static_cast<std::size_t>(set.count++)];
-    driven.frequency_Hz = tone.frequency_Hz;
-    driven.amplitude = tone.full_scale;
-    // The drive plays sines, while the surface model counts phase as for a cosine, so shift by a quarter
-    // turn.
-    driven.phase_rad = tone.output_phase_rad + std::numbers::pi / 2;
-    driven.channel = tone.channel;
-  }
+  for (const auto& tone : plan.tones) set.tones[static_cast<std::size_t>(set.count++)] = driven(tone);
   return set;
 }
 

@@ -10,7 +10,9 @@
 
 namespace turnpoint::session {
 
-/// Converts the tones of a plan to the drive's form. Throws std::length_error if there are too many tones.
+/// Converts a planned tone, or all tones of a plan, to the drive's form. Throws std::length_error if there
+/// are too many tones.
+audio::Tone driven(const scene::PlannedTone& tone);
 audio::ToneSet tones_of(const scene::DrivePlan& plan);
 
 /// Converts one interval to a burst of the drive. The burst plays the plans of the interval's scenes one

@@ -23,8 +23,8 @@
 namespace turnpoint::session {
 namespace {
 
-using core::Problem;
 using core::phrase, core::plain;
+using core::Problem;
 
 const std::string kLiveOption = "--mode live: ";
 
@@ -71,8 +71,8 @@ std::optional<core::Phrase> unmeasured_sound(const Setup& setup, const protocol:
 }
 
 /// Checks what only a live session requires: a measured friction table, a rig that is not the reproduction of
-/// a historical one, a calibration, the mixer's levels of that calibration and, for every scene, airborne sound that was measured or whose
-/// computed bound is within the recommended limit.
+/// a historical one, a calibration, the mixer's levels of that calibration and, for every scene, airborne
+/// sound that was measured or whose computed bound is within the recommended limit.
 std::vector<Problem> check_live(const Setup& setup, const protocol::Survey& survey) {
   const auto& rig = setup.rig;
   std::vector<Problem> problems;
@@ -133,12 +133,10 @@ namespace {
 
 /// Loads the calibration that was named, or the newest one beside the rig file.
 std::vector<Problem> find_calibration(const RunRequest& request, Setup& setup) {
-  const auto path =
-      request.calibration.empty() ? rig::newest_for(setup.rig.path) : request.calibration;
+  const auto path = request.calibration.empty() ? rig::newest_for(setup.rig.path) : request.calibration;
   if (path.empty()) return {};
   const auto source = core::read_text_file(path);
-  const auto faults =
-      rig::problems(rig::parse_calibration(source, path), setup.rig.sha256, rig::today());
+  const auto faults = rig::problems(rig::parse_calibration(source, path), setup.rig.sha256, rig::today());
   const bool live = request.observer.empty() && request.mode == "live";
   if (faults.empty()) take_calibration(source, path, setup);
   if (request.calibration.empty() && !live) return {};
@@ -201,8 +199,7 @@ Setup prepare(const RunRequest& request, const std::stop_token& stop) {
   setup.run_mode = !request.observer.empty() ? core::RunMode::simulated
                    : request.mode == "live"  ? core::RunMode::live
                                              : core::RunMode::pilot;
-  const auto next =
-      request.participant != kCodeToCome ? session::next_session(setup) : NextSession{};
+  const auto next = request.participant != kCodeToCome ? session::next_session(setup) : NextSession{};
   if (!next.problem.empty() && !next.too_early) problems.push_back({{}, next.problem, next.allowed});
   try {
     if (problems.empty()) session::earlier_trials(setup, next);
@@ -210,8 +207,7 @@ Setup prepare(const RunRequest& request, const std::stop_token& stop) {
     problems.push_back({{}, core::phrase_of(refused), phrase("refusal.same_version")});
   }
   if (problems.empty()) problems = session::problems_of(setup.protocol);
-  if (problems.empty() && next.too_early)
-    throw TooEarly({{}, next.problem, next.allowed}, *next.too_early);
+  if (problems.empty() && next.too_early) throw TooEarly({{}, next.problem, next.allowed}, *next.too_early);
   if (next.too_early) problems.push_back({{}, next.problem, next.allowed});
   if (!problems.empty()) throw core::BadInput(std::move(problems));
   return setup;

@@ -25,10 +25,10 @@ Json message_of(const core::BlockStart& block, const core::TrialRow& row) {
           {"level", json_of(row.level)},
           {"factors", factors},
           {"outcome", core::name(row.outcome)},
-          {"response", json_of(row.response)},
-          {"correct", json_of(row.correct)},
-          {"response_time_s", json_of(row.response_time_s)},
-          {"confidence", json_of(row.confidence)}};
+          {"response", json_of(row.given.response)},
+          {"correct", json_of(row.given.correct)},
+          {"response_time_s", json_of(row.timing.response_time_s)},
+          {"confidence", json_of(row.given.confidence)}};
 }
 
 /// True if a later attempt at the same block has begun.

@@ -75,18 +75,18 @@ void replay(trial::Director& director, const core::TrialRow& trial, const protoc
     mismatch("resume.factors");
   trial::TrialEnd end;
   end.outcome = trial.outcome;
-  end.correct = trial.correct;
+  end.correct = trial.given.correct;
   end.friction = trial.finger.mu;
-  if (trial.response) end.response = protocol::answer_index(protocol.task, *trial.response);
-  if ((spec->slider || protocol.task.value) && trial.response) {
-    const auto value = core::read_number(*trial.response);
-    if (!value) mismatch("resume.no_number", {plain(*trial.response)});
+  if (trial.given.response) end.response = protocol::answer_index(protocol.task, *trial.given.response);
+  if ((spec->slider || protocol.task.value) && trial.given.response) {
+    const auto value = core::read_number(*trial.given.response);
+    if (!value) mismatch("resume.no_number", {plain(*trial.given.response)});
     end.response = 0;
     if (spec->slider) end.setting = value;
   }
   director.record(end);
-  if (director.state_hash() != trial.state_hash) mismatch("resume.state");
-  director.spend(trial.duration_s);
+  if (director.state_hash() != trial.learned.state_hash) mismatch("resume.state");
+  director.spend(trial.timing.duration_s);
 }
 
 /// Checks that the simulated observer gives the stored answer, because a session must not mix
@@ -96,14 +96,15 @@ void check_observer(const Setup& setup, const simulation::Respondent& observer,
                     const store::StoredSession& stored, const trial::TrialSpec& spec,
                     const core::TrialRow& trial) {
   constexpr double tolerance_s = 1e-3;
-  if (trial.outcome != core::Outcome::answered || !trial.response_time_s || spec.slider || spec.strokes)
+  if (trial.outcome != core::Outcome::answered || !trial.timing.response_time_s || spec.slider ||
+      spec.strokes)
     return;
   const auto reply = observer.answer(trial::question_of(spec, setup.protocol, stored.session.start.seed));
   const auto answer = reply.value    ? std::optional(core::exact(*reply.value))
                       : reply.choice ? std::optional(protocol::answer_id(setup.protocol.task, *reply.choice))
                                      : std::nullopt;
-  if (answer == trial.response && reply.confidence == trial.confidence &&
-      std::fabs(reply.response_time_s - *trial.response_time_s) < tolerance_s)
+  if (answer == trial.given.response && reply.confidence == trial.given.confidence &&
+      std::fabs(reply.response_time_s - *trial.timing.response_time_s) < tolerance_s)
     return;
   throw Failure(phrase("resume.observer", {plain(trial.trial_index), plain(setup.observer)}));
 }

@@ -104,10 +104,10 @@ void add_scene(core::TrialRow& row, const scene::DrivePlan& plan, const Placed& 
 }
 
 void take_last(core::TrialRow& row, const scene::DrivePlan& last) {
-  row.boundary_mm = last.boundary_m ? std::optional(1e3 * *last.boundary_m) : std::nullopt;
+  row.presented.boundary_mm = last.boundary_m ? std::optional(1e3 * *last.boundary_m) : std::nullopt;
   if (last.tones.empty()) return;
-  row.frequency_Hz = last.tones.front().frequency_Hz;
-  row.amplitude = 1e6 * last.tones.front().displacement_m;
+  row.presented.frequency_Hz = last.tones.front().frequency_Hz;
+  row.presented.amplitude = 1e6 * last.tones.front().displacement_m;
 }
 
 }  // namespace
@@ -143,6 +143,7 @@ int scene_of(const sensing::IntervalResult& measured, int stretch) {
 }  // namespace
 
 void add_measured(core::TrialRow& row, const sensing::IntervalResult& measured, int interval, bool first) {
+  auto& surface = row.surface;
   for (const auto& tone : measured.tones)
     for (auto& planned : row.tones) {
       if (!tone.seen || planned.interval_index != interval ||
@@ -155,20 +156,20 @@ void add_measured(core::TrialRow& row, const sensing::IntervalResult& measured, 
     if (!worst || std::abs(value) > std::abs(*worst)) worst = value;
   };
   for (const auto& tone : measured.tones)
-    if (tone.seen) further(row.drive_ratio_dB, tone.ratio_dB);
+    if (tone.seen) further(surface.drive_ratio_dB, tone.ratio_dB);
   for (const auto& tone : measured.glides)
-    if (tone.seen) further(row.drive_ratio_dB, tone.worst_ratio_dB);
-  if (measured.onset_error_us) further(row.onset_error_us, *measured.onset_error_us);
+    if (tone.seen) further(surface.drive_ratio_dB, tone.worst_ratio_dB);
+  if (measured.onset_error_us) further(surface.onset_error_us, *measured.onset_error_us);
   if (!measured.tones.empty())
-    row.drive_residual_dB = std::max(row.drive_residual_dB.value_or(-1e9), measured.residual_dB);
+    surface.drive_residual_dB = std::max(surface.drive_residual_dB.value_or(-1e9), measured.residual_dB);
   if (const auto& silence = measured.silence; silence && silence->rms_dB > sensing::kNothing_dB) {
-    row.silence_dB = silence->rms_dB;
-    if (silence->level_dB > sensing::kNothing_dB) row.silence_tone_dB = silence->level_dB;
+    surface.silence_dB = silence->rms_dB;
+    if (silence->level_dB > sensing::kNothing_dB) surface.silence_tone_dB = silence->level_dB;
   }
   const sensing::Finding now{measured.cause, measured.verdict};
-  const auto all = first ? now : sensing::concluded({{row.proof_cause, row.proof}, now});
-  row.proof = all.verdict;
-  row.proof_cause = all.cause;
+  const auto all = first ? now : sensing::concluded({{surface.proof_cause, surface.proof}, now});
+  surface.proof = all.verdict;
+  surface.proof_cause = all.cause;
 }
 
 sensing::MovementWindow window_of(const protocol::Sensing& sensing) {
@@ -234,11 +235,11 @@ void add_forces(core::TrialRow& row, const sensing::TrialForces& forces, const A
   row.signal_rows.push_back(std::move(signal));
 }
 
-std::string describe_proof(const core::TrialRow& row) {
-  std::string text = core::describe(row.proof_cause);
-  if (row.drive_ratio_dB) text += fmt::format("; level {:+.1f} dB", *row.drive_ratio_dB);
-  if (row.drive_residual_dB) text += fmt::format("; residual {:.0f} dB", *row.drive_residual_dB);
-  if (row.onset_error_us) text += fmt::format("; onset {:+.0f} us", *row.onset_error_us);
+std::string describe_proof(const core::SurfaceRow& surface) {
+  std::string text = core::describe(surface.proof_cause);
+  if (surface.drive_ratio_dB) text += fmt::format("; level {:+.1f} dB", *surface.drive_ratio_dB);
+  if (surface.drive_residual_dB) text += fmt::format("; residual {:.0f} dB", *surface.drive_residual_dB);
+  if (surface.onset_error_us) text += fmt::format("; onset {:+.0f} us", *surface.onset_error_us);
   return text;
 }
 

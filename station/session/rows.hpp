@@ -57,7 +57,7 @@ void add_forces(core::TrialRow& row, const sensing::TrialForces& forces, const A
                 const FrameTime& at);
 
 /// Says what a pick-up found wrong with a trial, with figures: "the surface does not move (-62.1 dB)".
-std::string describe_proof(const core::TrialRow& row);
+std::string describe_proof(const core::SurfaceRow& surface);
 
 core::EventRow event_row(const Input& input, int trial_index);
 

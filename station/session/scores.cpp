@@ -27,13 +27,13 @@ void Scores::begin(const core::BlockStart& block) {
 void Scores::add(const core::BlockStart& block, const core::TrialRow& trial) {
   const bool missed = trial.outcome == core::Outcome::timeout || trial.outcome == core::Outcome::anticipation;
   const bool judged = trial.correct_response && (missed || trial.outcome == core::Outcome::answered);
-  if (trial.type == core::TrialType::warmup || (!judged && !trial.points)) return;
+  if (trial.type == core::TrialType::warmup || (!judged && !trial.given.points)) return;
   auto& score = scores_.at(block.block_index);
-  score.points += trial.points.value_or(0);
+  score.points += trial.given.points.value_or(0);
   if (!judged) return;
   ++score.trials;
-  score.right += trial.correct.value_or(false) ? 1 : 0;
-  if (trial.response_time_s) score.times_s.push_back(*trial.response_time_s);
+  score.right += trial.given.correct.value_or(false) ? 1 : 0;
+  if (trial.timing.response_time_s) score.times_s.push_back(*trial.timing.response_time_s);
 }
 
 void Scores::add(const std::vector<core::BlockRecord>& blocks) {

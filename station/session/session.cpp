@@ -123,7 +123,7 @@ audio::StreamConfig stream_of(const rig::Rig& rig) {
 audio::StreamConfig session_stream(const rig::Rig& rig) {
   auto config = stream_of(rig);
   if (rig.capture && !rig.capture->bridges.empty())
-    config.carrier = {core::kForceCarrier_Hz, kCarrier, *rig.capture->excitation_channel};
+    config.carrier = {core::kForceCarrier_Hz, kCarrier, 0, *rig.capture->excitation_channel};
   return config;
 }
 

@@ -199,7 +199,7 @@ Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
   keep_raw(trial);
   gate_.keep([&] { log_.append(trial.row); });
   count(spec, trial.row);
-  director_.spend(trial.row.duration_s);
+  director_.spend(trial.row.timing.duration_s);
   if (const auto share = drift_.correction(trial_index())) {
     plans_.set_drift(*share);  // a trial that is already planned is planned again
     if (auto* watch = stage_->watch()) watch->set_drift(*share);
@@ -271,10 +271,11 @@ Flow SessionRun::after_trial(const Running& trial) {
   const bool repeated = trial.outside && row.outcome == core::Outcome::fault;
   repeats_in_a_row_ = repeated ? repeats_in_a_row_ + 1 : 0;
   // A single refused stimulus can be a coincidence, so it is presented again. Two in a row stop the session.
-  const bool refused = row.proof == core::Proof::refused || row.proof == core::Proof::stopped;
+  const bool refused = row.surface.proof == core::Proof::refused || row.surface.proof == core::Proof::stopped;
   refused_in_a_row_ = refused ? refused_in_a_row_ + 1 : 0;
-  if ((row.proof == core::Proof::stopped || refused_in_a_row_ >= kRefusedBeforePage) && !gate_.fault())
-    gate_.set_fault(Fault{FaultKind::vibration, describe_proof(row)});
+  if ((row.surface.proof == core::Proof::stopped || refused_in_a_row_ >= kRefusedBeforePage) &&
+      !gate_.fault())
+    gate_.set_fault(Fault{FaultKind::vibration, describe_proof(row.surface)});
   unanswered_in_a_row_ = row.outcome == core::Outcome::answered ? 0 : unanswered_in_a_row_ + 1;
   if (!setup_.observer.empty() && unanswered_in_a_row_ >= kUnansweredBeforeStop) {
     gate_.stop(
@@ -327,8 +328,9 @@ void SessionRun::handle_in_trial(Input raw, Running& trial) {
                {onset.frame, 1e-9 * static_cast<double>(onset.time_ns - started_ns_)});
     const bool asked = setup_.protocol.sensing && forces.state == sensing::ForcesState::ok;
     // A stimulus that was not the planned one makes the trial void, however the finger moved.
-    const bool refuted = trial.row.proof == core::Proof::refused || trial.row.proof == core::Proof::stopped ||
-                         trial.row.proof == core::Proof::lost;
+    const bool refuted = trial.row.surface.proof == core::Proof::refused ||
+                         trial.row.surface.proof == core::Proof::stopped ||
+                         trial.row.surface.proof == core::Proof::lost;
     trial.outside = asked && !refuted && !is_training() && forces.movement != sensing::Movement::ok;
     if (trial.outside && repeats_in_a_row_ < setup_.protocol.sensing->repeats)
       perform(trial.machine.handle({input.time_ns, trial::EventKind::outside, 0}), trial);
@@ -338,7 +340,7 @@ void SessionRun::handle_in_trial(Input raw, Running& trial) {
   const bool answers =
       input.is<input::Answer>() || input.is<input::Value>() || (trial.slider && input.is<input::Next>());
   if (answers && !trial.spec.strokes && !trial.machine.result().response) {
-    trial.row.response_time_quality = name(input.quality);
+    trial.row.timing.response_time_quality = name(input.quality);
     trial.by_button = by_button;
   }
   const bool answered = trial.machine.result().response.has_value();
@@ -433,14 +435,14 @@ void SessionRun::decide(Running& trial) {
   auto& row = trial.row;
   if (trial.slider) trial.value = trial.slider->felt();
   trial::fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_, trial.value);
-  trial::TrialEnd end{row.outcome, trial.machine.result().response, row.correct, {}, {}};
+  trial::TrialEnd end{row.outcome, trial.machine.result().response, row.given.correct, {}, {}};
   if (trial.slider && end.response) end.setting = trial.value;
   end.friction = row.finger.mu;
   director_.record(end);
-  row.state_hash = director_.state_hash();
+  row.learned.state_hash = director_.state_hash();
   if (const auto threshold = director_.threshold()) {
-    row.threshold_est = threshold->first;
-    row.threshold_sd = threshold->second;
+    row.learned.threshold_est = threshold->first;
+    row.learned.threshold_sd = threshold->second;
   }
   plan_ahead();
 }
@@ -458,20 +460,21 @@ void SessionRun::leave_surface() {
 void SessionRun::finish_row(Running& trial) {
   auto& row = trial.row;
   trial::fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_, trial.value);
-  const bool good = row.proof == core::Proof::ok || row.proof == core::Proof::flagged;
-  if (good && trial.measured < trial.begun) row.proof = core::Proof::unproven;
+  const bool good = row.surface.proof == core::Proof::ok || row.surface.proof == core::Proof::flagged;
+  if (good && trial.measured < trial.begun) row.surface.proof = core::Proof::unproven;
   const auto& found_for = setup_.response_offset_quality;
-  const bool applies = !trial.by_button && (found_for.empty() || found_for == row.response_time_quality);
-  row.response_offset_s = applies ? setup_.response_offset_s : 0;
+  const bool applies =
+      !trial.by_button && (found_for.empty() || found_for == row.timing.response_time_quality);
+  row.timing.response_offset_s = applies ? setup_.response_offset_s : 0;
   if (const auto fit = stage_->clock_fit()) {
-    row.clock_slope_ns_per_frame = fit->slope_ns_per_frame;
-    row.clock_residual_ns = fit->residual_ns;
+    row.timing.clock_slope_ns_per_frame = fit->slope_ns_per_frame;
+    row.timing.clock_residual_ns = fit->residual_ns;
   }
 }
 
 void SessionRun::count(const trial::TrialSpec& spec, const core::TrialRow& row) {
   ++summary_.trials;
-  summary_.xruns += row.xruns;
+  summary_.xruns += row.presented.xruns;
   switch (row.outcome) {
     case core::Outcome::answered:
       ++summary_.answered;
@@ -488,7 +491,8 @@ void SessionRun::count(const trial::TrialSpec& spec, const core::TrialRow& row) 
       break;
   }
   scores_.add(trial::block_start(*director_.block(), spec.block_index, spec.attempt), row);
-  if (spec.type == core::TrialType::experimental && row.correct) ++scored_, right_ += *row.correct ? 1 : 0;
+  if (spec.type == core::TrialType::experimental && row.given.correct)
+    ++scored_, right_ += *row.given.correct ? 1 : 0;
 }
 
 // The part of SessionRun that runs adjustments, in which the surface follows a slider.
@@ -584,7 +588,7 @@ bool SessionRun::is_training() const { return director_.block()->kind == protoco
 void SessionRun::judge_strokes(const sensing::TrialForces& forces, const Input& input, Running& trial) {
   const bool known = forces.state == sensing::ForcesState::ok;
   const int movement = forces.movement == sensing::Movement::ok ? 0 : 1;
-  if (known) trial.row.response_time_quality = name(input.quality);
+  if (known) trial.row.timing.response_time_quality = name(input.quality);
   perform(trial.machine.handle({input.time_ns, known ? trial::EventKind::answer : trial::EventKind::refuted,
                                 known ? movement : 0}),
           trial);

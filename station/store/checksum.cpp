@@ -30,7 +30,9 @@ std::string row_bytes(const Statement& row) {
 }
 
 /// Turns the rows of one session into the bytes that are hashed. The statements are prepared only once,
-/// because each trial of a session adds two links.
+/// because each trial of a session adds two links. A link is made of rows that are read back, as each check
+/// of it is: so the bytes have one source, and the first link covers texts that an earlier session has
+/// stored.
 class Encoder {
  public:
   /// `station` takes the place of the session's station if it is not "".

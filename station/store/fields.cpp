@@ -409,13 +409,13 @@ namespace {
 
 /// This column is NULL if there is no response time, because no clock was read then.
 Field<TrialRow> response_time_quality() {
-  auto quality = field<&TrialRow::response_time_quality>({"response_time_quality", "response_time_quality",
-                                                          "Clock that gave the time stamp of the answer", "",
-                                                          "kernel | toolkit | simulated | n/a"});
+  auto quality = field<&TrialRow::timing, &TimingRow::response_time_quality>(
+      {"response_time_quality", "response_time_quality", "Clock that gave the time stamp of the answer", "",
+       "kernel | toolkit | simulated | n/a"});
   quality.nullable = true;
   quality.bind = [](Statement& s, int i, const TrialRow& row) {
-    const auto& word = row.response_time_quality;
-    if (!row.response_time_s || word.empty() || word == "n/a")
+    const auto& word = row.timing.response_time_quality;
+    if (!row.timing.response_time_s || word.empty() || word == "n/a")
       s.bind_value(i, std::nullopt);
     else
       s.bind_value(i, word);
@@ -423,17 +423,10 @@ Field<TrialRow> response_time_quality() {
   return quality;
 }
 
-/// Describes a column with a value that force sensors measured in a trial.
-template <auto Member>
-Field<TrialRow> finger(const About& about) {
-  return field<&TrialRow::finger, Member>(about);
-}
-
 }  // namespace
 
 const Table<TrialRow>& trial_table() {
   using T = TrialRow;
-  using F = FingerRow;
   static const Table<T> table{
       "trial",
       {"session_id", "block_index", "attempt", "recorded_realtime_ns"},
@@ -450,133 +443,150 @@ const Table<TrialRow>& trial_table() {
            {"procedure", "procedure", "Procedure that chose the level; n/a if no procedure did"}),
        field<&T::level>({"level", "level", "Stimulus level that was presented", "see level_unit"}),
        field<&T::factors>({"factors"}),
-       field<&T::boundary_mm>(
+       field<&T::presented, &PresentedRow::boundary_mm>(
            {"boundary_mm", "boundary_mm",
             "Position of the boundary presented last in the trial, measured from the wide end of the surface",
             "mm"}),
-       field<&T::frequency_Hz>({"frequency_Hz", "frequency_hz",
-                                "Frequency of the first tone of the scene presented last in the trial",
-                                "Hz"}),
-       field<&T::amplitude>({"amplitude", "amplitude",
-                             "Predicted displacement of the surface at its last maximum, for the scene "
-                             "presented last in the trial",
-                             "um"}),
+       field<&T::presented, &PresentedRow::frequency_Hz>(
+           {"frequency_Hz", "frequency_hz",
+            "Frequency of the first tone of the scene presented last in the trial", "Hz"}),
+       field<&T::presented, &PresentedRow::amplitude>(
+           {"amplitude", "amplitude",
+            "Predicted displacement of the surface at its last maximum, for the scene "
+            "presented last in the trial",
+            "um"}),
        field<&T::correct_response>(
            {"correct_response", "correct_response", "Correct choice; n/a if no choice is correct"}),
-       field<&T::response>({"response", "response",
-                            "Choice of the participant; unsure if the participant did not want to guess; in "
-                            "an adjustment task the setting, in the unit of the level; on a "
-                            "scale or with a number pad the number that was given"}),
-       field<&T::correct>({"correct", "correct",
-                           "1 if the choice was correct, 0 if not; n/a if the answer is not scored", "",
-                           "0 | 1 | n/a"}),
+       field<&T::given, &ResponseRow::response>(
+           {"response", "response",
+            "Choice of the participant; unsure if the participant did not want to guess; in "
+            "an adjustment task the setting, in the unit of the level; on a "
+            "scale or with a number pad the number that was given"}),
+       field<&T::given, &ResponseRow::correct>(
+           {"correct", "correct", "1 if the choice was correct, 0 if not; n/a if the answer is not scored",
+            "", "0 | 1 | n/a"}),
        field<&T::outcome>(
            {"outcome", "outcome",
             "How the trial ended; only answered trials have a response, a score and a response time", "",
             "answered | timeout | anticipation | aborted | fault"}),
-       field<&T::onset_ns>({"onset_ns"}),
-       field<&T::onset_s>({"onset_s", "response_zero_onset",
-                           "Time from which the response time counts, measured from the start of the segment",
-                           "s"}),
-       field<&T::duration_s>({"duration_s", "trial_duration", "Duration of the whole trial", "s"}),
-       field<&T::response_time_s>({"response_time_s", "response_time",
-                                   "Time from response_zero to the answer, without corrections", "s"}),
-       field<&T::decision_time_s>({"decision_time_s", "decision_time",
-                                   "Time from response_zero to the moment when the finger leaves the surface",
-                                   "s"}),
-       field<&T::movement_time_s>({"movement_time_s", "movement_time",
-                                   "Time from when the finger leaves the surface to the answer", "s"}),
-       field<&T::response_zero>({"response_zero", "response_zero",
-                                 "Event from which response times are measured", "",
-                                 "go_cue | change | interval_off | first_contact | lift_off"}),
+       field<&T::timing, &TimingRow::onset_ns>({"onset_ns"}),
+       field<&T::timing, &TimingRow::onset_s>(
+           {"onset_s", "response_zero_onset",
+            "Time from which the response time counts, measured from the start of the segment", "s"}),
+       field<&T::timing, &TimingRow::duration_s>(
+           {"duration_s", "trial_duration", "Duration of the whole trial", "s"}),
+       field<&T::timing, &TimingRow::response_time_s>(
+           {"response_time_s", "response_time", "Time from response_zero to the answer, without corrections",
+            "s"}),
+       field<&T::timing, &TimingRow::decision_time_s>(
+           {"decision_time_s", "decision_time",
+            "Time from response_zero to the moment when the finger leaves the surface", "s"}),
+       field<&T::timing, &TimingRow::movement_time_s>(
+           {"movement_time_s", "movement_time", "Time from when the finger leaves the surface to the answer",
+            "s"}),
+       field<&T::timing, &TimingRow::response_zero>(
+           {"response_zero", "response_zero", "Event from which response times are measured", "",
+            "go_cue | change | interval_off | first_contact | lift_off"}),
        response_time_quality(),
-       field<&T::response_offset_s>(
+       field<&T::timing, &TimingRow::response_offset_s>(
            {"response_offset_s", "response_offset_s",
             "Latency measured by the calibration; it is not subtracted from response_time", "s"}),
-       field<&T::deadline_s>({"deadline_s", "deadline",
-                              "Longest time allowed for the answer, measured from response_zero", "s"}),
-       field<&T::xruns>({"xruns", "xruns", "Number of interruptions of the drive signal during the trial"}),
-       field<&T::extra_touches>(
+       field<&T::timing, &TimingRow::deadline_s>(
+           {"deadline_s", "deadline", "Longest time allowed for the answer, measured from response_zero",
+            "s"}),
+       field<&T::presented, &PresentedRow::xruns>(
+           {"xruns", "xruns", "Number of interruptions of the drive signal during the trial"}),
+       field<&T::given, &ResponseRow::extra_touches>(
            {"extra_touches", "extra_touches", "Number of touches and button presses that were not answers"}),
-       field<&T::threshold_est>({"threshold_est", "threshold_est",
-                                 "Threshold estimated by the trial's procedure after this trial",
-                                 "see level_unit"}),
-       field<&T::threshold_sd>(
+       field<&T::learned, &LearnedRow::threshold_est>(
+           {"threshold_est", "threshold_est", "Threshold estimated by the trial's procedure after this trial",
+            "see level_unit"}),
+       field<&T::learned, &LearnedRow::threshold_sd>(
            {"threshold_sd", "threshold_sd", "Standard deviation of threshold_est", "see level_unit"}),
-       field<&T::clock_slope_ns_per_frame>({"clock_slope_ns_per_frame"}),
-       field<&T::clock_residual_ns>({"clock_residual_ns"}),
-       field<&T::state_hash>({"state_hash"}),
-       field<&T::proof>({"proof", "proof", "What the pick-up on the surface says about the trial's stimuli",
-                         "", "unproven | ok | flagged | refused | stopped | lost"}),
-       field<&T::proof_cause>({"proof_cause", "proof_cause",
-                               "Why the stimuli are not proven to be as planned", "",
-                               "gap | clipped | dead | frequency | half | late | phase | level | "
-                               "residual | noisy | n/a"}),
-       field<&T::drive_ratio_dB>(
+       field<&T::timing, &TimingRow::clock_slope_ns_per_frame>({"clock_slope_ns_per_frame"}),
+       field<&T::timing, &TimingRow::clock_residual_ns>({"clock_residual_ns"}),
+       field<&T::learned, &LearnedRow::state_hash>({"state_hash"}),
+       field<&T::surface, &SurfaceRow::proof>(
+           {"proof", "proof", "What the pick-up on the surface says about the trial's stimuli", "",
+            "unproven | ok | flagged | refused | stopped | lost"}),
+       field<&T::surface, &SurfaceRow::proof_cause>(
+           {"proof_cause", "proof_cause", "Why the stimuli are not proven to be as planned", "",
+            "gap | clipped | dead | frequency | half | late | phase | level | "
+            "residual | noisy | n/a"}),
+       field<&T::surface, &SurfaceRow::drive_ratio_dB>(
            {"drive_ratio_dB", "drive_ratio_db",
             "Measured over planned amplitude of the vibration, of the tone that differs most", "dB"}),
-       field<&T::drive_residual_dB>({"drive_residual_dB", "drive_residual_db",
-                                     "Vibration that was not planned, relative to the plan", "dB"}),
-       field<&T::onset_error_us>({"onset_error_us", "onset_error_us",
-                                  "Measured minus planned onset of the stimulus; of several, the largest",
-                                  "us"}),
-       field<&T::confidence>({"confidence", "confidence",
-                              "How sure the participant was of the answer, from 1 (least) up; n/a "
-                              "if the task does not ask"}),
-       field<&T::confidence_time_s>({"confidence_time_s", "confidence_time",
-                                     "Time from the answer to the participant's statement of confidence",
-                                     "s"}),
-       field<&T::points>({"points", "points",
-                          "Points that the result of the trial was worth to the participant; n/a if the "
-                          "protocol gives none, and for void trials"}),
-       finger<&F::sensing>(
+       field<&T::surface, &SurfaceRow::drive_residual_dB>(
+           {"drive_residual_dB", "drive_residual_db", "Vibration that was not planned, relative to the plan",
+            "dB"}),
+       field<&T::surface, &SurfaceRow::onset_error_us>(
+           {"onset_error_us", "onset_error_us",
+            "Measured minus planned onset of the stimulus; of several, the largest", "us"}),
+       field<&T::given, &ResponseRow::confidence>(
+           {"confidence", "confidence",
+            "How sure the participant was of the answer, from 1 (least) up; n/a "
+            "if the task does not ask"}),
+       field<&T::given, &ResponseRow::confidence_time_s>(
+           {"confidence_time_s", "confidence_time",
+            "Time from the answer to the participant's statement of confidence", "s"}),
+       field<&T::given, &ResponseRow::points>(
+           {"points", "points",
+            "Points that the result of the trial was worth to the participant; n/a if the "
+            "protocol gives none, and for void trials"}),
+       field<&T::finger, &FingerRow::sensing>(
            {"sensing", "sensing",
             "Whether the touch met the requirements of the protocol's [sensing]: ok, or too few "
             "strokes, too light, too hard, too slow, too fast. If that is not known: lost (samples "
             "were lost), wire (fault of a cell's wire), tare (no valid tare); n/a without force sensors",
             "", "ok | strokes | light | hard | slow | fast | lost | wire | tare | n/a"}),
-       finger<&F::contact_s>(
+       field<&T::finger, &FingerRow::contact_s>(
            {"contact_s", "contact_s", "Time during which a finger touched the surface", "s"}),
-       finger<&F::strokes>({"strokes", "strokes", "Number of strokes along the surface"}),
-       finger<&F::normal_N>({"normal_N", "normal_n", "Mean normal force during the strokes", "N"}),
-       finger<&F::normal_sd_N>(
+       field<&T::finger, &FingerRow::strokes>({"strokes", "strokes", "Number of strokes along the surface"}),
+       field<&T::finger, &FingerRow::normal_N>(
+           {"normal_N", "normal_n", "Mean normal force during the strokes", "N"}),
+       field<&T::finger, &FingerRow::normal_sd_N>(
            {"normal_sd_N", "normal_sd_n", "Standard deviation of the normal force during the strokes", "N"}),
-       finger<&F::normal_in_window>(
+       field<&T::finger, &FingerRow::normal_in_window>(
            {"normal_in_window", "normal_in_window",
             "Fraction of the strokes' time with a normal force that the protocol asks for"}),
-       finger<&F::speed_mm_s>(
+       field<&T::finger, &FingerRow::speed_mm_s>(
            {"speed_mm_s", "speed_mm_s", "Mean speed of the finger during the strokes", "mm/s"}),
-       finger<&F::speed_in_window>({"speed_in_window", "speed_in_window",
-                                    "Fraction of the strokes' time with a speed that the protocol asks for"}),
-       finger<&F::mu_low>({"mu_low", "mu_low",
-                           "Measured coefficient of friction on the smooth side of the felt boundary, in the "
-                           "scene presented last"}),
-       finger<&F::mu_high>({"mu_high", "mu_high",
-                            "Measured coefficient of friction on the rough side of the felt boundary, in the "
-                            "scene presented last"}),
-       finger<&F::boundary_felt_mm>({"boundary_felt_mm", "boundary_felt_mm",
-                                     "Measured position at which friction crosses the planned edge's level "
-                                     "(for other edges: half-way up the step), in the scene presented "
-                                     "last, from the wide end of the surface",
-                                     "mm"}),
-       finger<&F::boundary_se_mm>(
+       field<&T::finger, &FingerRow::speed_in_window>(
+           {"speed_in_window", "speed_in_window",
+            "Fraction of the strokes' time with a speed that the protocol asks for"}),
+       field<&T::finger, &FingerRow::mu_low>(
+           {"mu_low", "mu_low",
+            "Measured coefficient of friction on the smooth side of the felt boundary, in the "
+            "scene presented last"}),
+       field<&T::finger, &FingerRow::mu_high>(
+           {"mu_high", "mu_high",
+            "Measured coefficient of friction on the rough side of the felt boundary, in the "
+            "scene presented last"}),
+       field<&T::finger, &FingerRow::boundary_felt_mm>(
+           {"boundary_felt_mm", "boundary_felt_mm",
+            "Measured position at which friction crosses the planned edge's level "
+            "(for other edges: half-way up the step), in the scene presented "
+            "last, from the wide end of the surface",
+            "mm"}),
+       field<&T::finger, &FingerRow::boundary_se_mm>(
            {"boundary_se_mm", "boundary_se_mm", "Standard error of boundary_felt_mm", "mm"}),
-       finger<&F::lag_mm>(
+       field<&T::finger, &FingerRow::lag_mm>(
            {"lag_mm", "lag_mm",
             "Distance by which the skin lags behind the finger: half the difference between the "
             "positions of the felt step in the two directions of stroking",
             "mm"}),
-       finger<&F::tare_mN>(
+       field<&T::finger, &FingerRow::tare_mN>(
            {"tare_mN", "tare_mn", "Change of the force sensors' zero since the previous trial", "mN"}),
-       field<&T::finger, &F::mu>(
+       field<&T::finger, &FingerRow::mu>(
            {"mu", "mu",
             "Measured coefficient of friction over all strokes during the interval presented last; "
             "in a block that measures a friction table, over its part of the surface"}),
-       field<&T::silence_dB>({"silence_dB", "silence_db",
-                              "Level of the pick-up in the silence before the first stimulus (rms of "
-                              "the loudest 50 ms), relative to the planned vibration",
-                              "dB"}),
-       field<&T::silence_tone_dB>(
+       field<&T::surface, &SurfaceRow::silence_dB>(
+           {"silence_dB", "silence_db",
+            "Level of the pick-up in the silence before the first stimulus (rms of "
+            "the loudest 50 ms), relative to the planned vibration",
+            "dB"}),
+       field<&T::surface, &SurfaceRow::silence_tone_dB>(
            {"silence_tone_dB", "silence_tone_db",
             "Level of the strongest tone in this silence, relative to the planned vibration; n/a if "
             "no tone stands out of the noise",

@@ -18,7 +18,7 @@ bool was_repeated(const core::BlockRecord& block, const std::vector<core::BlockR
 
 procedure::Answer answer_in(const core::TrialRow& row, const procedure::Spec& spec) {
   if (row.outcome != core::Outcome::answered) return procedure::Answer::none;
-  return protocol::learned_from(spec, row.response.value_or(""), row.correct);
+  return protocol::learned_from(spec, row.given.response.value_or(""), row.given.correct);
 }
 
 }  // namespace

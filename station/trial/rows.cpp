@@ -44,33 +44,35 @@ core::TrialRow row_of(const TrialSpec& spec, const protocol::Protocol& protocol,
     std::visit([&row, &name = name](const auto& v) { row.factors[name] = v; }, value);
   if (spec.correct)
     row.correct_response = spec.strokes ? "ok" : protocol::answer_id(protocol.task, *spec.correct);
-  row.response_zero = name(zero_of(protocol, spec));
-  row.response_time_quality = "n/a";
-  row.deadline_s = spec.deadline_s;
+  row.timing.response_zero = name(zero_of(protocol, spec));
+  row.timing.response_time_quality = "n/a";
+  row.timing.deadline_s = spec.deadline_s;
   return row;
 }
 
 void fill_result(core::TrialRow& row, const Result& result, const TrialSpec& spec,
                  const protocol::Protocol& protocol, std::int64_t origin_ns,
                  const std::optional<double>& value) {
+  auto& given = row.given;
+  auto& timing = row.timing;
   row.outcome = result.outcome;
   if (result.response)
-    row.response = value ? core::exact(*value) : protocol::answer_id(protocol.task, *result.response);
-  if (result.response && spec.strokes) row.response = movement_word(row, *result.response);
-  row.correct = result.correct;
-  row.confidence = result.confidence;
-  row.confidence_time_s = seconds(result.confidence_time_ns);
-  row.onset_ns = result.zero_ns.value_or(result.started_ns);
-  row.onset_s = static_cast<double>(row.onset_ns - origin_ns) * 1e-9;
-  row.duration_s = static_cast<double>(result.ended_ns - result.started_ns) * 1e-9;
-  row.response_time_s = seconds(result.response_time_ns);
-  row.decision_time_s = seconds(result.decision_time_ns);
-  row.movement_time_s = seconds(result.movement_time_ns);
-  row.extra_touches = result.extra_touches;
-  row.xruns = result.xruns;
-  if (!spec.correct) row.correct.reset();
-  row.points = points_of(result, spec, protocol);
-  if (!result.response) row.response_time_quality = "n/a";
+    given.response = value ? core::exact(*value) : protocol::answer_id(protocol.task, *result.response);
+  if (result.response && spec.strokes) given.response = movement_word(row, *result.response);
+  given.correct = result.correct;
+  given.confidence = result.confidence;
+  given.confidence_time_s = seconds(result.confidence_time_ns);
+  timing.onset_ns = result.zero_ns.value_or(result.started_ns);
+  timing.onset_s = static_cast<double>(timing.onset_ns - origin_ns) * 1e-9;
+  timing.duration_s = static_cast<double>(result.ended_ns - result.started_ns) * 1e-9;
+  timing.response_time_s = seconds(result.response_time_ns);
+  timing.decision_time_s = seconds(result.decision_time_ns);
+  timing.movement_time_s = seconds(result.movement_time_ns);
+  given.extra_touches = result.extra_touches;
+  row.presented.xruns = result.xruns;
+  if (!spec.correct) given.correct.reset();
+  given.points = points_of(result, spec, protocol);
+  if (!result.response) timing.response_time_quality = "n/a";
 }
 
 std::optional<double> points_of(const Result& result, const TrialSpec& spec,

@@ -9,10 +9,16 @@ namespace turnpoint::view {
 
 namespace {
 
-[[noreturn]] void no_such(const Path& path) {
+std::string joined(const Path& path) {
   std::string all;
   for (const auto& name : path) all += (all.empty() ? "" : ".") + name;
-  throw std::logic_error("the text has no key " + all);
+  return all;
+}
+
+[[noreturn]] void no_such(const Path& path) { throw std::logic_error("the text has no key " + joined(path)); }
+
+[[noreturn]] void no_place(const Path& path) {
+  throw std::logic_error("the key " + joined(path) + " can only be added in the text of the file");
 }
 
 /// Collects this part and the parts below it, as far as they are tables with headers, in the order of the
@@ -77,6 +83,27 @@ std::string key_of(const std::string& name) {
   return bare ? name : toml_string(name);
 }
 
+namespace {
+
+/// Collects all single values below a part that do not belong to the key at `path`, as text of path and
+/// value.
+void collect_others(const Part& part, const std::string& text, const Path& path, Path& way,
+                    std::vector<std::string>& others) {
+  if (!path.empty() && way == path) return;
+  if (part.kind == Part::Kind::scalar) {
+    std::string all;
+    for (const auto& name : way) all += name + '\n';
+    others.push_back(all + text.substr(part.value.begin, part.value.end - part.value.begin));
+  }
+  for (const auto& below : part.parts) {
+    way.push_back(below.name);
+    collect_others(below, text, path, way, others);
+    way.pop_back();
+  }
+}
+
+}  // namespace
+
 Document::Document(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {
   root_ = core::parts_of(text_, file_);
   const auto first = text_.find('\n');
@@ -113,16 +140,31 @@ std::string Document::checked(std::string text) const {
   return text;
 }
 
+/// The text after the key at `path` got a value. Where a text is written decides what it means, so it is read
+/// again: the key must be at its path, and every other value must be as it was.
+std::string Document::checked(std::string text, const Path& path) const {
+  const Document now(std::move(text), file_);
+  const auto others = [&path](const Document& document) {
+    std::vector<std::string> all;
+    Path way;
+    collect_others(document.root(), document.text(), path, way, all);
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  if (now.find(path) == nullptr || others(now) != others(*this)) no_place(path);
+  return now.text();
+}
+
 std::string Document::with(const Path& path, const std::string& value) const {
   // The text must be exactly one value. A line break in it could begin another key.
   if (path.empty() || core::parse_toml("v = " + value, file_).entries.size() != 1) no_such(path);
   const auto* part = find(path);
-  if (part == nullptr) return checked(inserted(path, value));
+  if (part == nullptr) return checked(inserted(path, value), path);
   if (part->kind == Part::Kind::table || part->kind == Part::Kind::dotted ||
       part->kind == Part::Kind::table_array)
     throw std::logic_error("a table with a header cannot become a value");
   auto text = text_;
-  return checked(text.replace(part->value.begin, part->value.end - part->value.begin, value));
+  return checked(text.replace(part->value.begin, part->value.end - part->value.begin, value), path);
 }
 
 std::string Document::new_line_at(std::size_t at, const std::string& line) const {
@@ -175,8 +217,14 @@ std::string Document::inserted(const Path& path, const std::string& value) const
   // A new table gets a header. It is added after the other tables of its list or, if there are none, at the
   // end of the file.
   if ((table == &root_ && path.size() > 1) || by_headers) {
+    // A header has no indices: it belongs to the item of a list that is the last one before it.
     std::string title;
-    for (std::size_t i = 0; i + 1 < path.size(); ++i) title += (i == 0 ? "" : ".") + key_of(path[i]);
+    const auto* above = &root_;
+    for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+      const bool item = above != nullptr && above->kind == Part::Kind::table_array;
+      if (!item) title += (title.empty() ? "" : ".") + key_of(path[i]);
+      above = above == nullptr ? nullptr : above->find(path[i]);
+    }
     const auto tables = tables_of(*table);
     const auto at = by_headers && !tables.empty() ? tables.back()->value.end : text_.size();
     const bool after_break = at == text_.size() && text_.ends_with('\n');
@@ -251,6 +299,19 @@ std::string Document::with_copy(const Path& path, const std::string& name) const
   return checked(text.insert(tables.back()->value.end, copy));
 }
 
+std::string Document::with_name(const Path& path, const std::string& name) const {
+  const auto* part = find(path);
+  if (part == nullptr || part->kind != Part::Kind::table) no_such(path);
+  const auto depth = part->header_names.size() - 1;
+  auto text = text_;
+  const auto tables = tables_of(*part);
+  for (auto table = tables.rbegin(); table != tables.rend(); ++table) {
+    const auto& old = (*table)->header_names[depth];
+    text.replace(old.begin, old.end - old.begin, key_of(name));
+  }
+  return checked(text);
+}
+
 /// The text of a table with the tables below it and the comments in the lines directly above it.
 Span Document::with_comments(const Path& path) const {
   const auto* part = find(path);
@@ -267,7 +328,11 @@ Span Document::with_comments(const Path& path) const {
 }
 
 std::string Document::exchanged(const Path& first, const Path& second) const {
-  auto a = with_comments(first), b = with_comments(second);
+  const auto span = [this](const Path& path) {
+    const auto* part = find(path);
+    return part == nullptr || part->kind == Part::Kind::table ? with_comments(path) : part->value;
+  };
+  auto a = span(first), b = span(second);
   if (b.begin < a.begin) std::swap(a, b);
   if (a.end > b.begin) no_such(second);
   const auto piece = [this](std::size_t from, std::size_t to) { return text_.substr(from, to - from); };

@@ -14,8 +14,8 @@ using Path = std::vector<std::string>;
 
 /// A TOML text whose values can be changed one by one. A change returns the whole new text. Every byte that
 /// does not belong to the changed key stays as it was: comments, order, blank lines, line breaks. Changes
-/// throw std::logic_error for a path that they cannot use, and core::BadInput if the new text would not be
-/// valid TOML.
+/// throw std::logic_error for a path that they cannot use or where they cannot write the new value, and
+/// core::BadInput if the new text would not be valid TOML.
 class Document {
  public:
   /// Throws core::BadInput, with `file` as the name of the file, if the text is not valid TOML.
@@ -40,7 +40,11 @@ class Document {
   /// Adds a copy of a table directly after it. A table of a list ([[block]]) gets this `name` as its key
   /// "name"; another table ([scene.edge]) gets it as the last part of its header.
   std::string with_copy(const Path& path, const std::string& name) const;
-  /// Lets two tables with headers change places, with the tables below them and the comments directly above them.
+  /// Gives another name to a table that has its name in its header, such as [scene.edge]. What refers to it
+  /// by its old name stays as it is.
+  std::string with_name(const Path& path, const std::string& name) const;
+  /// Lets two tables with headers change places, with the tables below them and the comments directly above
+  /// them; or two items of a list within a line.
   std::string exchanged(const Path& first, const Path& second) const;
   /// Adds tables at the end of the text.
   std::string with_tables(const std::string& tables) const;
@@ -50,6 +54,7 @@ class Document {
   std::string inside_braces(const Part& table, const std::string& entry) const;
   std::string new_line_at(std::size_t at, const std::string& line) const;
   std::string checked(std::string text) const;
+  std::string checked(std::string text, const Path& path) const;
   Span with_comments(const Path& path) const;
 
   std::string text_, file_, line_break_ = "\n";

@@ -67,9 +67,10 @@ constexpr const char* kProofs[] = {"proof.unproven", "proof.ok",      "proof.fla
                                    "proof.refused",  "proof.stopped", "proof.lost"};
 static_assert(std::size(kProofs) == core::proofs.size());
 
-std::string vibration(const LiveTrial& trial, const Words& words) {
-  std::string said = words(kProofs[static_cast<std::size_t>(trial.proof)]);
-  if (trial.proof_cause != core::ProofCause::none) said += "; " + words(core::phrase_of(trial.proof_cause));
+std::string vibration(const core::SurfaceRow& surface, const Words& words) {
+  std::string said = words(kProofs[static_cast<std::size_t>(surface.proof)]);
+  if (surface.proof_cause != core::ProofCause::none)
+    said += "; " + words(core::phrase_of(surface.proof_cause));
   return said;
 }
 
@@ -77,29 +78,31 @@ std::string vibration(const LiveTrial& trial, const Words& words) {
 void add_estimates(const std::vector<LiveTrial>& trials, const Words& words, Facts& facts) {
   std::map<std::string, const LiveTrial*> latest;
   for (const auto& trial : trials)
-    if (trial.threshold_est && std::isfinite(*trial.threshold_est)) latest[trial.procedure] = &trial;
+    if (trial.learned.threshold_est && std::isfinite(*trial.learned.threshold_est))
+      latest[trial.procedure] = &trial;
   for (const auto& [procedure, trial] : latest) {
-    auto value = number(*trial->threshold_est, 3);
-    if (trial->threshold_sd && std::isfinite(*trial->threshold_sd)) {
-      const double half = 1.96 * *trial->threshold_sd;
-      value = words("live.interval", {value, number(*trial->threshold_est - half, 3),
-                                      number(*trial->threshold_est + half, 3)});
+    auto value = number(*trial->learned.threshold_est, 3);
+    if (trial->learned.threshold_sd && std::isfinite(*trial->learned.threshold_sd)) {
+      const double half = 1.96 * *trial->learned.threshold_sd;
+      value = words("live.interval", {value, number(*trial->learned.threshold_est - half, 3),
+                                      number(*trial->learned.threshold_est + half, 3)});
     }
     facts.emplace_back(words("live.estimate", procedure), value);
   }
 }
 
 /// Adds what the pick-ups measured in a trial, with the limits from which it is flagged or void.
-void add_pick_ups(const core::TrialRow& row, const Words& words, Facts& facts) {
-  if (row.drive_ratio_dB)
+void add_pick_ups(const core::SurfaceRow& surface, const Words& words, Facts& facts) {
+  if (surface.drive_ratio_dB)
     facts.emplace_back(words("live.pick_up_level"),
-                       words("live.pick_up_level_value", fmt::format("{:+.2f}", *row.drive_ratio_dB)));
-  if (row.drive_residual_dB)
-    facts.emplace_back(words("live.pick_up_residual"),
-                       words("live.pick_up_residual_value", fmt::format("{:.0f}", *row.drive_residual_dB)));
-  if (row.onset_error_us)
+                       words("live.pick_up_level_value", fmt::format("{:+.2f}", *surface.drive_ratio_dB)));
+  if (surface.drive_residual_dB)
+    facts.emplace_back(
+        words("live.pick_up_residual"),
+        words("live.pick_up_residual_value", fmt::format("{:.0f}", *surface.drive_residual_dB)));
+  if (surface.onset_error_us)
     facts.emplace_back(words("live.pick_up_onset"),
-                       words("live.pick_up_onset_value", fmt::format("{:+.0f}", *row.onset_error_us)));
+                       words("live.pick_up_onset_value", fmt::format("{:+.0f}", *surface.onset_error_us)));
 }
 
 }  // namespace
@@ -118,13 +121,13 @@ Facts course_of(const std::vector<LiveTrial>& trials, const std::string& languag
   std::vector<double> times;
   int scored = 0, right = 0, catches = 0, caught = 0, xruns = 0, extra = 0;
   for (const auto& trial : trials) {
-    xruns += trial.xruns, extra += trial.extra_touches;
-    if (trial.response_time_s) times.push_back(*trial.response_time_s);
+    xruns += trial.presented.xruns, extra += trial.given.extra_touches;
+    if (trial.timing.response_time_s) times.push_back(*trial.timing.response_time_s);
     const bool missed = trial.outcome == Outcome::timeout || trial.outcome == Outcome::anticipation;
-    if (trial.type == core::TrialType::catch_trial && (missed || trial.correct))
-      ++catches, caught += trial.correct.value_or(false) ? 1 : 0;
-    if (!trial.correct) continue;
-    if (trial.type == core::TrialType::experimental) ++scored, right += *trial.correct ? 1 : 0;
+    if (trial.type == core::TrialType::catch_trial && (missed || trial.given.correct))
+      ++catches, caught += trial.given.correct.value_or(false) ? 1 : 0;
+    if (!trial.given.correct) continue;
+    if (trial.type == core::TrialType::experimental) ++scored, right += *trial.given.correct ? 1 : 0;
   }
   const auto whole = [](auto value) { return std::to_string(value); };
   Facts facts{{words("operator.trials"), whole(trials.size())}};
@@ -143,7 +146,7 @@ Facts course_of(const std::vector<LiveTrial>& trials, const std::string& languag
                                                              count(trials, Outcome::anticipation)));
   facts.emplace_back(words("report.void"),
                      whole(count(trials, Outcome::fault) + count(trials, Outcome::aborted)));
-  if (!trials.empty()) facts.emplace_back(words("live.vibration"), vibration(trials.back(), words));
+  if (!trials.empty()) facts.emplace_back(words("live.vibration"), vibration(trials.back().surface, words));
   facts.emplace_back("Xruns", whole(xruns));
   facts.emplace_back(words("live.other_touches"), whole(extra));
   return facts;
@@ -159,11 +162,11 @@ Facts limits_used(const std::vector<LiveTrial>& trials, std::optional<double> pe
         words("live.displacement"),
         words("live.of_um", {number(1e6 * *peak_displacement_m, 3), number(1e6 * limits.displacement_m, 3),
                              percent(*peak_displacement_m / limits.displacement_m)}));
-  const double now_s = trials.empty() ? 0 : trials.back().ended_s;
+  const double now_s = trials.empty() ? 0 : trials.back().timing.onset_s + trials.back().timing.duration_s;
   double on_s = 0;
   for (const auto& trial : trials) {
-    const double from = std::max(trial.onset_s, now_s - kWindow_s);
-    on_s += std::max(0.0, trial.onset_s + trial.stimulus_s - from);
+    const double from = std::max(trial.timing.onset_s, now_s - kWindow_s);
+    on_s += std::max(0.0, trial.timing.onset_s + trial.stimulus_s - from);
   }
   const double window_s = std::clamp(now_s, 1.0, kWindow_s);
   facts.emplace_back(words("live.duty"),
@@ -200,7 +203,7 @@ Facts sensors_of(const core::TrialRow& row, const std::optional<protocol::Sensin
   if (finger.mu) facts.emplace_back(words("live.friction"), number(*finger.mu, 3));
   if (finger.tare_mN)
     facts.emplace_back(words("live.zero"), words("live.zero_moved", number(*finger.tare_mN, 2)));
-  add_pick_ups(row, words, facts);
+  add_pick_ups(row.surface, words, facts);
   return facts;
 }
 
@@ -216,11 +219,11 @@ std::optional<report::Figure> live_trace(const std::vector<LiveTrial>& trials, c
     auto& points = series[trial.procedure];
     points.x.push_back(static_cast<double>(i + 1));
     points.y.push_back(*trial.level);
-    points.open.push_back(!trial.correct.value_or(false));
+    points.open.push_back(!trial.given.correct.value_or(false));
     levels.push_back(*trial.level);
-    if (!trial.threshold_est || !std::isfinite(*trial.threshold_est)) continue;
+    if (!trial.learned.threshold_est || !std::isfinite(*trial.learned.threshold_est)) continue;
     estimates[trial.procedure].x.push_back(static_cast<double>(i + 1));
-    estimates[trial.procedure].y.push_back(*trial.threshold_est);
+    estimates[trial.procedure].y.push_back(*trial.learned.threshold_est);
   }
   if (levels.empty()) return std::nullopt;
   report::Chart panel;
@@ -243,10 +246,10 @@ std::optional<report::Figure> live_times(const std::vector<LiveTrial>& trials, c
   const Words words(language);
   report::Points points;
   for (std::size_t i = 0; i < trials.size(); ++i)
-    if (trials[i].response_time_s) {
+    if (trials[i].timing.response_time_s) {
       points.x.push_back(static_cast<double>(i + 1));
-      points.y.push_back(*trials[i].response_time_s);
-      points.open.push_back(!trials[i].correct.value_or(true));
+      points.y.push_back(*trials[i].timing.response_time_s);
+      points.open.push_back(!trials[i].given.correct.value_or(true));
     }
   if (points.x.empty()) return std::nullopt;
   report::Chart panel;

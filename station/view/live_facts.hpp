@@ -32,19 +32,9 @@ struct FingerGauges {
 FingerGauges finger_gauges(const std::optional<session::FingerSeen>& finger,
                            const std::optional<protocol::Sensing>& asked, const rig::Rig& rig);
 
-/// What the live view keeps about a finished trial.
-struct LiveTrial {
-  std::string procedure;
-  std::optional<double> level;
-  std::optional<bool> correct;
-  std::optional<double> response_time_s, threshold_est, threshold_sd;
-  core::Outcome outcome = core::Outcome::answered;
-  core::TrialType type = core::TrialType::experimental;
-  double onset_s = 0, ended_s = 0;  ///< s from the start of the session
-  double stimulus_s = 0;            ///< duration for which the stimulus was presented
-  int xruns = 0, extra_touches = 0;
-  core::Proof proof = core::Proof::unproven;
-  core::ProofCause proof_cause = core::ProofCause::none;
+/// What the live view keeps about a finished trial: its row without tones and signals.
+struct LiveTrial : core::TrialRow {
+  double stimulus_s = 0;  ///< duration for which the stimulus was presented
 };
 
 /// The functions below say everything in a language such as "de".

@@ -41,7 +41,8 @@ double stimulus_s(const core::TrialRow& row, int rate_Hz) {
     if (tone.tone_index == 0) scheduled_s += static_cast<double>(tone.length_frames) / rate_Hz;
     intervals = std::max(intervals, tone.interval_index + 1);
   }
-  return intervals == 1 && row.response_time_s ? std::min(scheduled_s, *row.response_time_s) : scheduled_s;
+  return intervals == 1 && row.timing.response_time_s ? std::min(scheduled_s, *row.timing.response_time_s)
+                                                      : scheduled_s;
 }
 
 }  // namespace
@@ -76,24 +77,11 @@ void LiveView::finger_moved(const std::optional<session::FingerSeen>& finger) {
   on_gauges_(gauges);
 }
 
-void LiveView::trial_ended(const trial::TrialSpec& spec, const core::TrialRow& row) {
-  LiveTrial trial;
-  trial.procedure = spec.procedure;
-  trial.level = row.level;
-  trial.correct = row.correct;
-  trial.response_time_s = row.response_time_s;
-  trial.threshold_est = row.threshold_est;
-  trial.threshold_sd = row.threshold_sd;
-  trial.outcome = row.outcome;
-  trial.type = row.type;
-  trial.onset_s = row.onset_s;
-  trial.ended_s = row.onset_s + row.duration_s;
-  trial.stimulus_s = stimulus_s(row, rig_.output.rate_Hz);
-  trial.xruns = row.xruns;
-  trial.extra_touches = row.extra_touches;
-  trial.proof = row.proof;
-  trial.proof_cause = row.proof_cause;
-  push({{}, {}, trial, std::make_shared<core::TrialRow>(row)});
+void LiveView::trial_ended(const trial::TrialSpec& /*spec*/, const core::TrialRow& row) {
+  LiveTrial trial{row, stimulus_s(row, rig_.output.rate_Hz)};
+  trial.tones.clear();
+  trial.signal_rows.clear();
+  push({{}, {}, std::move(trial), std::make_shared<core::TrialRow>(row)});
 }
 
 void LiveView::push(News news) {

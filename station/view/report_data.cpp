@@ -95,8 +95,9 @@ Phrase proofs(const std::vector<store::BlockRecord>& blocks) {
   std::map<core::Proof, std::map<std::string, int>> causes;
   for (const auto& block : blocks)
     for (const auto& row : block.trials) {
-      ++counts[row.proof];
-      if (row.proof_cause != core::ProofCause::none) ++causes[row.proof][name(row.proof_cause)];
+      ++counts[row.surface.proof];
+      if (row.surface.proof_cause != core::ProofCause::none)
+        ++causes[row.surface.proof][name(row.surface.proof_cause)];
     }
   std::string text;
   for (const auto& [proof, count] : counts) {
@@ -170,10 +171,11 @@ std::vector<report::MeasuredTrial> measured_trials(const std::vector<store::Bloc
   std::vector<report::MeasuredTrial> trials;
   for (const auto& block : blocks)
     for (const auto& row : block.trials)
-      if (row.drive_ratio_dB)
-        trials.push_back({row.trial_index, *row.drive_ratio_dB,
-                          row.proof != core::Proof::refused && row.proof != core::Proof::stopped &&
-                              row.proof != core::Proof::lost});
+      if (row.surface.drive_ratio_dB)
+        trials.push_back({row.trial_index, *row.surface.drive_ratio_dB,
+                          row.surface.proof != core::Proof::refused &&
+                              row.surface.proof != core::Proof::stopped &&
+                              row.surface.proof != core::Proof::lost});
   return trials;
 }
 
@@ -184,12 +186,12 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
   for (const auto& block : stored.blocks)
     for (const auto& row : block.trials) {
       ++trials;
-      xruns += row.xruns;
-      extra += row.extra_touches;
-      if (row.response_time_s) ++quality[row.response_time_quality];
+      xruns += row.presented.xruns;
+      extra += row.given.extra_touches;
+      if (row.timing.response_time_s) ++quality[row.timing.response_time_quality];
       // answers by button have an offset of 0, so the largest offset is that of touch answers, if there are
       // any
-      offset_s = std::max(offset_s, row.response_offset_s);
+      offset_s = std::max(offset_s, row.timing.response_offset_s);
     }
   Phrase qualities;
   for (const auto& [name, count] : quality)

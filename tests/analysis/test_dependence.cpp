@@ -233,6 +233,10 @@ TEST_CASE("The intervals of the effects of the trial before contain the true val
         const auto& estimate = effect(all[0], name);
         if (!estimate) continue;
         ++found[name];
+        if (const auto& p = estimate->p; p && std::fabs(*p - 0.05) > 1e-5) {
+          INFO(session.name << ", " << name << ", p " << *p);
+          CHECK((*p < 0.05) == (estimate->interval.low > 0 || estimate->interval.high < 0));
+        }
         sum[name] += estimate->value;
         held[name] += estimate->interval.low <= truth && truth <= estimate->interval.high;
       }

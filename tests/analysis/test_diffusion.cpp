@@ -18,8 +18,8 @@
 #include "station/analysis/trade.hpp"
 #include "tests/analysis/first_passage_table.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/number_from.hpp"
 #include "tests/support/diffusion.hpp"
+#include "tests/support/number_from.hpp"
 
 using namespace turnpoint::analysis;
 using turnpoint::tests::sample_decision;

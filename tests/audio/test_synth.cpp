@@ -202,6 +202,23 @@ TEST_CASE(
   CHECK(right == Approx(0.125));
 }
 
+TEST_CASE("a tone that comes only with the second change is silent until then, and keeps its frequency",
+          "[drive][synth]") {
+  Burst burst = one_tone(22000, 0.25);
+  burst.length_frames = 120000;
+  burst.change_count = 2;
+  burst.changes[0] = {30000, 9600, one_tone(23000, 0.25).tones};
+  burst.changes[1] = {60000, 9600, one_tone(23000, 0.25).tones};
+  burst.changes[1].to.count = 2;
+  burst.changes[1].to.tones[1] = {31000, 0.125, 0.5, 0};
+  Burst from_onset = burst;
+  for (auto* tones : {&from_onset.tones, &from_onset.changes[0].to}) {
+    tones->count = 2;
+    tones->tones[1] = {31000, 0, 0.5, 0};
+  }
+  CHECK((rendered(burst) == rendered(from_onset)));
+}
+
 TEST_CASE("a burst starts and ends exactly at its frames, and all samples before and after it are zero",
           "[drive][synth]") {
   Burst burst = one_tone(20000, 0.5, M_PI / 2);

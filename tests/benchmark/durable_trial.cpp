@@ -38,17 +38,17 @@ TrialRow bench_trial(int index) {
   row.procedure = "staircase";
   row.level = -12.5;
   row.factors = {{"contrast", 0.125}};
-  row.boundary_mm = 150.0;
-  row.frequency_Hz = 30123.4;
-  row.amplitude = 2.5;
-  row.correct_response = row.response = "first";
-  row.correct = true;
-  row.onset_ns = 1'000'000'000LL * index;
-  row.duration_s = 3.5;
-  row.response_time_s = 0.4375;
-  row.response_zero = "interval_off";
-  row.response_time_quality = "simulated";
-  row.state_hash = 0x0123456789abcdefULL;
+  row.presented.boundary_mm = 150.0;
+  row.presented.frequency_Hz = 30123.4;
+  row.presented.amplitude = 2.5;
+  row.correct_response = row.given.response = "first";
+  row.given.correct = true;
+  row.timing.onset_ns = 1'000'000'000LL * index;
+  row.timing.duration_s = 3.5;
+  row.timing.response_time_s = 0.4375;
+  row.timing.response_zero = "interval_off";
+  row.timing.response_time_quality = "simulated";
+  row.learned.state_hash = 0x0123456789abcdefULL;
   for (int i = 0; i < 6; ++i) {
     ToneRow tone;
     tone.interval_index = i / 3;

@@ -170,8 +170,8 @@ TEST_CASE("a simulated session that is stopped by signals and resumed gives the 
   for (std::size_t i = 0; i < trials.size(); ++i) {
     CHECK(trials[i].outcome == expected[i].outcome);
     CHECK(trials[i].level == expected[i].level);
-    CHECK(trials[i].response == expected[i].response);
-    CHECK(trials[i].state_hash == expected[i].state_hash);
+    CHECK(trials[i].given.response == expected[i].given.response);
+    CHECK(trials[i].learned.state_hash == expected[i].learned.state_hash);
   }
 }
 

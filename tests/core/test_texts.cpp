@@ -201,6 +201,12 @@ TEST_CASE("every text is used, and every text that the program requests exists",
       CHECK(schema.find(last) != std::string::npos);
       continue;
     }
+    if (key.starts_with("design.words.")) {  // design.words.KEY.VALUE
+      const auto name = key.substr(13, key.rfind('.') - 13);
+      CHECK(schema.find("\"" + name + "\"") != std::string::npos);
+      CHECK(schema.find(last) != std::string::npos);
+      continue;
+    }
     if (key.starts_with("design.goals.")) {
       CHECK(goals.find("{" + last) != std::string::npos);
       continue;

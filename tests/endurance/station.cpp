@@ -74,7 +74,8 @@ struct Acknowledgements : session::Monitor {
   void trial_ended(const trial::TrialSpec&, const core::TrialRow& row) override {
     if (dead) return;  // the simulated process is dead, so ignore its reports
     world.trials.acknowledged(session_id, row);
-    const auto answered_ns = row.onset_ns + static_cast<std::int64_t>(row.response_time_s.value_or(0) * 1e9);
+    const auto answered_ns =
+        row.timing.onset_ns + static_cast<std::int64_t>(row.timing.response_time_s.value_or(0) * 1e9);
     world.amplifier.trial_ended(room.world_ns(), row.outcome == core::Outcome::answered,
                                 room.world_ns() - room.age_ns() + answered_ns);
   }

@@ -118,10 +118,11 @@ namespace {
 std::string fingerprint(const core::TrialRow& row, bool times) {
   auto text = fmt::format("{}/{} {} {} {} {} {:016x}", row.trial_in_block, store::name(row.type),
                           row.procedure, row.level.value_or(0), store::name(row.outcome),
-                          row.response.value_or("-"), row.state_hash);
+                          row.given.response.value_or("-"), row.learned.state_hash);
   for (const auto& tone : row.tones) text += fmt::format(" {:a} {:a}", tone.frequency_Hz, tone.amplitude_um);
   if (times)
-    text += fmt::format(" {} {} {:a}", row.trial_index, row.onset_ns, row.response_time_s.value_or(-1));
+    text += fmt::format(" {} {} {:a}", row.trial_index, row.timing.onset_ns,
+                        row.timing.response_time_s.value_or(-1));
   return text;
 }
 

@@ -78,10 +78,11 @@ std::string decided(const std::vector<core::TrialRow>& trials) {
   for (const auto& trial : trials) {
     text << trial.trial_in_block << ' ' << store::name(trial.type) << ' ' << trial.procedure << ' '
          << trial.level.value_or(0) << ' ' << trial.correct_response.value_or("-") << ' '
-         << trial.response.value_or("-") << ' ' << store::name(trial.outcome) << ' ' << trial.state_hash;
+         << trial.given.response.value_or("-") << ' ' << store::name(trial.outcome) << ' '
+         << trial.learned.state_hash;
     for (const auto& [name, value] : trial.factors)
       if (const auto* number = std::get_if<double>(&value)) text << ' ' << name << ' ' << *number;
-    if (trial.confidence) text << " confidence " << *trial.confidence;
+    if (trial.given.confidence) text << " confidence " << *trial.given.confidence;
     text << '\n';
   }
   return core::sha256(text.str()).substr(0, 16);
@@ -92,7 +93,7 @@ std::string driven(const std::vector<core::TrialRow>& trials) {
   std::ostringstream text;
   text << std::hexfloat;
   for (const auto& trial : trials) {
-    text << trial.onset_ns << ' ' << trial.response_time_s.value_or(-1);
+    text << trial.timing.onset_ns << ' ' << trial.timing.response_time_s.value_or(-1);
     for (const auto& tone : trial.tones)
       text << ' ' << tone.frequency_Hz << ' ' << tone.amplitude_um << ' ' << tone.onset_frame;
     text << '\n';

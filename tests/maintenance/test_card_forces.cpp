@@ -134,7 +134,7 @@ TEST_CASE("a card's force cells are calibrated with dead weights, and a live ses
     CHECK(finger.speed_mm_s.value() > 80);
     CHECK(finger.speed_mm_s.value() < turn * reach_mm);
     CHECK(finger.strokes.value() >= 1);
-    CHECK(trials.front().proof == core::Proof::ok);
+    CHECK(trials.front().surface.proof == core::Proof::ok);
   }
   SECTION("a wire that comes off is known in its trial") {
     broken = 1;

@@ -196,7 +196,7 @@ TEST_CASE("force cells on a converter with its own clock are weighed, and a live
     CHECK(finger.mu.value() == Approx(Stroking::friction).epsilon(0.02));
     CHECK(finger.speed_mm_s.value() > 80);
     CHECK(finger.speed_mm_s.value() < Stroking::turn * Stroking::reach_mm);
-    CHECK(trials.front().proof == core::Proof::ok);
+    CHECK(trials.front().surface.proof == core::Proof::ok);
     CHECK(notices().empty());
   }
   SECTION("five lost samples make the forces of their trial unknown, and are in the log") {
@@ -204,7 +204,7 @@ TEST_CASE("force cells on a converter with its own clock are weighed, and a live
     const auto trials = card.runs();
     CHECK(trials.front().finger.sensing == "lost");
     CHECK_FALSE(trials.front().finger.normal_N);
-    CHECK(trials.front().proof == core::Proof::ok);
+    CHECK(trials.front().surface.proof == core::Proof::ok);
     CHECK(trials.back().finger.sensing == "ok");
     REQUIRE(notices().size() == 1);
     CHECK(notices()[0].value.find("lost 5 samples in 1 gaps; 0 time stamps") != std::string::npos);

@@ -119,23 +119,23 @@ TEST_CASE("a session with the calibration of a sweep is proven, and one with wro
   CHECK(run_with(folder, path, write("good.toml"), good).voided == 0);
   REQUIRE(good.size() == 10);
   for (const auto& trial : good) {
-    CHECK(trial.proof == core::Proof::ok);
-    CHECK(std::abs(trial.drive_ratio_dB.value()) < 0.05);
+    CHECK(trial.surface.proof == core::Proof::ok);
+    CHECK(std::abs(trial.surface.drive_ratio_dB.value()) < 0.05);
   }
   for (auto& pick_up : calibration.pick_ups)
     for (auto& point : pick_up.response.points) point.amplitude *= 1.25;  // change the amplitude by 1.9 dB
   CHECK(run_with(folder, path, write("loud.toml"), bad).status == core::SessionStatus::interrupted);
   REQUIRE_FALSE(bad.empty());
   for (const auto& trial : bad) {
-    INFO(trial.trial_index << " " << name(trial.proof) << " " << name(trial.proof_cause));
+    INFO(trial.trial_index << " " << name(trial.surface.proof) << " " << name(trial.surface.proof_cause));
     CHECK(trial.outcome == core::Outcome::fault);
-    CHECK(trial.drive_ratio_dB.value() == Approx(-1.94).margin(0.05));
+    CHECK(trial.surface.drive_ratio_dB.value() == Approx(-1.94).margin(0.05));
   }
   for (auto& pick_up : calibration.pick_ups)
     for (auto& point : pick_up.response.points)
       point.amplitude /= 1.25, point.phase_rad += 0.35;  // change the phase by 20 degrees
   CHECK(run_with(folder, path, write("turned.toml"), late).voided == 0);
-  for (const auto& trial : late) CHECK(trial.proof == core::Proof::flagged);
+  for (const auto& trial : late) CHECK(trial.surface.proof == core::Proof::flagged);
 }
 
 TEST_CASE("a table that contradicts the sweep, has another unit, or is too short is refused",

@@ -15,7 +15,7 @@ std::string page() {
   return "# Keys of a protocol file\n\n"
          "Every key, what it may be, and what holds without it. [The guide](README.md) explains how they "
          "work\n"
-         "together. This page and `protocol.schema.json`, which editors and the designer read, are made from "
+         "together. This page and `protocol.schema.json`, which editors read, are made from "
          "the\n"
          "declarations in `station/protocol/protocol_keys.cpp` and `station/procedure/procedure_keys.cpp`\n"
          "(`test_protocol \"[.write]\"` writes both).\n\n"

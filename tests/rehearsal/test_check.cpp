@@ -315,7 +315,7 @@ TEST_CASE(
         ++trials, answered += row.outcome == core::Outcome::answered;
         if (zero != "first_contact") continue;
         // the finger leaves the surface before the answer, for the time that it needs to reach the button
-        CHECK(row.decision_time_s.has_value() == (row.outcome == core::Outcome::answered));
+        CHECK(row.timing.decision_time_s.has_value() == (row.outcome == core::Outcome::answered));
       }
     CHECK(answered > 0.95 * trials);
   }
@@ -361,7 +361,7 @@ choices = [ { id = "done", label = { en = "Done" } } ]
              .blocks)
       for (const auto& row : block.trials) {
         CHECK(row.outcome == core::Outcome::answered);
-        settings.push_back(std::stod(row.response.value()));
+        settings.push_back(std::stod(row.given.response.value()));
       }
     double sum = 0;
     for (const double setting : settings) sum += setting;

@@ -276,8 +276,8 @@ double pressed(const std::string& text, int key) {
   for (std::uint64_t seed = 0; seed < 5; ++seed)
     for (const auto& block : rehearsal::rehearse(protocol, {}, seed, {press, {}}).blocks)
       for (const auto& trial : block.trials)
-        if (trial.type == core::TrialType::experimental && trial.correct)
-          trials += 1, right += *trial.correct ? 1 : 0;
+        if (trial.type == core::TrialType::experimental && trial.given.correct)
+          trials += 1, right += *trial.given.correct ? 1 : 0;
   return right / trials;
 }
 

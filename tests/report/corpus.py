@@ -640,8 +640,7 @@ def compare_counts(report, session):
     rows = session.all
     report.same("trials", {"presented": len(rows), **{name: sum(r["outcome"] == one for r in rows) for name, one in (
         ("answered", "answered"), ("timeouts", "timeout"), ("anticipations", "anticipation"), ("aborted", "aborted"), ("faults", "fault"))}})
-    if session.kind.name == "unforced":
-        report.same("trials.unsure", sum(r["response"] == "unsure" for r in rows))
+    report.same("trials.unsure", sum(r["response"] == "unsure" for r in rows))
     timed = [((r["level"], r["instruction"]), int(r["trial_index"]), float(r["response_time"])) for r in session.answered]
     report.same("trend_response_time_s", within_groups(timed))
     scored = [((r["level"], r["instruction"]), int(r["trial_index"]), float(r["correct"])) for r in session.answered if r["correct"] != "n/a"]
@@ -764,6 +763,11 @@ def compare_trade(report, session, deep):
                     and run[i - 2]["block_index"] == run[i + 1]["block_index"]:
                 gaps.append(float(run[i + 1]["response_time"]) - float(run[i - 1]["response_time"]))
         report.same(path + ".post_error_slowing_s", student_mean(gaps))
+        report.same(path + ".deadline_s", float(rows[0]["deadline"]) if rows[0]["deadline"] != "n/a" else None)
+        pairs = [(a["response"], b["response"], b["correct_response"]) for a, b in following(session)
+                 if a["instruction"] == b["instruction"] == condition and "n/a" not in (a["correct_response"], b["correct_response"])]
+        known = [(now == before) - (right == before) for before, now, right in pairs if "unsure" not in (before, now)]
+        report.same(path + ".repetition", student_mean(known) if len(known) >= 20 else None)
 
     def measured(of):
         times = numpy.concatenate([c[:, 0] for g in of for c in g])
@@ -809,6 +813,107 @@ def compare_trade(report, session, deep):
         compare_predicted(report, session, at, condition, 0.150 if session.kind.name == "diffusion" else 0.0)
     if deep:
         compare_diffusion(report, session)
+
+
+def following(session):
+    """Pairs of answered trials of which the second was presented just after the first."""
+    for a, b in zip(session.all, session.all[1:]):
+        if int(b["trial_index"]) == int(a["trial_index"]) + 1 and a["block_index"] == b["block_index"]:
+            if all(r["trial_type"] == "experimental" and r["outcome"] == "answered" for r in (a, b)):
+                yield a, b
+
+
+class Firth:
+    """The maxima of a logistic likelihood with Firth's penalty, half the logarithm of the determinant of the information."""
+
+    def __init__(self, rows, answers):
+        self.unit = numpy.sqrt(numpy.mean(numpy.square(rows), axis=0))
+        self.x, self.y = rows / self.unit, answers
+
+    def cost(self, beta):
+        logit = self.x @ beta
+        p = special.expit(logit)
+        sign, log_det = numpy.linalg.slogdet((self.x * (p * (1 - p))[:, None]).T @ self.x)
+        return -(numpy.sum(self.y * logit - numpy.logaddexp(0, logit)) + 0.5 * log_det) if sign > 0 else 1e9
+
+    def best(self, fixed=None):
+        """The lowest cost, and where it is; `fixed` is the index of a coefficient and its value in the units of the rows."""
+        free = [i for i in range(self.x.shape[1]) if not fixed or i != fixed[0]]
+
+        def whole(part):
+            beta = numpy.empty(self.x.shape[1])
+            beta[free] = part
+            if fixed:
+                beta[fixed[0]] = fixed[1] * self.unit[fixed[0]]
+            return beta
+        found = [optimize.minimize(lambda part: self.cost(whole(part)), start, method="BFGS", options={"gtol": 1e-7})
+                 for start in (numpy.zeros(len(free)), numpy.full(len(free), 1.0), numpy.full(len(free), -1.0))]
+        best = min(found, key=lambda result: result.fun)
+        return best.fun, whole(best.x) / self.unit
+
+
+BEFORE = ("stimulus", "previous_stimulus", "previous_answer", "after_error")
+
+
+def compare_before(report, session):
+    """The effects of the trial before: its stimulus and its answer, beside the present stimulus."""
+    kind, names = session.kind, report.document["choices"]
+    model = {"ratings": "ratings", "line": "ratings", "numbers": "logarithms", "settings": "settings"}.get(kind.design)
+    guess = kind.fit["guess"] if kind.fit else None
+    if kind.design == "binary" and len(names) == 2:
+        model = "sides" if kind.name == "pse_2ifc" or isinstance(guess, float) else "choices"
+    entries = report.document["trial_before"]
+    report.check("trial_before", [e["model"] for e in entries] == ([model] if model == "settings" else [model] * len(session.conditions) if model else []),
+                 f"expected {model} for each condition")
+    positive = names[1] if model == "sides" else kind.positive
+
+    def seen(row):
+        level = 0.0 if guess == "false alarms" and row["correct_response"] != positive else session.level(row)
+        if model == "sides":
+            return abs(level) if row["correct_response"] == positive else -abs(level), 0.5 if row["response"] == positive else -0.5
+        if model == "choices":
+            return level, 0.5 if row["response"] == positive else -0.5
+        given = float(row["response"])
+        return (math.log10(level), math.log10(given)) if model == "logarithms" else (level, given)
+    for at, entry in enumerate(entries):
+        pairs = [(seen(a), seen(b), a["correct"] == "0", b["instruction"]) for a, b in following(session)
+                 if "unsure" not in (a["response"], b["response"]) and (model == "settings" or b["instruction"] == session.conditions[at])]
+        report.same(f"trial_before[{at}].pairs", len(pairs))
+        fewest = 50 if model in ("sides", "choices") else 10
+        if len(pairs) < fewest or not any(entry[name] for name in BEFORE):
+            report.check(f"trial_before[{at}]", bool(entry["statements"]), "no effects and no reason")
+            continue
+        means = {"ratings": lambda pair: pair[1][0], "logarithms": lambda pair: pair[1][0], "settings": lambda pair: pair[3]}.get(model, lambda pair: "")
+        of = sorted({means(pair) for pair in pairs})
+        columns = {"stimulus": [p[1][0] for p in pairs], "previous_stimulus": [p[0][0] for p in pairs], "previous_answer": [p[0][1] for p in pairs]}
+        if model in ("ratings", "logarithms"):
+            columns.pop("stimulus")
+        columns = {name: values for name, values in columns.items() if len(set(values)) > 1}
+        others = [[float(means(p) == one) for p in pairs] for one in of]
+        if entry["after_error"]:
+            columns["after_error"] = [p[1][0] * p[2] for p in pairs]
+            others.append([float(p[2]) for p in pairs])
+        rows, answers = numpy.array([*columns.values(), *others]).T, numpy.array([p[1][1] for p in pairs])
+        report.check(f"trial_before[{at}]", [name for name in BEFORE if entry[name]] == list(columns), f"expected {list(columns)}")
+        if model not in ("sides", "choices"):
+            beta, freedom = numpy.linalg.lstsq(rows, answers, rcond=None)[0], len(rows) - rows.shape[1]
+            error = numpy.sqrt(numpy.sum((answers - rows @ beta) ** 2) / freedom * numpy.diag(numpy.linalg.inv(rows.T @ rows)))
+            for k, name in enumerate(columns):
+                half = stats.t.ppf(0.975, freedom) * error[k]
+                report.same(f"trial_before[{at}].{name}", {"value": beta[k], "interval": {"low": beta[k] - half, "high": beta[k] + half},
+                            "p": 2 * stats.t.sf(abs(beta[k]) / error[k], freedom)})
+            continue
+        fit = Firth(rows, answers > 0)
+        lowest, beta = fit.best()
+        for k, name in enumerate(columns):
+            path, ends = f"trial_before[{at}].{name}", entry[name]["interval"]
+            wide = min(abs(beta[k] - end) for end in ends.values() if end is not None)
+            report.same(path + ".value", beta[k], 1e-3, wide)
+            report.same(path + ".p", stats.chi2.sf(2 * (fit.best((k, 0.0))[0] - lowest), 1), 1e-4)
+            for end, value in ends.items():
+                if value is not None:
+                    drop = 2 * (fit.best((k, value))[0] - lowest)
+                    report.check(f"{path}.interval.{end}", abs(drop - 3.8415) < 0.01, f"the likelihood ratio there is {drop:.4f}")
 
 
 def compare_predicted(report, session, at, condition, anticipation):
@@ -1262,6 +1367,7 @@ def compare_curve(report, session):
 def compare_session(report, session, deep):
     kind = session.kind
     compare_counts(report, session)
+    compare_before(report, session)
     if kind.design in ("binary", "confusion"):
         compare_binary_bias(report, session)
         if kind.name != "choice":  # no answer is right

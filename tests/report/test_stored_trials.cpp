@@ -311,7 +311,7 @@ TEST_CASE("what force cells measured is taken from answered trials, with their c
     for (auto& row : block.trials) {
       row.finger.sensing = row.trial_index % 2 != 0 ? "wire" : row.trial_index % 4 == 0 ? "ok" : "slow";
       if (row.finger.sensing != "wire") row.finger.normal_N = 0.5, row.finger.contact_s = 2;
-      row.boundary_mm = 150;
+      row.presented.boundary_mm = 150;
       row.finger.boundary_felt_mm = 151.5;
       expected += !block.start.practice && row.outcome == core::Outcome::answered ? 1 : 0;
     }

@@ -167,13 +167,14 @@ void check_equal(const core::TrialRow& a, const core::TrialRow& b) {
   CHECK(a.level == b.level);
   CHECK(a.factors == b.factors);
   CHECK(a.correct_response == b.correct_response);
-  CHECK(a.response == b.response);
-  CHECK(a.confidence == b.confidence);
+  CHECK(a.given.response == b.given.response);
+  CHECK(a.given.confidence == b.given.confidence);
   CHECK(a.outcome == b.outcome);
-  REQUIRE(a.response_time_s.has_value() == b.response_time_s.has_value());
+  REQUIRE(a.timing.response_time_s.has_value() == b.timing.response_time_s.has_value());
   // Times may differ by up to one frame.
-  if (a.response_time_s) CHECK(*a.response_time_s == Approx(*b.response_time_s).margin(1e-5));
-  CHECK(a.state_hash == b.state_hash);
+  if (a.timing.response_time_s)
+    CHECK(*a.timing.response_time_s == Approx(*b.timing.response_time_s).margin(1e-5));
+  CHECK(a.learned.state_hash == b.learned.state_hash);
   REQUIRE(a.tones.size() == b.tones.size());
   for (std::size_t i = 0; i < a.tones.size(); ++i) {
     CHECK(a.tones[i].frequency_Hz == b.tones[i].frequency_Hz);

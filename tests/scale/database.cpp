@@ -82,24 +82,24 @@ TrialRow trial_of(int session, int trial) {
   const bool right_side = (trial * 7 + session * 3) % 20 < (level > 0 ? 18 : level < 0 ? 2 : 10);
   row.level = level;
   row.factors = {{"offset_mm", level}, {"mark_mm", trial % 2 == 0 ? 150.0 : 160.0}};
-  row.boundary_mm = 150 + level;
-  row.frequency_Hz = 30123.4567890123 + trial;
-  row.amplitude = 2.5;
-  row.response = right_side ? "right" : "left";
+  row.presented.boundary_mm = 150 + level;
+  row.presented.frequency_Hz = 30123.4567890123 + trial;
+  row.presented.amplitude = 2.5;
+  row.given.response = right_side ? "right" : "left";
   if (level != 0) {
     row.correct_response = level > 0 ? "right" : "left";
-    row.correct = row.response == row.correct_response;
+    row.given.correct = row.given.response == row.correct_response;
   }
-  row.onset_ns = kSecond_ns * (5LL * trial + 3);
-  row.onset_s = 5.0 * trial + 2;
-  row.duration_s = 4;
-  row.response_time_s = 0.3 + 0.01 * ((trial * 13 + session) % 97);
-  row.response_zero = "go_cue";
-  row.response_time_quality = "simulated";
-  row.deadline_s = 6.0;
-  row.clock_slope_ns_per_frame = 5208.333;
-  row.clock_residual_ns = 42;
-  row.state_hash = 0xfedcba9876543210ULL + static_cast<unsigned>(trial);
+  row.timing.onset_ns = kSecond_ns * (5LL * trial + 3);
+  row.timing.onset_s = 5.0 * trial + 2;
+  row.timing.duration_s = 4;
+  row.timing.response_time_s = 0.3 + 0.01 * ((trial * 13 + session) % 97);
+  row.timing.response_zero = "go_cue";
+  row.timing.response_time_quality = "simulated";
+  row.timing.deadline_s = 6.0;
+  row.timing.clock_slope_ns_per_frame = 5208.333;
+  row.timing.clock_residual_ns = 42;
+  row.learned.state_hash = 0xfedcba9876543210ULL + static_cast<unsigned>(trial);
   row.tones = {tone_of(trial, 0), tone_of(trial, 1)};
   return row;
 }

@@ -205,8 +205,7 @@ TEST_CASE(
   auto one = edge_at(0.150, "peak");
   one.tolerance = {};
   CHECK(plan.error_bound_m >= 0.999 * Planner(rig).plan(one).error_bound_m);
-  std::vector<physics::Tone> tones;
-  for (const auto& tone : plan.tones) tones.push_back({tone.frequency_Hz, tone.amplitude_m, tone.phase_rad});
+  const std::vector<physics::Tone> tones(plan.tones.begin(), plan.tones.end());
   const auto edge = sound_bound(rig, tones, physics::Model::edge),
              mode = sound_bound(rig, tones, physics::Model::mode);
   REQUIRE((edge && mode));

@@ -55,10 +55,11 @@ repeats = 1
     for (const auto& block : stored(session).blocks)
       for (const auto& row : block.trials)
         if (row.outcome != turnpoint::core::Outcome::aborted)
-          rows.push_back(
-              std::to_string(row.trial_in_block) + " " + std::to_string(row.level.value_or(0)) + " " +
-              row.response.value_or("-") + " " + std::to_string(row.response_time_s.value_or(-1)) + " " +
-              std::to_string(row.state_hash) + " " + std::to_string(row.threshold_est.value_or(99)));
+          rows.push_back(std::to_string(row.trial_in_block) + " " + std::to_string(row.level.value_or(0)) +
+                         " " + row.given.response.value_or("-") + " " +
+                         std::to_string(row.timing.response_time_s.value_or(-1)) + " " +
+                         std::to_string(row.learned.state_hash) + " " +
+                         std::to_string(row.learned.threshold_est.value_or(99)));
     return rows;
   }
 };

@@ -85,14 +85,15 @@ TEST_CASE("a protocol file with a slider gives rows with each setting and the mo
   double sum = 0;
   for (const auto& trial : trials) {
     CHECK(trial.outcome == core::Outcome::answered);
-    REQUIRE(trial.response);
-    const double setting = std::stod(*trial.response);
+    REQUIRE(trial.given.response);
+    const double setting = std::stod(*trial.given.response);
     sum += setting;
     CHECK(std::fabs(*trial.level) == 20);
     CHECK(setting != *trial.level);
-    CHECK_FALSE(trial.correct);
+    CHECK_FALSE(trial.given.correct);
     // The stored boundary is the mark plus the setting, within the protocol's tolerance.
-    CHECK(*trial.boundary_mm == Approx(std::get<double>(trial.factors.at("mark_mm")) + setting).margin(0.5));
+    CHECK(*trial.presented.boundary_mm ==
+          Approx(std::get<double>(trial.factors.at("mark_mm")) + setting).margin(0.5));
     REQUIRE(trial.tones.size() == 2);
     CHECK(trial.tones[0].scene_index == 0);
     CHECK(trial.tones[1].scene_index == 1);
@@ -104,7 +105,7 @@ TEST_CASE("a protocol file with a slider gives rows with each setting and the mo
   REQUIRE(summary.estimates.size() == 1);
   CHECK(summary.estimates[0].parameter == "pse");
   CHECK(summary.estimates[0].mean == Approx(sum / 18));
-  CHECK(*trials.back().threshold_est == Approx(sum / 18));
+  CHECK(*trials.back().learned.threshold_est == Approx(sum / 18));
 }
 
 TEST_CASE("a question shows the value that a factor has in its trial", "[session]") {
@@ -297,7 +298,7 @@ TEST_CASE("while the slider moves, the operator's page shows the tone that is pl
   for (std::size_t i = 0; i < 2; ++i) {
     REQUIRE(trials[i].tones.size() == 2);
     CHECK(sees.begun[i].frequency_Hz == Approx(trials[i].tones[0].frequency_Hz).epsilon(1e-5));
-    CHECK(trials[i].response == "2");
+    CHECK(trials[i].given.response == "2");
   }
 }
 

@@ -44,11 +44,11 @@ TEST_CASE("a typed number is stored as the answer, and one outside of the range 
   CHECK(summary.status == core::SessionStatus::completed);
   const auto trials = trials_of(setup.database, summary);
   REQUIRE(trials.size() == 2);
-  CHECK(trials[0].response == "12.3");
-  CHECK(trials[0].extra_touches == 6);
-  CHECK(trials[0].response_time_s);
-  CHECK_FALSE(trials[0].correct);
-  CHECK(trials[1].response == "7.5");
+  CHECK(trials[0].given.response == "12.3");
+  CHECK(trials[0].given.extra_touches == 6);
+  CHECK(trials[0].timing.response_time_s);
+  CHECK_FALSE(trials[0].given.correct);
+  CHECK(trials[1].given.response == "7.5");
   CHECK(events_of(setup.database, summary, "value").size() == 7);
 }
 
@@ -71,11 +71,11 @@ TEST_CASE("confidence is stored with its answer; a stop before it leaves no tria
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
   const auto trials = trials_of(setup.database, summary);
   REQUIRE(trials.size() == 2);
-  CHECK(trials[0].response == "left");
-  CHECK(trials[0].confidence == 3);
-  CHECK(trials[0].confidence_time_s.value_or(-1) >= 0);
+  CHECK(trials[0].given.response == "left");
+  CHECK(trials[0].given.confidence == 3);
+  CHECK(trials[0].given.confidence_time_s.value_or(-1) >= 0);
   CHECK(trials[1].outcome == core::Outcome::aborted);
-  CHECK_FALSE(trials[1].confidence);
+  CHECK_FALSE(trials[1].given.confidence);
 }
 
 TEST_CASE("a second press within the guard time is never stored as the confidence, by finger or by button",
@@ -123,9 +123,9 @@ TEST_CASE("a second press within the guard time is never stored as the confidenc
   const auto trials = trials_of(setup.database, summary);
   REQUIRE(trials.size() == 2);
   for (const auto& trial : trials) {
-    CHECK(trial.response == "left");
-    CHECK(trial.confidence == 3);
-    CHECK(trial.confidence_time_s.value_or(-1) == Approx(core::kConfidenceGuard_s).epsilon(1e-9));
-    CHECK(trial.extra_touches == 2);
+    CHECK(trial.given.response == "left");
+    CHECK(trial.given.confidence == 3);
+    CHECK(trial.given.confidence_time_s.value_or(-1) == Approx(core::kConfidenceGuard_s).epsilon(1e-9));
+    CHECK(trial.given.extra_touches == 2);
   }
 }

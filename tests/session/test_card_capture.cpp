@@ -18,9 +18,9 @@ TEST_CASE(
   REQUIRE(trials.size() == 2);
   for (const auto& trial : trials) {
     CHECK(trial.outcome == core::Outcome::answered);
-    CHECK(trial.proof == Proof::ok);
-    CHECK(std::abs(trial.drive_ratio_dB.value()) < 0.01);
-    CHECK(std::abs(trial.onset_error_us.value()) < 30);
+    CHECK(trial.surface.proof == Proof::ok);
+    CHECK(std::abs(trial.surface.drive_ratio_dB.value()) < 0.01);
+    CHECK(std::abs(trial.surface.onset_error_us.value()) < 30);
     REQUIRE_FALSE(trial.tones.empty());
     for (const auto& tone : trial.tones) CHECK(std::abs(tone.measured_phase_deg.value()) < 1);
   }
@@ -44,11 +44,11 @@ TEST_CASE("a stimulus of half the amplitude is void, and the next one is proven"
   const auto trials = card.runs();
   REQUIRE(trials.size() == 3);
   CHECK(trials[0].outcome == core::Outcome::fault);
-  CHECK(trials[0].proof == Proof::refused);
-  CHECK(trials[0].proof_cause == ProofCause::half);
-  CHECK(trials[0].drive_ratio_dB.value() == Approx(-6.02).margin(0.1));
-  CHECK(trials[1].proof == Proof::ok);
-  CHECK(trials[2].proof == Proof::ok);
+  CHECK(trials[0].surface.proof == Proof::refused);
+  CHECK(trials[0].surface.proof_cause == ProofCause::half);
+  CHECK(trials[0].surface.drive_ratio_dB.value() == Approx(-6.02).margin(0.1));
+  CHECK(trials[1].surface.proof == Proof::ok);
+  CHECK(trials[2].surface.proof == Proof::ok);
 }
 
 TEST_CASE("a trial whose capture has a gap is void, and a new pilot aligns the next one",
@@ -68,14 +68,14 @@ TEST_CASE("a trial whose capture has a gap is void, and a new pilot aligns the n
   const auto trials = card.runs();
   REQUIRE(trials.size() == 3);
   CHECK(trials[0].outcome == core::Outcome::fault);
-  CHECK(trials[0].proof == Proof::lost);
-  CHECK(trials[0].proof_cause == ProofCause::gap);
+  CHECK(trials[0].surface.proof == Proof::lost);
+  CHECK(trials[0].surface.proof_cause == ProofCause::gap);
   const auto notices = live_room::events_of(card.setup.database, card.summary, "notice");
   REQUIRE(notices.size() == 1);
   CHECK(notices[0].value.find(unknown ? "1 gaps of unknown length" : "in 1 overruns") != std::string::npos);
   for (const auto i : {1, 2}) {
-    CHECK(trials[static_cast<std::size_t>(i)].proof == Proof::ok);
-    CHECK(std::abs(trials[static_cast<std::size_t>(i)].onset_error_us.value()) < 30);
+    CHECK(trials[static_cast<std::size_t>(i)].surface.proof == Proof::ok);
+    CHECK(std::abs(trials[static_cast<std::size_t>(i)].surface.onset_error_us.value()) < 30);
   }
 }
 
@@ -93,8 +93,8 @@ TEST_CASE("if the pilot is not heard, no stimulus is presented, and the page nam
   CHECK(card.faults.back() == FaultKind::capture);
   CHECK(card.details.back() == "the pilot on output channel 2 was not heard on captured channel 0");
   CHECK(live_room::events_of(card.setup.database, card.summary, "stimulus").size() == 2);
-  CHECK(trials[1].proof == Proof::ok);
-  CHECK(trials[2].proof == Proof::ok);
+  CHECK(trials[1].surface.proof == Proof::ok);
+  CHECK(trials[2].surface.proof == Proof::ok);
 }
 
 TEST_CASE("after the playback was restarted, a new pilot aligns the capture", "[session][card][proof]") {
@@ -107,8 +107,8 @@ TEST_CASE("after the playback was restarted, a new pilot aligns the capture", "[
   const auto trials = card.runs();
   REQUIRE(trials.size() == 3);
   CHECK(trials[0].outcome == core::Outcome::fault);
-  CHECK(trials[1].proof == Proof::ok);
-  CHECK(trials[2].proof == Proof::ok);
+  CHECK(trials[1].surface.proof == Proof::ok);
+  CHECK(trials[2].surface.proof == Proof::ok);
 }
 
 TEST_CASE("without a calibration of the pick-ups, trials count and are unproven", "[session][card][proof]") {
@@ -118,7 +118,7 @@ TEST_CASE("without a calibration of the pick-ups, trials count and are unproven"
   REQUIRE(trials.size() == 2);
   for (const auto& trial : trials) {
     CHECK(trial.outcome == core::Outcome::answered);
-    CHECK(trial.proof == Proof::unproven);
+    CHECK(trial.surface.proof == Proof::unproven);
   }
 }
 
@@ -184,6 +184,6 @@ TEST_CASE("a surface that vibrates while the amplifier is off trips the guard, a
     if (card.faults[k] == FaultKind::sounding)
       CHECK(card.details[k] == "a tone of 27.0 kHz at -46 dB of full drive");
   CHECK(std::count_if(trials.begin(), trials.end(), [](const auto& trial) {
-          return trial.outcome == core::Outcome::answered && trial.proof == Proof::ok;
+          return trial.outcome == core::Outcome::answered && trial.surface.proof == Proof::ok;
         }) == 2);
 }

@@ -85,12 +85,12 @@ struct SetClock {
     int answered = 0;
     for (std::size_t i = 0; i < trials.size(); ++i) {
       CHECK(trials[i].trial_index == static_cast<int>(i));
-      if (i > 0) CHECK(trials[i].onset_ns > trials[i - 1].onset_ns);
+      if (i > 0) CHECK(trials[i].timing.onset_ns > trials[i - 1].timing.onset_ns);
       if (trials[i].outcome != core::Outcome::answered) continue;
       ++answered;
       CHECK(std::ranges::any_of(presses_ns, [&](std::int64_t pressed_ns) {
-        const double pressed_s = 1e-9 * static_cast<double>(pressed_ns - trials[i].onset_ns);
-        return std::fabs(*trials[i].response_time_s - pressed_s) < 0.05;
+        const double pressed_s = 1e-9 * static_cast<double>(pressed_ns - trials[i].timing.onset_ns);
+        return std::fabs(*trials[i].timing.response_time_s - pressed_s) < 0.05;
       }));
     }
     CHECK(answered == 2);

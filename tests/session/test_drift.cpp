@@ -178,6 +178,6 @@ TEST_CASE("after 10 K, corrected frequencies put each boundary where it was plan
       else
         CHECK(off_mm < 0.05);
     }
-    if (trial.trial_index > 2) CHECK(trial.proof == core::Proof::ok);
+    if (trial.trial_index > 2) CHECK(trial.surface.proof == core::Proof::ok);
   }
 }

@@ -35,7 +35,7 @@ TEST_CASE("force cells measure the finger in each trial, and the stimuli are sti
   REQUIRE(ran.trials.size() == 10);
   for (const auto& trial : ran.trials) {
     CHECK(trial.outcome == core::Outcome::answered);
-    CHECK(trial.proof == core::Proof::ok);
+    CHECK(trial.surface.proof == core::Proof::ok);
     const auto& finger = trial.finger;
     CHECK(finger.sensing == "ok");
     CHECK(finger.contact_s.value() > 0.5);
@@ -63,9 +63,9 @@ TEST_CASE("the step of friction is felt where the plan puts it, on average to 0.
   std::vector<double> shift_mm;
   for (const auto& trial : ran.trials) {
     const auto& finger = trial.finger;
-    INFO("planned " << trial.boundary_mm.value());
+    INFO("planned " << trial.presented.boundary_mm.value());
     REQUIRE(finger.boundary_felt_mm);
-    shift_mm.push_back(finger.boundary_felt_mm.value() - trial.boundary_mm.value());
+    shift_mm.push_back(finger.boundary_felt_mm.value() - trial.presented.boundary_mm.value());
     CHECK(std::abs(shift_mm.back()) < 1);
     CHECK(finger.boundary_se_mm.value() < 1);
     CHECK(finger.mu_high.value() == Approx(0.8).epsilon(0.1));  // the finger's friction at rest
@@ -94,7 +94,7 @@ TEST_CASE("the felt boundary is measured at the planned level of friction, here 
   REQUIRE(ran.trials.size() == 5);
   // The margin excludes the place half-way up the step, which is some 4 mm away.
   for (const auto& trial : ran.trials)
-    CHECK(trial.finger.boundary_felt_mm.value() == Approx(trial.boundary_mm.value()).margin(1.2));
+    CHECK(trial.finger.boundary_felt_mm.value() == Approx(trial.presented.boundary_mm.value()).margin(1.2));
 }
 
 TEST_CASE("a trial whose forces are not known says why", "[session][forces]") {
@@ -155,7 +155,7 @@ TEST_CASE("a trial with another movement than the protocol asks for is repeated,
     CHECK(trial.finger.speed_in_window.value() < 0.1);
     CHECK_FALSE(trial.finger.normal_in_window.has_value());
     CHECK(trial.outcome == (i % 5 == 4 ? core::Outcome::answered : core::Outcome::fault));
-    CHECK(trial.response.has_value() == (i % 5 == 4));
+    CHECK(trial.given.response.has_value() == (i % 5 == 4));
     CHECK(trial.level == ran.trials[i / 5 * 5].level);
   }
   for (const auto& said : ran.messages) CHECK(said == "Slide a little faster");

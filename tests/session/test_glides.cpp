@@ -82,15 +82,15 @@ TEST_CASE("an amplitude that drops while one scene glides to the next is found i
   });
   REQUIRE(ran.trials.size() == (fault ? 5u : 4u));
   for (const auto& trial : ran.trials) {
-    CAPTURE(trial.trial_index, trial.drive_ratio_dB.value_or(99), name(trial.proof_cause));
+    CAPTURE(trial.trial_index, trial.surface.drive_ratio_dB.value_or(99), name(trial.surface.proof_cause));
     if (fault && &trial == &ran.trials[1]) {
       CHECK(trial.outcome == core::Outcome::fault);
-      CHECK(trial.proof != Proof::ok);
-      CHECK(name(trial.proof_cause) == std::string("level"));
-      CHECK(trial.drive_ratio_dB.value() < -3);
+      CHECK(trial.surface.proof != Proof::ok);
+      CHECK(name(trial.surface.proof_cause) == std::string("level"));
+      CHECK(trial.surface.drive_ratio_dB.value() < -3);
     } else {
-      CHECK(trial.proof == Proof::ok);
-      CHECK(std::abs(trial.drive_ratio_dB.value()) < 0.1);
+      CHECK(trial.surface.proof == Proof::ok);
+      CHECK(std::abs(trial.surface.drive_ratio_dB.value()) < 0.1);
     }
     for (const auto& tone : trial.tones) {
       CAPTURE(tone.scene_index);
@@ -108,14 +108,15 @@ TEST_CASE("an adjustment is proven although the surface glides with the slider",
   REQUIRE(ran.trials.size() == (fault ? 19u : 18u));
   for (std::size_t k = 0; k < ran.trials.size(); ++k) {
     const auto& trial = ran.trials[k];
-    CAPTURE(k, name(trial.proof), name(trial.proof_cause), trial.drive_ratio_dB.value_or(99));
+    CAPTURE(k, name(trial.surface.proof), name(trial.surface.proof_cause),
+            trial.surface.drive_ratio_dB.value_or(99));
     if (fault && k == 2) {
       CHECK(trial.outcome == core::Outcome::fault);
-      CHECK(trial.proof != Proof::ok);
+      CHECK(trial.surface.proof != Proof::ok);
       continue;
     }
     CHECK(trial.outcome == core::Outcome::answered);
-    CHECK(trial.proof == Proof::ok);
+    CHECK(trial.surface.proof == Proof::ok);
     REQUIRE(trial.tones.size() == 2);
     for (const auto& tone : trial.tones) CHECK(std::abs(tone.measured_dB.value()) < 0.1);
   }

@@ -104,9 +104,9 @@ TEST_CASE("the converter's delay is part of every stored onset", "[session][inte
   for (const auto& [delay, wanted_ns] : {std::pair{0.0, 0.0}, std::pair{delay_s, delay_s * 1e9}}) {
     int seen = 0;
     for (const auto& trial : session_of(shipped("demo"), kBuffers[1], delay)) {
-      REQUIRE(trial.response_zero == "go_cue");
+      REQUIRE(trial.timing.response_zero == "go_cue");
       const auto frame_ns = static_cast<double>(onsets(trial).at(0)) * 1e9 / 192000;
-      CHECK(static_cast<double>(trial.onset_ns) - frame_ns == Approx(wanted_ns).margin(2));
+      CHECK(static_cast<double>(trial.timing.onset_ns) - frame_ns == Approx(wanted_ns).margin(2));
       ++seen;
     }
     CHECK(seen > 5);

@@ -182,7 +182,7 @@ TEST_CASE("a live session reads its force cells through alsa-lib, and stores wha
   REQUIRE(trials.size() == 2);
   for (const auto& trial : trials) {
     CHECK(trial.outcome == core::Outcome::answered);
-    CHECK(trial.proof == core::Proof::ok);
+    CHECK(trial.surface.proof == core::Proof::ok);
     if (finger.wire_off) {
       CHECK(trial.finger.sensing != "ok");
       CHECK_FALSE(trial.finger.normal_N);

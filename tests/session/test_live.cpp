@@ -32,9 +32,9 @@ TEST_CASE("a live session runs from the operator's arming to answers by buttons,
   const auto trials = trials_of(setup.database, summary);
   REQUIRE(trials.size() == 2);
   for (const auto& trial : trials) {
-    CHECK(trial.response == "left");
+    CHECK(trial.given.response == "left");
     CHECK(trial.outcome == core::Outcome::answered);
-    CHECK(trial.clock_slope_ns_per_frame.has_value());
+    CHECK(trial.timing.clock_slope_ns_per_frame.has_value());
   }
   // The amplifier must be enabled once for each trial, in silence before its stimulus, and be switched off
   // afterwards.
@@ -205,7 +205,7 @@ TEST_CASE("continuing before the lost buttons are back shows the fault page agai
   REQUIRE(trials.size() == 3);
   CHECK(trials[0].outcome == core::Outcome::fault);
   CHECK(trials[1].outcome == core::Outcome::answered);
-  CHECK(trials[1].response == trials[2].response);
+  CHECK(trials[1].given.response == trials[2].given.response);
   CHECK(events_of(setup.database, summary, "notice").back().value ==
         "panel: the lost device is connected again");
   const auto glitches = events_of(setup.database, summary, "glitch");

@@ -122,7 +122,7 @@ double worth(const core::TrialRow& row) {
     case core::Outcome::anticipation:
       return -7;
     default:
-      return !row.correct.value() ? -2 * cost : *row.response_time_s < 0.7 ? 15 : 10;
+      return !row.given.correct.value() ? -2 * cost : *row.timing.response_time_s < 0.7 ? 15 : 10;
   }
 }
 
@@ -157,10 +157,10 @@ TEST_CASE("each trial is worth what the protocol says, and the score is the sum 
   std::set<double> seen;
   for (const auto& block : stored.blocks)
     for (const auto& row : block.trials) {
-      REQUIRE(row.points);
-      CHECK(*row.points == worth(row));
-      seen.insert(*row.points);
-      score += block.start.practice ? 0 : *row.points;
+      REQUIRE(row.given.points);
+      CHECK(*row.given.points == worth(row));
+      seen.insert(*row.given.points);
+      score += block.start.practice ? 0 : *row.given.points;
     }
   CHECK(seen.count(15) == 1);
   CHECK(seen.count(10) == 1);
@@ -211,7 +211,7 @@ TEST_CASE("a block of a fixed time ends with the trial in which its time is up",
     double before_s = 0;
     for (const auto& row : stored.blocks[b].trials) {
       CHECK(before_s < 30);
-      before_s += row.duration_s;
+      before_s += row.timing.duration_s;
     }
     CHECK(before_s >= 30);
   }
@@ -228,16 +228,17 @@ TEST_CASE("the pause is longer after a wrong, a late and an early answer", "[ses
       const bool answered = row.outcome == core::Outcome::answered;
       const double zero_s = 0.8, pause_s = 0.5 + (answered ? 0.8 : 1.0);
       if (answered) {
-        ++kinds[*row.correct ? "right" : "wrong"];
-        CHECK(row.duration_s ==
-              Approx(zero_s + *row.response_time_s + pause_s + (*row.correct ? 0 : 2.5)).margin(0.2));
+        ++kinds[*row.given.correct ? "right" : "wrong"];
+        CHECK(row.timing.duration_s ==
+              Approx(zero_s + *row.timing.response_time_s + pause_s + (*row.given.correct ? 0 : 2.5))
+                  .margin(0.2));
       } else if (row.outcome == core::Outcome::timeout) {
         ++kinds["late"];
-        CHECK(row.duration_s == Approx(zero_s + 1.0 + pause_s + 4.0).margin(0.2));
+        CHECK(row.timing.duration_s == Approx(zero_s + 1.0 + pause_s + 4.0).margin(0.2));
       } else {
         ++kinds["early"];
-        CHECK(row.duration_s < zero_s + 0.2 + pause_s + 3.0 + 0.2);
-        CHECK(row.duration_s > pause_s + 3.0);
+        CHECK(row.timing.duration_s < zero_s + 0.2 + pause_s + 3.0 + 0.2);
+        CHECK(row.timing.duration_s > pause_s + 3.0);
       }
     }
   CHECK(kinds.size() == 4);
@@ -263,7 +264,7 @@ TEST_CASE("a session that is cut in a block of a fixed time goes on with its tim
     CHECK(summary.status == core::SessionStatus::completed);
     const auto found = trials(station, summary);
     REQUIRE(found.size() == rows.size());
-    for (std::size_t i = 0; i < rows.size(); ++i) CHECK(found[i].points == rows[i].points);
+    for (std::size_t i = 0; i < rows.size(); ++i) CHECK(found[i].given.points == rows[i].given.points);
     CHECK(summary.points == expected.points);
     CHECK(rest.pages.back().text == screen.pages.back().text);
   }
@@ -284,7 +285,8 @@ TEST_CASE("a block or a session that starts again gives no points for what was a
         auto& [attempt, points] = blocks[block.start.block_index];
         if (block.start.attempt > attempt) attempt = block.start.attempt, points = 0;
         for (const auto& row : block.trials)
-          if (!block.start.practice && row.points) points += *row.points, all += *row.points;
+          if (!block.start.practice && row.given.points)
+            points += *row.given.points, all += *row.given.points;
       }
       double newest = 0;
       for (const auto& [index, block] : blocks) newest += block.second;
@@ -333,7 +335,8 @@ TEST_CASE("a rehearsal gives the points of the session", "[session]") {
     const auto &a = stored.blocks[b].trials, &c = rehearsal.blocks[b].trials;
     // frames of the drive make a trial some microseconds longer, so that the last one may differ
     REQUIRE(std::max(a.size(), c.size()) - std::min(a.size(), c.size()) <= 1);
-    for (std::size_t i = 0; i < std::min(a.size(), c.size()); ++i) CHECK(a[i].points == c[i].points);
+    for (std::size_t i = 0; i < std::min(a.size(), c.size()); ++i)
+      CHECK(a[i].given.points == c[i].given.points);
   }
 }
 
@@ -341,12 +344,13 @@ TEST_CASE("scores leave out voids and warm-ups, take the newest attempt, and sta
           "[session]") {
   session::Scores scores;
   core::TrialRow right;
-  right.correct_response = right.response = "a";
-  right.correct = true, right.points = 2, right.response_time_s = 0.5;
+  right.correct_response = right.given.response = "a";
+  right.given.correct = true, right.given.points = 2, right.timing.response_time_s = 0.5;
   auto late = right;
-  late.outcome = core::Outcome::timeout, late.correct.reset(), late.response_time_s.reset(), late.points = -1;
+  late.outcome = core::Outcome::timeout, late.given.correct.reset(), late.timing.response_time_s.reset(),
+  late.given.points = -1;
   auto fault = right;
-  fault.outcome = core::Outcome::fault, fault.correct.reset(), fault.points.reset();
+  fault.outcome = core::Outcome::fault, fault.given.correct.reset(), fault.given.points.reset();
   auto warmup = right;
   warmup.type = core::TrialType::warmup;
   const core::BlockStart practice{0, 0, "practice", "", true}, first{1, 0, "main", "", false},
@@ -389,7 +393,7 @@ TEST_CASE("missed, early and unsure answers count as not right, in a block's sco
     row.outcome = outcome;  // the answer is "unsure": neither right nor wrong
     scores.add(main, row);
   }
-  row.correct = true;
+  row.given.correct = true;
   scores.add(main, row);
   CHECK(scores.of(0).trials == 4);
   CHECK(scores.of(0).accuracy() == 0.25);
@@ -464,16 +468,16 @@ TEST_CASE("people who do not want to guess may say so, and the level steps as af
   const auto& rows = stored.blocks.front().trials;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto& row = rows[i];
-    REQUIRE(row.response);
-    ++answers[*row.response];
+    REQUIRE(row.given.response);
+    ++answers[*row.given.response];
     CHECK(row.outcome == core::Outcome::answered);
-    CHECK(row.correct.has_value() == (row.response != "unsure"));
-    CHECK(row.points == (!row.correct ? 1 : *row.correct ? 4 : -4));
-    const double step = !row.correct ? 2 : *row.correct ? -2 : 6;
+    CHECK(row.given.correct.has_value() == (row.given.response != "unsure"));
+    CHECK(row.given.points == (!row.given.correct ? 1 : *row.given.correct ? 4 : -4));
+    const double step = !row.given.correct ? 2 : *row.given.correct ? -2 : 6;
     if (i + 1 < rows.size()) CHECK(*rows[i + 1].level == std::clamp(*row.level + step, 2.0, 40.0));
   }
   const auto right =
-      std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row.correct == true; });
+      std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row.given.correct == true; });
   const auto over = screen.titled("End of this part");
   REQUIRE(over.size() == 1);
   CHECK(over.front().text.find(fmt::format(
@@ -499,6 +503,6 @@ TEST_CASE("a session with unsure answers goes on after a crash as if nothing had
   REQUIRE(found.blocks.front().trials.size() == expected.blocks.front().trials.size());
   for (std::size_t i = 0; i < found.blocks.front().trials.size(); ++i) {
     CHECK(found.blocks.front().trials[i].level == expected.blocks.front().trials[i].level);
-    CHECK(found.blocks.front().trials[i].response == expected.blocks.front().trials[i].response);
+    CHECK(found.blocks.front().trials[i].given.response == expected.blocks.front().trials[i].given.response);
   }
 }

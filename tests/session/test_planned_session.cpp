@@ -256,7 +256,7 @@ void add_and_compare(const std::string& database, const session::Summary& summar
     if (row.type != core::TrialType::experimental || row.outcome == core::Outcome::aborted) continue;
     REQUIRE(stairs->next()->level == row.level.value());
     stairs->record(row.outcome != core::Outcome::answered ? procedure::Answer::none
-                   : row.correct.value_or(false)          ? procedure::Answer::one
+                   : row.given.correct.value_or(false)    ? procedure::Answer::one
                                                           : procedure::Answer::zero);
   }
 }

@@ -47,7 +47,7 @@ TEST_CASE("a session takes its levels from a program, and stores which program i
   int right = 0;
   for (const auto& row : stored.blocks.at(0).trials) {
     CHECK(*row.level == -5 - right);
-    right += *row.correct ? 1 : 0;
+    right += *row.given.correct ? 1 : 0;
   }
   REQUIRE(right > 0);
   const auto programs = programs_in(stored);
@@ -82,7 +82,7 @@ TEST_CASE("an estimator gets the trials of a session, and only those that count"
   auto blocks = stored.blocks;
   const auto& trials = blocks.at(0).trials;
   int right = 0;
-  for (const auto& row : trials) right += *row.correct ? 1 : 0;
+  for (const auto& row : trials) right += *row.given.correct ? 1 : 0;
   const auto program =
       "program:" + std::string(TURNPOINT_SOURCE_DIR) + "/protocols/programs/right_answers.py,limit_s=60";
   const auto found = session::estimated_by(program, session.setup.protocol, blocks);

@@ -42,8 +42,8 @@ TEST_CASE("without a pick-up a session runs, and each trial is unproven", "[sess
   const auto summary = session::run(session::prepare(request), nullptr, inputs);
   for (const auto& block : store::read_session(request.database, summary.session_id).blocks)
     for (const auto& trial : block.trials) {
-      CHECK(trial.proof == Proof::unproven);
-      CHECK_FALSE(trial.drive_ratio_dB.has_value());
+      CHECK(trial.surface.proof == Proof::unproven);
+      CHECK_FALSE(trial.surface.drive_ratio_dB.has_value());
     }
 }
 
@@ -52,12 +52,12 @@ TEST_CASE("a pick-up proves each trial of a good session", "[session][proof]") {
   CHECK(ran.summary.voided == 0);
   REQUIRE(ran.trials.size() == 10);
   for (const auto& trial : ran.trials) {
-    CHECK(trial.proof == Proof::ok);
-    CHECK(trial.proof_cause == ProofCause::none);
-    CHECK(std::abs(trial.drive_ratio_dB.value()) < 0.02);
-    CHECK(std::abs(trial.onset_error_us.value()) < 150);
-    CHECK(trial.silence_dB.value() < -45);  // noise of the pick-up, 1e-4 of full scale
-    CHECK_FALSE(trial.silence_tone_dB.has_value());
+    CHECK(trial.surface.proof == Proof::ok);
+    CHECK(trial.surface.proof_cause == ProofCause::none);
+    CHECK(std::abs(trial.surface.drive_ratio_dB.value()) < 0.02);
+    CHECK(std::abs(trial.surface.onset_error_us.value()) < 150);
+    CHECK(trial.surface.silence_dB.value() < -45);  // noise of the pick-up, 1e-4 of full scale
+    CHECK_FALSE(trial.surface.silence_tone_dB.has_value());
     for (const auto& tone : trial.tones) CHECK(std::abs(tone.measured_dB.value()) < 0.02);
   }
 }
@@ -76,8 +76,8 @@ TEST_CASE("a stimulus that the surface did not follow is void, named, and presen
   for (const auto& trial : ran.trials) {
     if (trial.trial_index == 3) {
       CHECK(trial.outcome == core::Outcome::fault);
-      CHECK(trial.proof == (cause == ProofCause::late ? Proof::refused : Proof::stopped));
-      CHECK(name(trial.proof_cause) == std::string(name(cause)));
+      CHECK(trial.surface.proof == (cause == ProofCause::late ? Proof::refused : Proof::stopped));
+      CHECK(name(trial.surface.proof_cause) == std::string(name(cause)));
     } else {
       CHECK(trial.outcome == core::Outcome::answered);
     }
@@ -123,11 +123,12 @@ TEST_CASE("a surface that moves before the stimulus makes the trial void, and th
   REQUIRE(ran.trials.size() == (verdict == Proof::refused ? 11 : 10));
   for (const auto& trial : ran.trials) {
     const bool sounding = trial.trial_index == 3;
-    CHECK(trial.proof == (sounding ? verdict : Proof::ok));
-    if (sounding && verdict != Proof::ok) CHECK(trial.proof_cause == ProofCause::noisy);
-    CHECK(trial.silence_tone_dB.has_value() == (sounding && um > 0));
-    if (sounding && um > 0) CHECK(proof_of_silence(trial.silence_tone_dB.value()) == verdict);
-    CHECK(trial.outcome == (trial.proof == Proof::refused ? core::Outcome::fault : core::Outcome::answered));
+    CHECK(trial.surface.proof == (sounding ? verdict : Proof::ok));
+    if (sounding && verdict != Proof::ok) CHECK(trial.surface.proof_cause == ProofCause::noisy);
+    CHECK(trial.surface.silence_tone_dB.has_value() == (sounding && um > 0));
+    if (sounding && um > 0) CHECK(proof_of_silence(trial.surface.silence_tone_dB.value()) == verdict);
+    CHECK(trial.outcome ==
+          (trial.surface.proof == Proof::refused ? core::Outcome::fault : core::Outcome::answered));
   }
   CHECK(ran.summary.answered == 10);
 }
@@ -142,8 +143,8 @@ TEST_CASE("a dead surface stops the session with a page that says so", "[session
       {kPickUps, false});
   CHECK(ran.summary.status == core::SessionStatus::interrupted);
   REQUIRE(ran.trials.size() == 5);
-  CHECK(ran.trials[2].proof == Proof::stopped);
-  CHECK(ran.trials[2].proof_cause == ProofCause::dead);
+  CHECK(ran.trials[2].surface.proof == Proof::stopped);
+  CHECK(ran.trials[2].surface.proof_cause == ProofCause::dead);
   REQUIRE_FALSE(ran.faults.empty());
   CHECK(ran.faults.front().find("the surface does not move") != std::string::npos);
 }

@@ -38,11 +38,13 @@ TEST_CASE("a rehearsed session has the same trials, answers and times as a sessi
     for (std::size_t t = 0; t < stored.blocks[b].trials.size(); ++t) {
       const auto& one = rehearsed.blocks[b].trials[t];
       const auto& other = stored.blocks[b].trials[t];
-      CHECK((one.level == other.level && one.response == other.response && one.correct == other.correct));
+      CHECK((one.level == other.level && one.given.response == other.given.response &&
+             one.given.correct == other.given.correct));
       CHECK(one.outcome == other.outcome);
-      CHECK(one.confidence == other.confidence);
-      REQUIRE(one.response_time_s.has_value() == other.response_time_s.has_value());
-      if (one.response_time_s) CHECK(*one.response_time_s == Approx(*other.response_time_s).margin(1e-8));
+      CHECK(one.given.confidence == other.given.confidence);
+      REQUIRE(one.timing.response_time_s.has_value() == other.timing.response_time_s.has_value());
+      if (one.timing.response_time_s)
+        CHECK(*one.timing.response_time_s == Approx(*other.timing.response_time_s).margin(1e-8));
     }
   }
 }

@@ -60,9 +60,9 @@ TEST_CASE("the demo protocol runs and its trials are stored in SQLite", "[sessio
   REQUIRE(static_cast<int>(trials.size()) == summary.trials);
   for (const auto& trial : trials) {
     CHECK(trial.outcome == core::Outcome::answered);
-    CHECK(*trial.response_time_s > 0);
-    CHECK(trial.response_time_quality == "simulated");
-    CHECK(trial.frequency_Hz.has_value());
+    CHECK(*trial.timing.response_time_s > 0);
+    CHECK(trial.timing.response_time_quality == "simulated");
+    CHECK(trial.presented.frequency_Hz.has_value());
     REQUIRE(trial.tones.size() == 1);
     CHECK(trial.tones[0].model.size() > 0);
   }
@@ -125,9 +125,9 @@ TEST_CASE("the same seed gives the same trials and answers", "[session]") {
   REQUIRE(a.size() == b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     CHECK(a[i].level == b[i].level);
-    CHECK(a[i].response == b[i].response);
-    CHECK(a[i].response_time_s == b[i].response_time_s);
-    CHECK(a[i].state_hash == b[i].state_hash);
+    CHECK(a[i].given.response == b[i].given.response);
+    CHECK(a[i].timing.response_time_s == b[i].timing.response_time_s);
+    CHECK(a[i].learned.state_hash == b[i].learned.state_hash);
   }
 }
 
@@ -156,8 +156,8 @@ TEST_CASE(
     for (std::size_t i = 0; i < trials.size(); ++i) {
       CHECK(trials[i].level == expected[i].level);
       CHECK(trials[i].factors == expected[i].factors);
-      CHECK(trials[i].response == expected[i].response);
-      CHECK(trials[i].state_hash == expected[i].state_hash);
+      CHECK(trials[i].given.response == expected[i].given.response);
+      CHECK(trials[i].learned.state_hash == expected[i].learned.state_hash);
     }
   }
 }
@@ -195,7 +195,7 @@ TEST_CASE(
     REQUIRE(trials.size() == expected.size());
     for (std::size_t i = 0; i < trials.size(); ++i) {
       CHECK(trials[i].level == expected[i].level);
-      CHECK(trials[i].state_hash == expected[i].state_hash);
+      CHECK(trials[i].learned.state_hash == expected[i].learned.state_hash);
     }
     REQUIRE(summary.estimates.size() == 2);
     CHECK(summary.estimates[0].mean == whole.estimates[0].mean);
@@ -265,7 +265,7 @@ TEST_CASE("a monitor is notified before and after every trial and does not chang
   REQUIRE(a.size() == b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     CHECK(a[i].level == b[i].level);
-    CHECK(a[i].response_time_s == b[i].response_time_s);
+    CHECK(a[i].timing.response_time_s == b[i].timing.response_time_s);
   }
 }
 
@@ -284,13 +284,13 @@ TEST_CASE(
   CHECK(stored.session.start.consent_version == "2026-03");
   const auto a = trials_of(folder / "a.sqlite", summary.session_id);
   const auto b = trials_of(folder / "b.sqlite", plain.session_id);
-  CHECK(a.front().response_offset_s == 0.0625);
+  CHECK(a.front().timing.response_offset_s == 0.0625);
   // A latency measured for the kernel's time stamps does not apply to other time stamps.
   setup.response_offset_quality = "kernel";
   setup.database = folder / "c.sqlite";
   const auto other = session::run(setup, nullptr, inputs);
-  CHECK(trials_of(folder / "c.sqlite", other.session_id).front().response_offset_s == 0);
-  CHECK(a.front().response_time_s == b.front().response_time_s);
+  CHECK(trials_of(folder / "c.sqlite", other.session_id).front().timing.response_offset_s == 0);
+  CHECK(a.front().timing.response_time_s == b.front().timing.response_time_s);
 }
 
 TEST_CASE("a simulated session is not continued with another simulated observer", "[session]") {

@@ -116,13 +116,13 @@ TEST_CASE("a buzz is measured by the pick-ups and stored with its frames, like a
   CHECK(faulted == (broken ? 1 : 0));
   int buzzes = 0;
   for (const auto& trial : ran.trials) {
-    CAPTURE(trial.trial_index, name(trial.proof), name(trial.proof_cause), trial.drive_ratio_dB.value_or(99),
-            name(trial.outcome));
+    CAPTURE(trial.trial_index, name(trial.surface.proof), name(trial.surface.proof_cause),
+            trial.surface.drive_ratio_dB.value_or(99), name(trial.outcome));
     if (broken && trial.trial_index == 6) {
       CHECK(trial.outcome == core::Outcome::fault);
       continue;
     }
-    CHECK(trial.proof == core::Proof::ok);
+    CHECK(trial.surface.proof == core::Proof::ok);
     const auto lag_s = std::get<double>(trial.factors.at("lag_s"));
     std::int64_t change = 0;
     for (const auto& tone : trial.tones)
@@ -159,9 +159,10 @@ TEST_CASE("a buzz that fails alone makes its trial void", "[session][buzz][proof
                  0});
   });
   for (const auto& trial : ran.trials) {
-    CAPTURE(trial.trial_index, name(trial.proof), name(trial.proof_cause), trial.drive_ratio_dB.value_or(99));
+    CAPTURE(trial.trial_index, name(trial.surface.proof), name(trial.surface.proof_cause),
+            trial.surface.drive_ratio_dB.value_or(99));
     CHECK((trial.outcome == core::Outcome::fault) == (trial.trial_index == 1));
-    CHECK((trial.proof == core::Proof::ok) == (trial.trial_index != 1));
+    CHECK((trial.surface.proof == core::Proof::ok) == (trial.trial_index != 1));
   }
 }
 

@@ -46,7 +46,7 @@ TEST_CASE("a flash is due at its lag, once in a trial, and never three times in 
   int answered = 0;
   for (const auto& block : store::read_session(summary.database, summary.session_id).blocks)
     for (const auto& row : block.trials) {
-      const auto due_ns = row.onset_ns + std::llround(1e9 * std::get<double>(row.factors.at("lag_s")));
+      const auto due_ns = row.timing.onset_ns + std::llround(1e9 * std::get<double>(row.factors.at("lag_s")));
       possible.insert(due_ns);
       if (row.outcome != core::Outcome::answered) continue;
       ++answered;

@@ -130,8 +130,8 @@ TEST_CASE("a session measures how much vibration reduces the friction of this fi
       CHECK((trial.level.value() == 0) == (i % 2 == 0));
       CHECK(trial.tones.empty() == (i % 2 == 0));
       CHECK(trial.type == core::TrialType::practice);
-      CHECK(trial.response == "ok");
-      CHECK_FALSE(trial.correct);
+      CHECK(trial.given.response == "ok");
+      CHECK_FALSE(trial.given.correct);
     }
     // the friction of the same finger has drifted
     CHECK(ran.trials[24].finger.mu.value() / ran.trials[0].finger.mu.value() > 1.15);
@@ -145,7 +145,7 @@ TEST_CASE("trials are planned with the measured table where the protocol asks fo
     const auto ran =
         run(protocol_with(folder, std::string(kTable) + use), nothing, with_finger(stiff_finger()));
     REQUIRE(ran.trials.size() == 27);
-    return ran.trials.back().amplitude.value();
+    return ran.trials.back().presented.amplitude.value();
   };
   const double by_rig = strength_um("false\n"), by_table = strength_um("true\n");
   // this finger needs twice the vibration, as the measured table must show
@@ -190,7 +190,7 @@ TEST_CASE("a resumed session continues the table, and plans with the same table 
   const auto whole = run_once(session::prepare(request), -1);
   const auto reference = store::read_session(request.database, whole.session_id);
   const auto& last = reference.blocks.back().trials.back();
-  CHECK(trials.back().amplitude.value() == Approx(last.amplitude.value()).epsilon(0.1));
+  CHECK(trials.back().presented.amplitude.value() == Approx(last.presented.amplitude.value()).epsilon(0.1));
 }
 
 TEST_CASE("a training is passed by the movement that the protocol asks for, and only by it",
@@ -204,8 +204,8 @@ TEST_CASE("a training is passed by the movement that the protocol asks for, and 
     CHECK(ran.summary.status == core::SessionStatus::completed);
     REQUIRE(ran.trials.size() == 7);
     for (std::size_t i = 0; i < 5; ++i) {
-      CHECK(ran.trials[i].response == "ok");
-      CHECK(ran.trials[i].correct == true);
+      CHECK(ran.trials[i].given.response == "ok");
+      CHECK(ran.trials[i].given.correct == true);
       CHECK(ran.trials[i].tones.empty());
     }
   }
@@ -216,8 +216,8 @@ TEST_CASE("a training is passed by the movement that the protocol asks for, and 
     CHECK(ran.summary.reason == "practice \"training\" was not passed in 2 attempts");
     REQUIRE(ran.trials.size() == 10);
     for (const auto& trial : ran.trials) {
-      CHECK(trial.response == "hard");
-      CHECK(trial.correct == false);
+      CHECK(trial.given.response == "hard");
+      CHECK(trial.given.correct == false);
       CHECK(trial.outcome == core::Outcome::answered);
     }
   }

@@ -132,7 +132,7 @@ TEST_CASE("every code that the marker channel carries is read back, at its frame
   CHECK(count(rows, "read back +0.00 frames") == static_cast<int>(rows.size()));
   CHECK(ran.summary.triggers_missed == 0);
   CHECK(ran.summary.triggers_extra == 0);
-  for (const auto& trial : ran.trials) CHECK(trial.proof == core::Proof::ok);
+  for (const auto& trial : ran.trials) CHECK(trial.surface.proof == core::Proof::ok);
 }
 
 TEST_CASE("codes that do not come back are missed, and named", "[session][trigger]") {

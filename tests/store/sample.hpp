@@ -116,33 +116,33 @@ inline TrialRow answered(int index, int tones = 2) {
   t.procedure = "staircase";
   t.level = -12.5 + 0.1 * index;
   t.factors = {{"contrast", 0.1 + 0.2}, {"instruction", std::string("speed")}};
-  t.boundary_mm = 150.25;
-  t.frequency_Hz = 30123.4567890123;
-  t.amplitude = 2.5;
+  t.presented.boundary_mm = 150.25;
+  t.presented.frequency_Hz = 30123.4567890123;
+  t.presented.amplitude = 2.5;
   t.correct_response = "first";
-  t.response = index % 3 == 0 ? "second" : "first";
-  t.correct = index % 3 != 0;
-  t.onset_ns = 3'000'000'000 + 1'000'000'000LL * index;
-  t.onset_s = 2.0 + index;
-  t.duration_s = 3.5;
-  t.response_time_s = 0.4375 + 0.001 * index;
-  t.response_zero = "go_cue";
-  t.response_time_quality = "simulated";
-  t.deadline_s = 2.0;
-  t.threshold_est = -10.0;
-  t.threshold_sd = 1.5;
-  t.clock_slope_ns_per_frame = 5208.333;
-  t.clock_residual_ns = 42;
-  t.proof = Proof::flagged;
-  t.proof_cause = ProofCause::level;
-  t.drive_ratio_dB = -0.75;
-  t.drive_residual_dB = -55;
-  t.onset_error_us = 12.5;
-  t.silence_dB = -57.5;
-  t.silence_tone_dB = -82.25;
-  t.confidence = 1 + index % 4;
-  t.confidence_time_s = 0.75;
-  t.points = 2.5;
+  t.given.response = index % 3 == 0 ? "second" : "first";
+  t.given.correct = index % 3 != 0;
+  t.timing.onset_ns = 3'000'000'000 + 1'000'000'000LL * index;
+  t.timing.onset_s = 2.0 + index;
+  t.timing.duration_s = 3.5;
+  t.timing.response_time_s = 0.4375 + 0.001 * index;
+  t.timing.response_zero = "go_cue";
+  t.timing.response_time_quality = "simulated";
+  t.timing.deadline_s = 2.0;
+  t.learned.threshold_est = -10.0;
+  t.learned.threshold_sd = 1.5;
+  t.timing.clock_slope_ns_per_frame = 5208.333;
+  t.timing.clock_residual_ns = 42;
+  t.surface.proof = Proof::flagged;
+  t.surface.proof_cause = ProofCause::level;
+  t.surface.drive_ratio_dB = -0.75;
+  t.surface.drive_residual_dB = -55;
+  t.surface.onset_error_us = 12.5;
+  t.surface.silence_dB = -57.5;
+  t.surface.silence_tone_dB = -82.25;
+  t.given.confidence = 1 + index % 4;
+  t.given.confidence_time_s = 0.75;
+  t.given.points = 2.5;
   t.finger.sensing = "ok";
   t.finger.contact_s = 2.25;
   t.finger.strokes = 9;
@@ -159,7 +159,7 @@ inline TrialRow answered(int index, int tones = 2) {
   t.finger.tare_mN = -1.5;
   t.finger.mu = 0.625;
   t.signal_rows.push_back(finger_signal(index));
-  t.state_hash = 0xfedcba9876543210ULL + static_cast<unsigned>(index);
+  t.learned.state_hash = 0xfedcba9876543210ULL + static_cast<unsigned>(index);
   for (int i = 0; i < 2; ++i)
     for (int k = 0; k < tones; ++k) t.tones.push_back(tone(i, k));
   return t;
@@ -168,12 +168,12 @@ inline TrialRow answered(int index, int tones = 2) {
 inline TrialRow timeout(int index) {
   auto t = answered(index);
   t.outcome = Outcome::timeout;
-  t.response.reset();
-  t.correct.reset();
-  t.response_time_s.reset();
-  t.response_time_quality = "n/a";
-  t.confidence.reset();
-  t.confidence_time_s.reset();
+  t.given.response.reset();
+  t.given.correct.reset();
+  t.timing.response_time_s.reset();
+  t.timing.response_time_quality = "n/a";
+  t.given.confidence.reset();
+  t.given.confidence_time_s.reset();
   return t;
 }
 
@@ -181,7 +181,7 @@ inline TrialRow timeout(int index) {
 inline TrialRow failed(int index) {
   auto t = timeout(index);
   t.outcome = Outcome::fault;
-  t.points.reset();
+  t.given.points.reset();
   t.signal_rows.push_back(raw_signal(index));
   return t;
 }

@@ -38,11 +38,11 @@ TEST_CASE("a trial that was not answered has no answer, no score and no response
   const auto outcome = GENERATE(Outcome::timeout, Outcome::anticipation, Outcome::aborted, Outcome::fault);
   auto trial = sample::timeout(0);
   trial.outcome = outcome;
-  SECTION("an answer is refused") { trial.response = "first"; }
-  SECTION("a response time is refused") { trial.response_time_s = 0.3; }
-  SECTION("a movement time is refused") { trial.movement_time_s = 0.1; }
-  SECTION("a score is refused") { trial.correct = true; }
-  SECTION("a confidence is refused") { trial.confidence = 1, trial.confidence_time_s = 0.5; }
+  SECTION("an answer is refused") { trial.given.response = "first"; }
+  SECTION("a response time is refused") { trial.timing.response_time_s = 0.3; }
+  SECTION("a movement time is refused") { trial.timing.movement_time_s = 0.1; }
+  SECTION("a score is refused") { trial.given.correct = true; }
+  SECTION("a confidence is refused") { trial.given.confidence = 1, trial.given.confidence_time_s = 0.5; }
   const auto [fault, message] = sample::failure([&] { log.append(trial); });
   CHECK(fault == ErrorKind::refused);
   CHECK(sample::contains(message, "CHECK constraint failed"));
@@ -58,7 +58,7 @@ TEST_CASE("negative control: each outcome without an answer is accepted if the t
   for (const auto outcome : {Outcome::timeout, Outcome::anticipation, Outcome::aborted, Outcome::fault}) {
     auto trial = sample::timeout(index++);
     trial.outcome = outcome;
-    if (outcome == Outcome::aborted || outcome == Outcome::fault) trial.points.reset();
+    if (outcome == Outcome::aborted || outcome == Outcome::fault) trial.given.points.reset();
     log.append(trial);
   }
   CHECK(log.session().trials == 4);
@@ -70,7 +70,7 @@ TEST_CASE("a void trial is worth no points", "[store]") {
   log.begin_block(sample::block());
   auto trial = sample::failed(0);
   trial.outcome = GENERATE(Outcome::aborted, Outcome::fault);
-  trial.points = 1;
+  trial.given.points = 1;
   const auto [fault, message] = sample::failure([&] { log.append(trial); });
   CHECK(fault == ErrorKind::refused);
   CHECK(sample::contains(message, "points IS NULL"));
@@ -82,9 +82,9 @@ TEST_CASE("an answered trial must have a response time of 0 or more and a score 
   auto log = SessionLog::begin(folder / "a.sqlite", sample::start(), sample::segment());
   log.begin_block(sample::block());
   auto trial = sample::answered(1);
-  SECTION("no response time") { trial.response_time_s.reset(); }
-  SECTION("a negative response time") { trial.response_time_s = -0.016; }
-  SECTION("a score that contradicts the answer") { trial.correct = !*trial.correct; }
+  SECTION("no response time") { trial.timing.response_time_s.reset(); }
+  SECTION("a negative response time") { trial.timing.response_time_s = -0.016; }
+  SECTION("a score that contradicts the answer") { trial.given.correct = !*trial.given.correct; }
   SECTION("a score where nothing is right") { trial.correct_response.reset(); }
   CHECK(sample::failure([&] { log.append(trial); }).first == ErrorKind::refused);
 }

@@ -30,7 +30,7 @@ TEST_CASE("a resumed session has all its trials, a new segment, and the open tri
     const auto blocks = read_session(db, id).blocks;
     REQUIRE(blocks.size() == 1);
     REQUIRE(blocks[0].trials.size() == 4);
-    CHECK(blocks[0].trials[3].state_hash == sample::answered(3).state_hash);
+    CHECK(blocks[0].trials[3].learned.state_hash == sample::answered(3).learned.state_hash);
     CHECK(blocks[0].trials[3].factors == sample::answered(3).factors);
     log.begin_block(sample::block());
     log.presented(4, 88);

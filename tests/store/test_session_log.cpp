@@ -23,11 +23,11 @@ TEST_CASE("the database contains exactly what the session log was given", "[stor
   const auto expected = sample::answered(1);
   CHECK(trial.level == expected.level);
   CHECK(trial.factors == expected.factors);  // one factor is 0.1 + 0.2, which must be kept to the last bit
-  CHECK(trial.response == expected.response);
-  CHECK(trial.correct == expected.correct);
-  CHECK(trial.response_time_s == expected.response_time_s);
-  CHECK(trial.state_hash == expected.state_hash);
-  CHECK(trial.onset_ns == expected.onset_ns);
+  CHECK(trial.given.response == expected.given.response);
+  CHECK(trial.given.correct == expected.given.correct);
+  CHECK(trial.timing.response_time_s == expected.timing.response_time_s);
+  CHECK(trial.learned.state_hash == expected.learned.state_hash);
+  CHECK(trial.timing.onset_ns == expected.timing.onset_ns);
   REQUIRE(trial.tones.size() == 4);
   CHECK(trial.tones[3].frequency_Hz == expected.tones[3].frequency_Hz);
   CHECK(trial.tones[3].interval_index == 1);
@@ -137,10 +137,10 @@ TEST_CASE("a number that is not finite never becomes a missing value", "[store]"
   auto log = SessionLog::begin(db, sample::start(), sample::segment());
   log.begin_block(sample::block());
   auto trial = sample::answered(0);
-  trial.threshold_sd = std::numeric_limits<double>::quiet_NaN();
+  trial.learned.threshold_sd = std::numeric_limits<double>::quiet_NaN();
   CHECK(sample::failure([&] { log.append(trial); }).first == ErrorKind::refused);
   CHECK(sample::raw(db).integer("SELECT count(*) FROM trial") == 0);
-  trial.threshold_sd = std::nullopt;
+  trial.learned.threshold_sd = std::nullopt;
   log.append(trial);
   CHECK(sample::raw(db).integer("SELECT count(*) FROM trial WHERE threshold_sd IS NULL") == 1);
 }

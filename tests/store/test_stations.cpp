@@ -112,7 +112,7 @@ TEST_CASE("merging refuses contradictory rows, says which they are, and changes 
       auto log = SessionLog::resume(db, id, sample::segment("resume"));
       log.begin_block(sample::block());
       auto trial = sample::answered(4);
-      trial.onset_ns += db == a ? 1 : 2;
+      trial.timing.onset_ns += db == a ? 1 : 2;
       log.append(trial);
     }
     expected = "table trial, session_id " + id + ", trial_index 4: onset_ns is";

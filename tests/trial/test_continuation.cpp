@@ -79,9 +79,9 @@ Day run(const protocol::Protocol& protocol, int number, const procedure::Earlier
     } else {
       end.correct = i * i % 7 != 2;
       end.response = *end.correct ? *spec->correct : 1 - *spec->correct;
-      row.response = protocol.task.choices[static_cast<std::size_t>(*end.response)].id;
+      row.given.response = protocol.task.choices[static_cast<std::size_t>(*end.response)].id;
     }
-    row.outcome = end.outcome, row.correct = end.correct;
+    row.outcome = end.outcome, row.given.correct = end.correct;
     block.trials.push_back(row);
     director.record(end);
   }

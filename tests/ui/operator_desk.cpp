@@ -64,7 +64,7 @@ void OperatorDesk::tellLive(const QString& heading, const QString& language) {
   view::LiveState state;
   state.heading = heading.toStdString();
   view::LiveTrial scored, caught;
-  scored.correct = caught.correct = true;
+  scored.given.correct = caught.given.correct = true;
   caught.type = core::TrialType::catch_trial;
   state.course = view::course_of({scored, caught}, language.toStdString());
   live_.take(state);

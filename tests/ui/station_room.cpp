@@ -12,7 +12,9 @@
 #include <csignal>
 #include <fstream>
 
+#include "station/core/canonical.hpp"
 #include "station/core/number.hpp"
+#include "station/core/read_file.hpp"
 #include "station/maintenance/calibrate.hpp"
 #include "station/maintenance/panel_latency.hpp"
 #include "station/rig/apply.hpp"
@@ -192,6 +194,15 @@ void StationRoom::calibrate() {
   auto made = maintenance::calibrate(rig, measurements, 30, "");
   maintenance::keep_devices(rig, made);
   write(rig::file_for(rig.path, made.made_on), rig::to_toml(made));
+}
+
+QString StationRoom::shipped(const QString& protocol) const {
+  return QString::fromStdString(
+      core::read_file(TURNPOINT_SOURCE_DIR "/protocols/" + protocol.toStdString() + ".toml"));
+}
+
+QString StationRoom::canonical(const QString& text) const {
+  return QString::fromStdString(core::canonical(core::parse_toml(text.toStdString(), "")));
 }
 
 void StationRoom::addCells() {

@@ -74,6 +74,10 @@ class StationRoom : public QObject {
   /// today.
   Q_INVOKABLE void planSessions();
 
+  /// The text of a shipped protocol, and the canonical form of a protocol's text.
+  Q_INVOKABLE QString shipped(const QString& protocol) const;
+  Q_INVOKABLE QString canonical(const QString& text) const;
+
   /// Adds simulated pick-ups and force cells to the rig.
   Q_INVOKABLE void addCells();
   /// Makes the protocol guide the finger with bars and the pacer, during stimuli too. Needs cells.

@@ -3,6 +3,7 @@
 #include <QCoreApplication>
 #include <QEvent>
 #include <chrono>
+#include <thread>
 #include <vector>
 
 #include "tests/support/catch.hpp"
@@ -84,3 +85,38 @@ TEST_CASE("a result that waits is dropped with its job, and waits on if a finger
   page.handle(1);
   CHECK(page.received == std::vector{2});
 }
+
+#if defined(__x86_64__)
+namespace {
+
+/// Whether the upper halves of the vector registers count as used in this thread (XINUSE).
+bool upper_halves_used() {
+  unsigned low = 0, high = 0;
+  __asm__ volatile("xgetbv" : "=a"(low), "=d"(high) : "c"(1));
+  return (low & 4) != 0;
+}
+
+}  // namespace
+
+TEST_CASE("A job does not inherit upper halves of vector registers that the thread of the screen has used",
+          "[jobs]") {
+  unsigned a = 13, b = 0, c = 1, d = 0;  // does the processor tell?
+  __asm__ volatile("cpuid" : "+a"(a), "=b"(b), "+c"(c), "=d"(d));
+  if (!__builtin_cpu_supports("avx2") || (a & 4) == 0) return;
+  const auto use = [] { __asm__ volatile("vpcmpeqd %%ymm0, %%ymm0, %%ymm0" ::: "xmm0"); };
+  bool inherited = false;
+  use();
+  std::jthread([&inherited] { inherited = upper_halves_used(); }).join();
+  if (!inherited) return;  // the C library has cleared them before it began the thread
+  use();
+  Page page;
+  bool used = true;
+  page.job.start([&used](const std::stop_token&) -> std::function<void()> {
+    used = upper_halves_used();
+    return [] {};
+  });
+  page.handle(1);
+  __asm__ volatile("vzeroupper");
+  CHECK_FALSE(used);
+}
+#endif

@@ -2,85 +2,12 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// Tests the designer of studies in the whole program, operated by taps. `taps` counts the taps.
 Item {
-    id: stage
     width: 1280
     height: 800
 
-    PageTest {
+    DesignTest {
         name: "Design"
-        when: windowShown
-        property int taps: 0
-
-        function init() {
-            taps = 0
-            room.open("1234")
-        }
-        function cleanup() { room.close() }
-
-        function shown(name) { return find(room.screen, name) !== null }
-        function ready(name) {
-            const item = find(room.screen, name)
-            return item !== null && item.enabled && item.armed !== false
-        }
-        function appears(name) {
-            tryVerify(() => ready(name), 20000, name)
-            return find(room.screen, name)
-        }
-        /// Brings a control into view, as a person does with a finger, and returns it. Waits until it stands still
-        /// there, because new fields get their positions a moment after they appear.
-        function inView(name) {
-            let last = Qt.point(-1, -1)
-            tryVerify(() => {
-                if (!ready(name)) return false
-                const item = find(room.screen, name), scroll = find(room.screen, "formScroll")
-                let inside = item
-                while (inside && inside !== scroll) inside = inside.parent
-                const y = inside ? item.mapToItem(scroll.contentItem, 0, 0).y : 0
-                if (inside) scroll.contentY = Math.max(0, Math.min(y - 100, scroll.contentHeight - scroll.height))
-                const at = item.mapToItem(null, 0, 0), still = at.x === last.x && at.y === last.y && item.height > 0
-                last = at
-                return still && at.y < stage.height
-            }, 20000, name)
-            return find(room.screen, name)
-        }
-        function tap(name, across = 0.5) {
-            const item = inView(name)
-            mouseClick(item, across * item.width, Math.min(item.height / 2, 15))
-            ++taps
-        }
-        /// Returns the name of the item that shows a key, such as "stop.trials", of a table on the shown
-        /// page.
-        function field(key, table = 0) {
-            const groups = designPage().design.groups
-            const found = groups[table].fields.find(one => one.path.join(".") === key)
-            return "field" + table + "-" + found.index
-        }
-        function valueOf(key, table = 0) {
-            return designPage().design.groups[table].fields.find(one => one.path.join(".") === key).value
-        }
-        function designPage() { return appears("designPage") }
-        function tapField(key, table = 0) { tap(field(key, table), 0.8) }
-        function keys(text) { for (const letter of text) tap("letter" + letter) }
-        function type(text) {
-            keys(text)
-            tap("keepEntry")
-        }
-        function erase(count) { for (let i = 0; i < count; ++i) tap("erase") }
-        function begin(goal, name) {
-            tap("bar-studies")
-            tap("newStudy")
-            const goals = appears("goals")
-            tryVerify(() => {
-                goals.positionViewAtIndex(goals.model.findIndex(one => one.word === goal), GridView.Contain)
-                return ready("goal-" + goal)
-            }, 20000, goal)
-            tap("goal-" + goal)
-            type(name)
-            appears("section-timing")
-        }
-        function saved(name) { return room.startOf("protocols", name + ".toml", 100000) }
 
         function test_the_form_waits_while_a_finger_is_on_it() {
             begin("contrast", "pressed")
@@ -377,10 +304,9 @@ Item {
             const languages = ["en", "de"]
             tap("section-blocks")
             tap("add-explanation")
-            tap("lengthen" + place("explanation"))
-            tap("lengthen" + place("explanation"))
+            for (let page = 1; page < 3; ++page) tap(field("page", place("explanation")) + "-add")
             while (place("explanation") > 0) tap("earlier" + place("explanation"))
-            compare(groups()[0].belowCount, 3)
+            compare(valueOf("page", 0), "3")
             for (let page = 0; page < 3; ++page)
                 for (const language of languages) write("page." + page + ".text." + language, 0, "ab" + page)
             tap("add-questionnaire")
@@ -400,6 +326,116 @@ Item {
             tryVerify(() => place("questionnaire") === -1, 5000)
         }
 
+        function test_a_choice_is_taken_back_only_by_its_own_control() {
+            begin("response-signal", "c")
+            const before = designPage().design.text
+            tap("section-question")
+            tapField("kind")                           // more words than fit as buttons, so they are in a dialog
+            tap("suggestion-" + valueOf("kind"))
+            verify(!shown("fieldEntry"))
+            tap("section-blocks")
+            tap(field("practice") + "-true")
+            tap(field("practice") + "-true")
+            compare(designPage().design.text, before)
+            tap(field("practice") + "-unset")
+            verify(!designPage().design.text.includes("practice = true"))
+            tap("undo")
+            compare(designPage().design.text, before)
+        }
+        function test_a_request_that_is_not_possible_is_refused_and_the_text_stays() {
+            begin("contrast", "r")
+            const design = designPage().design
+            const text = 'format = "friction-protocol/1"\nfactor = [ { name = "x_dB", levels = [1, 2] } ]\n[protocol]\nid = "r"\n[block]\nname = "a"\n[task.choices]\nid = "x"\nlabel = "y"\n'
+            const refused = request => {
+                design.setText(text)
+                compare(design.trouble, "")
+                request()
+                verify(design.trouble !== "")
+                compare(design.text, text)
+            }
+            refused(() => design.add("factor"))
+            refused(() => design.add("block"))
+            tap("section-question")
+            const choices = groupsNow()[0].fields
+            const moved = choices.find(one => one.movable)
+            verify(moved)
+            refused(() => design.moveUp(0, moved.index))
+        }
+
+        function order() { return designPage().design.groups.map(group => group.kind + " " + group.name).join(", ") }
+        /// Where a name of the session's parts is in the text.
+        function placeOf(name) { return designPage().design.text.indexOf('name = "' + name + '"') }
+        function test_a_card_is_dragged_to_another_place_in_the_session() {
+            begin("response-signal", "d")
+            tap("section-blocks")
+            tap("add-consent")
+            tap("add-explanation")
+            compare(order(), "block practice, block main, consent consent-1, explanation explanation-1")
+            const cards = inView("cards"), scroll = find(room.screen, "formScroll")
+            scroll.contentY = 0
+            const before = designPage().design.text
+            // a tap, and a finger that trembles, drag nothing
+            const grip = find(cards, "grip3")
+            mousePress(grip, 10, 10)
+            mouseMove(grip, 10, 13)
+            mouseRelease(grip, 10, 13)
+            mouseClick(grip)
+            compare(designPage().design.text, before)
+            verify(!shown("placeMark"))
+            // released beside the list
+            mousePress(grip, 10, 10)
+            mouseMove(grip, 10, -50)
+            tryVerify(() => shown("placeMark"), 5000)
+            mouseMove(grip, -1000, -50)
+            mouseRelease(grip, -1000, -50)
+            compare(designPage().design.text, before)
+            verify(!shown("placeMark"))
+            // the last one to the beginning
+            mousePress(grip, 10, 10)
+            for (let y = 0; y >= -3.4 * cards.step; y -= 0.2 * cards.step) mouseMove(grip, 10, 10 + y - (grip.mapToItem(cards, 0, 0).y - 3 * cards.step))
+            tryVerify(() => shown("placeMark") && cards.place === 0, 5000)
+            compare(designPage().design.text, before)      // nothing changes before the finger is lifted
+            mouseRelease(grip, 10, 10)
+            compare(order(), "explanation explanation-1, block practice, block main, consent consent-1")
+            verify(placeOf("explanation-1") < placeOf("practice"))
+            verify(!shown("placeMark"))
+            tap("undo")
+            compare(designPage().design.text, before)
+            // one place down, with a finger
+            const first = find(cards, "grip0"), touch = touchEvent(first)
+            touch.press(1, first, 10, 10).commit()
+            for (let y = 5; y <= 1.4 * cards.step; y += 5) touch.move(1, first, 10, 10 + y - first.mapToItem(cards, 0, 0).y).commit()
+            touch.release(1, first, 10, 10).commit()
+            tryVerify(() => order() === "block main, block practice, consent consent-1, explanation explanation-1", 5000)
+            verify(placeOf("main") < placeOf("practice"))
+        }
+        function test_the_page_scrolls_while_a_card_is_held_at_its_edge() {
+            begin("response-signal", "d")
+            room.resize(800, 480)
+            tap("section-blocks")
+            for (let i = 0; i < 8; ++i) tap("add-consent")
+            const cards = find(room.screen, "cards"), scroll = find(room.screen, "formScroll")
+            wait(1000)                                 // the form restores its place after the last change
+            scroll.contentY = 0
+            wait(50)
+            verify(cards.height > scroll.height, cards.height)
+            const grip = find(cards, "grip0")
+            mousePress(grip, 10, 10)
+            const low = () => grip.mapFromItem(scroll, 0, scroll.height - 5).y
+            mouseMove(grip, 10, 40)
+            mouseMove(grip, 10, low())
+            tryVerify(() => scroll.contentY > 0, 5000)
+            tryVerify(() => cards.place === 10, 5000)
+            wait(300)                                  // longer than it takes to reach the last card
+            const top = cards.mapToItem(scroll.contentItem, 0, 0).y
+            verify(scroll.contentY <= top + cards.height + cards.step - scroll.height + 1, "no further than the cards")
+            const card = grip.mapToItem(scroll, 0, 0).y
+            verify(card >= 0 && card < scroll.height, "the lifted card is in view")
+            verify(cards.z > 0)
+            mouseRelease(grip, 10, low())
+            compare(designPage().design.groups[9].name, "practice")
+        }
+
         function test_every_section_of_the_form_can_be_read_on_a_small_panel_in_each_language() {
             begin("contrast", "a")
             room.resize(800, 480)
@@ -416,6 +452,26 @@ Item {
             }
         }
 
+        function test_no_key_and_no_choice_is_shown_as_it_is_in_the_file_data() {
+            return [{ tag: "contrast" }, { tag: "speed-accuracy" }, { tag: "empty" }]
+        }
+        function test_no_key_and_no_choice_is_shown_as_it_is_in_the_file(data) {
+            begin(data.tag, "w")
+            const form = find(room.screen, "formScroll")
+            for (const section of everySection) {
+                tap("section-" + section)
+                for (const more of all(form, item => /^more\d+$/.test(item.objectName)).map(item => item.objectName)) tap(more)
+                // names that the file gives, such as contrast_dB, end with a unit
+                const raw = text => /\b[a-z]+_[a-z]{3,}\b/.test(text)
+                compare(texts(form).filter(raw), [], section)
+                const fields = groupsNow().reduce((most, group) => most.concat(group.fields), [])
+                const words = said => typeof said === "string" ? said : said.key === "" ? said.values.map(words).join("") : ""
+                compare(fields.map(one => words(one.help)).filter(raw), [], section)
+                verify(fields.filter(one => words(one.help) !== "").length >= fields.length / 2)
+                for (const one of fields.filter(field => field.closed))
+                    for (const word of one.allowed) verify(designPage().design.word(one.key, word, "en") !== word, word)
+            }
+        }
         function test_a_screen_reader_finds_every_control_with_a_name() {
             begin("contrast", "a")
             for (const section of ["study", "question", "scenes", "levels", "blocks", "timing", "other"]) {

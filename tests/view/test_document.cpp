@@ -314,14 +314,33 @@ TEST_CASE("the innermost key at a place is found", "[document]") {
 
 TEST_CASE("two tables change places with their comments and the tables below them, and nothing else changes",
           "[document]") {
-  const std::string text = "# head\n\n# about x\n[[b]]\nname = \"x\"\n[b.s]\nw = 2\n\n[z]\n\n[[e]]\nname = \"y\" # why\n\n[[b]]\nname = \"c\"\n";
+  const std::string text =
+      "# head\n\n# about x\n[[b]]\nname = \"x\"\n[b.s]\nw = 2\n\n[z]\n\n[[e]]\nname = \"y\" # "
+      "why\n\n[[b]]\nname = \"c\"\n";
   const Document document(text, "f.toml");
   const auto moved = document.exchanged({"b", "0"}, {"e", "0"});
-  CHECK(moved == "# head\n\n[[e]]\nname = \"y\" # why\n\n[z]\n\n# about x\n[[b]]\nname = \"x\"\n[b.s]\nw = 2\n\n[[b]]\nname = \"c\"\n");
+  CHECK(moved ==
+        "# head\n\n[[e]]\nname = \"y\" # why\n\n[z]\n\n# about x\n[[b]]\nname = \"x\"\n[b.s]\nw = "
+        "2\n\n[[b]]\nname = \"c\"\n");
   CHECK(Document(moved, "f.toml").exchanged({"b", "0"}, {"e", "0"}) == text);
   CHECK(document.exchanged({"e", "0"}, {"b", "0"}) == moved);
   CHECK_THROWS_AS(document.exchanged({"b", "0"}, {"b", "7"}), std::logic_error);
   CHECK_THROWS_AS(document.exchanged({"b", "0"}, {"b", "0", "s"}), std::logic_error);
   CHECK(document.with_tables("[[n]]\nv = 1\n") == text + "\n[[n]]\nv = 1\n");
   CHECK(Document("a = 1", "").with_tables("[n]\n") == "a = 1\n\n[n]\n");
+}
+
+TEST_CASE("a key beside tables with headers below an item of a list is added to this item", "[document]") {
+  const std::string first = "[[p]]\nname = \"a\"\n[p.grid.x]\nv = [1]\n[p.grid.y]\nv = [2]\n";
+  const std::string second = "\n[[p]]\nname = \"b\"\n[p.grid.x]\nv = [3]\n";
+  const Document document(first + second, "f.toml");
+  const auto added = document.with({"p", "0", "grid", "z"}, "{}");
+  CHECK(added == first + "\n[p.grid]\nz = {}\n" + second);
+  const Document twice(added, "f.toml");
+  CHECK(twice.find({"p", "0", "grid", "z"}) != nullptr);
+  CHECK(twice.find({"p", "1", "0"}) == nullptr);
+  CHECK(Document(twice.with({"p", "0", "grid", "u"}, "1"), "").written({"p", "0", "grid", "u"}) == "1");
+  CHECK(Document(document.with({"p", "1", "grid", "z"}, "1"), "").written({"p", "1", "grid", "z"}) == "1");
+  // a new item of a list has no header that could be written
+  CHECK_THROWS_AS(document.with({"p", "2", "name"}, "1"), std::logic_error);
 }

@@ -6,8 +6,11 @@
 #include <set>
 #include <string>
 
+#include "station/core/canonical.hpp"
 #include "station/core/read_file.hpp"
+#include "station/core/texts.hpp"
 #include "station/protocol/protocol.hpp"
+#include "station/protocol/protocol_keys.hpp"
 #include "station/view/form.hpp"
 #include "station/view/goals.hpp"
 #include "tests/support/catch.hpp"
@@ -21,11 +24,6 @@ using view::Path;
 namespace {
 
 const std::string root = TURNPOINT_SOURCE_DIR;
-
-const view::Schema& schema() {
-  static const view::Schema schema(core::read_file(root + "/protocols/protocol.schema.json"));
-  return schema;
-}
 
 std::vector<std::string> shipped() {
   std::vector<std::string> files;
@@ -57,6 +55,15 @@ bool leads_to(const Path& start, const Path& path) {
 
 std::string question(const std::string& text) { return "v = " + text; }
 
+std::string said(const std::string& source) { return core::canonical(core::parse_toml(source, "")); }
+
+/// Whether a field is a value, and not a table with fields of its own.
+bool is_value(const Field& field) {
+  using Input = Field::Input;
+  return field.input != Input::table && field.input != Input::list && field.input != Input::entry &&
+         field.input != Input::name;
+}
+
 }  // namespace
 
 TEST_CASE("every value of every shipped protocol has exactly one field, which leaves the file as it is",
@@ -65,7 +72,7 @@ TEST_CASE("every value of every shipped protocol has exactly one field, which le
   for (const auto& file : shipped()) {
     INFO(file);
     const Document document(core::read_file(file), file);
-    const auto form = form_of(document, schema(), {});
+    const auto form = form_of(document, {});
     std::vector<Path> scalars;
     Path path;
     each_scalar(document.root(), path, scalars);
@@ -75,12 +82,14 @@ TEST_CASE("every value of every shipped protocol has exactly one field, which le
       int fields = 0;
       for (const auto& section : form)
         for (const auto& group : section.groups)
-          for (const auto& field : group.fields) fields += field.present && leads_to(field.path, scalar);
+          for (const auto& field : group.fields)
+            fields += is_value(field) && field.present && leads_to(field.path, scalar);
       CHECK(fields == 1);
     }
     for (const auto& section : form)
       for (const auto& group : section.groups)
         for (const auto& field : group.fields) {
+          if (!is_value(field)) continue;
           INFO(Catch::Detail::stringify(field.path));
           CHECK(view::changed(document, field, field.value) == document.text());
           // To the parser, the value that the form writes equals the value in the file.
@@ -96,22 +105,23 @@ TEST_CASE("every value of every shipped protocol has exactly one field, which le
   }
 }
 
-TEST_CASE("fields have the kind, words and limits of the schema, and the names that the file gives",
+TEST_CASE("fields have the kind, words and limits of the table of keys, and the names that the file gives",
           "[form]") {
   const auto file = root + "/protocols/friction-2ifc.toml";
   const Document document(core::read_file(file), file);
-  const auto form = form_of(document, schema(), {});
+  const auto form = form_of(document, {});
   const auto* kind = find(form, {"task", "kind"});
   REQUIRE(kind != nullptr);
   CHECK(kind->value == "2ifc");
   CHECK(std::count(kind->allowed.begin(), kind->allowed.end(), "oddity") == 1);
   const auto* intervals = find(form, {"task", "intervals"});
   CHECK(intervals->value == "reference, comparison");
-  CHECK(intervals->allowed == std::vector<std::string>{"reference", "comparison"});
+  CHECK(intervals->allowed == std::vector<std::string>{"reference", "comparison", "reference → comparison",
+                                                       "comparison → reference"});
   CHECK(find(form, {"task", "question", "de"})->value == "In welchem Durchgang war es glatter?");
   CHECK(find(form, {"task", "choices", "1", "label", "en"})->value == "Second");
   CHECK(find(form, {"scene", "reference", "zone", "from_mm"})->value == "60.0");
-  CHECK(find(form, {"scene", "comparison", "friction_contrast_dB"})->kind == view::Rule::Kind::expression);
+  CHECK(find(form, {"scene", "comparison", "friction_contrast_dB"})->input == Field::Input::expression);
   CHECK(find(form, {"timing", "iti_s", "uniform"})->value == "0.8, 1.2");
   CHECK(find(form, {"procedure", "0", "stop", "trials"})->value == "96");
   CHECK(find(form, {"block", "0", "levels"})->value == "-3.0, -5.0");
@@ -119,15 +129,58 @@ TEST_CASE("fields have the kind, words and limits of the schema, and the names t
   const auto* absent = find(form, {"block", "0", "pass", "accuracy"});
   REQUIRE(absent != nullptr);
   CHECK_FALSE(absent->present);
-  CHECK(absent->high == 1.0);
-  CHECK(find(form, {"scene", "reference", "base"})->help.starts_with("Scene from which"));
+  CHECK(absent->forms.front()->range.high == 1.0);
+  CHECK(find(form, {"scene", "reference", "base"})->key->help.starts_with("scene from which"));
+}
+
+namespace {
+
+/// Calls `see` with each key that a protocol can have, in every table and every form. Names that the user
+/// chooses have none.
+void each_key(const core::Keys& keys, const std::function<void(const core::Key&)>& see);
+void each_form(const core::Key& key, const std::function<void(const core::Key&)>& see) {
+  if (key.keys) each_key(*key.keys, see);
+  for (const auto& form : key.forms) each_form(form, see);
+}
+void each_key(const core::Keys& keys, const std::function<void(const core::Key&)>& see) {
+  for (const auto& key : keys.list) see(key), each_form(key, see);
+  if (keys.named) each_form(*keys.named, see);
+}
+
+void each_word(const core::Key& key, std::set<std::string>& words) {
+  words.insert(key.words.begin(), key.words.end());
+  for (const auto& form : key.forms) each_word(form, words);
+}
+
+}  // namespace
+
+TEST_CASE("every key of a protocol, and everything that can be chosen for it, has a word and a line of help",
+          "[form]") {
+  const auto& texts = core::catalogue("en");
+  int keys = 0, words = 0;
+  each_key(protocol::protocol_keys(), [&](const core::Key& key) {
+    INFO(key.name);
+    CHECK_FALSE(key.help.empty());
+    if (key.name == "format") return;  // the same in every file, so no page shows it
+    ++keys;
+    CHECK(texts.count("design.keys." + key.name) == 1);
+    std::set<std::string> chosen;
+    each_word(key, chosen);
+    for (const auto& word : chosen) {
+      INFO(word);
+      ++words;
+      CHECK(texts.count("design.words." + key.name + "." + word) == 1);
+    }
+  });
+  CHECK(keys > 200);
+  CHECK(words > 80);
 }
 
 TEST_CASE("what is typed into a field is what the reader of protocols reads", "[form]") {
   const auto file = root + "/protocols/friction-2ifc.toml";
   const auto type = [&](const std::string& source, const Path& path, const std::string& typed) {
     const Document document(source, file);
-    const auto form = form_of(document, schema(), {});
+    const auto form = form_of(document, {});
     const auto* field = find(form, path);
     REQUIRE(field != nullptr);
     return view::changed(document, *field, typed);
@@ -153,10 +206,69 @@ TEST_CASE("what is typed into a field is what the reader of protocols reads", "[
   CHECK_THROWS_AS(type(source, {"block", "0", "trials"}, "2.5"), core::BadInput);
   CHECK_THROWS_AS(type(source, {"block", "0", "levels"}, "1, two"), core::BadInput);
   CHECK_THROWS_AS(type(source, {"scene", "reference", "zone", "from_mm"}, "1\nx = 2"), core::BadInput);
-  // An empty text removes an optional key. A required key stays.
-  CHECK(type(type(source, {"block", "0", "pass", "retries"}, ""), {"block", "0", "pass", "accuracy"}, "")
-            .find("pass.") == std::string::npos);
+  // An empty text removes an optional key. A required key stays, until its table is removed.
+  source = type(type(source, {"block", "0", "pass", "retries"}, ""), {"block", "0", "pass", "accuracy"}, "");
+  CHECK(source.find("pass.accuracy") != std::string::npos);
+  const Document with_pass(source, file);
+  const auto form = form_of(with_pass, {});
+  source = view::reduced(with_pass, *find(form, {"block", "0", "pass"}));
+  CHECK(source.find("pass") == std::string::npos);
   CHECK(type(source, {"task", "kind"}, "") == source);
+}
+
+TEST_CASE("a decimal comma is refused where it would become two numbers", "[form]") {
+  const auto file = root + "/protocols/friction-2ifc.toml";
+  const Document document(core::read_file(file), file);
+  const auto form = form_of(document, {});
+  const auto* levels = find(form, {"block", "0", "levels"});
+  REQUIRE(levels != nullptr);
+  for (const char* typed : {"1,5", "0,5, 1", "-1,5 2"}) {
+    try {
+      view::changed(document, *levels, typed);
+      FAIL(typed);
+    } catch (const core::BadInput& bad) {
+      CHECK(core::say(bad.problems().front().allowed, "en").find("decimal point") != std::string::npos);
+    }
+  }
+  CHECK(view::encoded(*levels, "1, 5") == "[1, 5]");
+  CHECK(view::encoded(*levels, "1 5") == "[1, 5]");
+  CHECK(view::encoded(*levels, "1,-5") == "[1, -5]");
+}
+
+TEST_CASE("a text that looks like a number stays a text", "[form]") {
+  const std::string source =
+      "[[factor]]\nname = \"condition\"\nlevels = [\"1\", \"2\"]\n[[factor]]\nname = \"x_mm\"\nlevels = [1]\n"
+      "[[factor]]\nname = \"new\"\n[[factor]]\nname = \"wide\"\nlevels = [\"low, wide\", \"high\"]\n"
+      "[[procedure]]\nname = \"a\"\n[[questionnaire]]\nname = \"q\"\n[[questionnaire.item]]\nid = \"i\"\n"
+      "choices = [{ id = \"1\" }, { id = \"2\" }]\n[[questionnaire.item]]\nid = \"n\"\nnumber = {}\n";
+  const Document document(source, "f.toml");
+  const auto form = form_of(document, {});
+  const auto typed = [&](const Path& path, const std::string& text) {
+    const auto* field = find(form, path);
+    REQUIRE(field != nullptr);
+    return Document(view::changed(document, *field, text), "f.toml").written(path);
+  };
+  CHECK(typed({"factor", "0", "levels"}, "1, 2, 3") == "[\"1\", \"2\", \"3\"]");
+  CHECK(typed({"factor", "1", "levels"}, "1, 2") == "[1, 2]");
+  CHECK(typed({"factor", "2", "levels"}, "1, 2") == "[1, 2]");
+  CHECK(typed({"procedure", "0", "with", "condition"}, "1") == "\"1\"");
+  CHECK(typed({"procedure", "0", "with", "x_mm"}, "1") == "1");
+  CHECK(typed({"questionnaire", "0", "item", "0", "simulated"}, "2") == "\"2\"");
+  CHECK(typed({"questionnaire", "0", "item", "1", "simulated"}, "2") == "2");
+  // a list with a text that has a comma is shown and typed as it is written
+  CHECK(find(form, {"factor", "3", "levels"})->value == "[\"low, wide\", \"high\"]");
+}
+
+TEST_CASE("a key of a copy, or of a scene with a base, has no default of its own", "[form]") {
+  const Document document(
+      "[scene.a]\n[scene.b]\nbase = \"a\"\n[[procedure]]\nname = \"p\"\nkind = \"staircase\"\n[[procedure]]\n"
+      "name = \"q\"\ncopy = \"p\"\n",
+      "f.toml");
+  const auto form = form_of(document, {});
+  CHECK_FALSE(find(form, {"scene", "a", "ramp_ms"})->inherited);
+  CHECK(find(form, {"scene", "b", "ramp_ms"})->inherited);
+  CHECK_FALSE(find(form, {"procedure", "0", "discard_reversals"})->inherited);
+  CHECK(find(form, {"procedure", "1", "discard_reversals"})->inherited);
 }
 
 TEST_CASE("every problem of a check stands at its field", "[form]") {
@@ -179,7 +291,7 @@ TEST_CASE("every problem of a check stands at its field", "[form]") {
     problems = bad.problems();
   }
   REQUIRE(problems.size() >= 5);
-  const auto form = form_of(Document(source, file), schema(), problems);
+  const auto form = form_of(Document(source, file), problems);
   for (const Path& path : {Path{"task", "device"}, Path{"task", "gap_s"}, Path{"timing", "deadline_s"},
                            Path{"block", "1", "procedures"}}) {
     INFO(Catch::Detail::stringify(path));
@@ -212,16 +324,17 @@ TEST_CASE("every goal leads to a shipped protocol, which becomes a study of its 
   CHECK(view::find_goal("nothing") == nullptr);
 }
 
-TEST_CASE("each kind of interlude can be added to each shipped protocol, filled, moved and removed", "[form]") {
+TEST_CASE("each kind of interlude can be added to each shipped protocol, filled, moved and removed",
+          "[form]") {
   for (const auto& file : shipped()) {
     const Document document(core::read_file(file), file);
     const auto parts_of = [](const Document& of) {
-      for (auto& section : form_of(of, schema(), {}))
+      for (auto& section : form_of(of, {}))
         if (section.name == "blocks") return section.groups;
       return std::vector<view::Group>();
     };
     const auto before = parts_of(document);
-    for (const std::string kind : view::kAddedTables) {
+    for (const std::string kind : {"consent", "explanation", "questionnaire", "screening"}) {
       INFO(file << ", " << kind);
       Document added(document.with_tables(view::new_table(document, kind)), file);
       auto parts = parts_of(added);
@@ -232,11 +345,19 @@ TEST_CASE("each kind of interlude can be added to each shipped protocol, filled,
       const auto name = parts.back().name;
       CHECK(parts.back().removable);
       if (kind != "screening") CHECK_NOTHROW(protocol::parse(added.text(), file));
-      if (!parts.back().below.empty()) {
-        const Document longer(view::with_one_more(added, parts.back()), file);
-        CHECK(parts_of(longer).back().below_count == 2);
+      for (const auto& list : parts.back().fields) {
+        if (list.input != Field::Input::list || list.path.size() != 3 || list.value == "0") continue;
+        const Document longer(view::extended(added, list), file);
         CHECK_NOTHROW(protocol::parse(longer.text(), file));
-        CHECK(parts_of(Document(view::with_one_less(longer, parts_of(longer).back()), file)).back().below_count == 1);
+        auto last = list.path;
+        last.push_back("1");
+        const auto form = form_of(longer, {});
+        const auto* second = find(form, last);
+        REQUIRE(second != nullptr);
+        CHECK(longer.find({last[0], last[1], last[2], "2"}) == nullptr);
+        const Document moved(view::moved_up(longer, *second), file);
+        CHECK(moved.find(last) != nullptr);
+        CHECK(said(view::reduced(longer, *second)) == said(added.text()));
       }
       // to the beginning of the session, and out of it
       for (bool moves = true; moves;) {

@@ -26,8 +26,8 @@ view::LiveTrial answered(bool correct, double response_time_s) {
   view::LiveTrial trial;
   trial.procedure = "levels";
   trial.level = 4;
-  trial.correct = correct;
-  trial.response_time_s = response_time_s;
+  trial.given.correct = correct;
+  trial.timing.response_time_s = response_time_s;
   return trial;
 }
 
@@ -61,8 +61,8 @@ std::vector<std::string> drives_shown(const view::LiveState& state) {
 TEST_CASE("the progress of a session counts scored trials, and timeouts have no response time",
           "[operator]") {
   auto late = answered(false, 0);
-  late.correct.reset();
-  late.response_time_s.reset();
+  late.given.correct.reset();
+  late.timing.response_time_s.reset();
   late.outcome = core::Outcome::timeout;
   auto caught = answered(true, 3);
   caught.type = core::TrialType::catch_trial;
@@ -80,9 +80,9 @@ TEST_CASE("the progress of a session shows each procedure's latest estimate with
           "[operator]") {
   auto first = answered(true, 1), second = answered(true, 1), other = answered(true, 1),
        none = answered(true, 1);
-  first.threshold_est = 7, first.threshold_sd = 3;
-  second.threshold_est = -1.5, second.threshold_sd = 0.5;
-  other.procedure = "ramp", other.threshold_est = 2;
+  first.learned.threshold_est = 7, first.learned.threshold_sd = 3;
+  second.learned.threshold_est = -1.5, second.learned.threshold_sd = 0.5;
+  other.procedure = "ramp", other.learned.threshold_est = 2;
   const auto facts = view::course_of({first, second, other, none});
   CHECK(value_of(facts, "Estimate, levels") == "-1.5 (95 %: -2.48 to -0.52)");  // 1.96 SD = 0.98
   CHECK(value_of(facts, "Estimate, ramp") == "2");
@@ -96,14 +96,14 @@ TEST_CASE("the progress of a session shows what the pick-up measured in the last
     return value_of(view::course_of(trials, language), label);
   };
   CHECK(shown("en") == "not measured");
-  trials.back().proof = core::Proof::refused;
-  trials.back().proof_cause = core::ProofCause::dead;
+  trials.back().surface.proof = core::Proof::refused;
+  trials.back().surface.proof_cause = core::ProofCause::dead;
   CHECK(shown("en") == "too far off: the trial is repeated; the surface does not move");
   CHECK(shown("de") == "zu weit daneben: der Durchgang wird wiederholt; die Oberfläche bewegt sich nicht");
   for (const char* language : {"en", "de", "es", "ja", "zh", "ar"})
     for (const auto verdict : core::proofs)
       for (const auto cause : core::proof_causes) {
-        trials.back().proof = verdict, trials.back().proof_cause = cause;
+        trials.back().surface.proof = verdict, trials.back().surface.proof_cause = cause;
         CHECK_FALSE(shown(language).empty());
       }
 }
@@ -113,9 +113,9 @@ TEST_CASE("the used part of the limits is computed from the last minute", "[oper
   rig.limits.displacement_m = 8e-6;
   std::vector<view::LiveTrial> trials(3, answered(true, 1));
   for (int i = 0; i < 3; ++i) {
-    trials[static_cast<std::size_t>(i)].onset_s = 60.0 * i;
+    trials[static_cast<std::size_t>(i)].timing.onset_s = 60.0 * i;
     trials[static_cast<std::size_t>(i)].stimulus_s = 15;
-    trials[static_cast<std::size_t>(i)].ended_s = 60.0 * i + 20;
+    trials[static_cast<std::size_t>(i)].timing.duration_s = 20;
   }
   const auto facts = view::limits_used(trials, 2e-6, rig);
   CHECK(value_of(facts, "Displacement") == "2 of 8 \u00b5m (25 %)");

@@ -200,7 +200,7 @@ TEST_CASE("the report on the screen has the finger's forces and friction, if for
 
 TEST_CASE("the view of a running session is in the language of the operator", "[operator]") {
   view::LiveTrial trial;
-  trial.procedure = "levels", trial.level = 2, trial.correct = true, trial.response_time_s = 1.5;
+  trial.procedure = "levels", trial.level = 2, trial.given.correct = true, trial.timing.response_time_s = 1.5;
   const auto facts = view::course_of({trial}, "de");
   CHECK(value_of(facts, "Richtig") == "1 von 1 (100 %)");
   CHECK(value_of(facts, "Reaktionszeit") == "Median 1.5 s, letzte 1.5 s");

@@ -93,6 +93,17 @@ Rectangle {
                 texts: root.texts
                 design: root.design
             }
+            DesignCards {
+                objectName: "cards"
+                visible: parts.length > 0
+                width: sheet.width
+                theme: root.theme
+                texts: root.texts
+                design: root.design
+                parts: root.design.sections[root.design.section]?.name === "blocks" ? tables.model ?? [] : []
+                view: scroll
+                onChosen: group => root.point(group, -1)
+            }
             Repeater {
                 id: tables
                 Column {
@@ -126,7 +137,7 @@ Rectangle {
                             objectName: "title" + table.index
                             anchors.left: parent.left
                             y: head.beside ? Math.round((head.height - height) / 2) : 0
-                            width: head.beside ? head.width - head.natural : head.width
+                            width: head.beside ? head.width - head.natural - root.theme.unit : head.width
                             text: root.design.label([table.modelData.kind], root.texts.language) + (table.modelData.name === "" ? "" : "  “" + table.modelData.name + "”")
                             color: root.theme.action
                             font { pixelSize: root.theme.textTitle; weight: Font.Bold }
@@ -214,36 +225,18 @@ Rectangle {
                         DesignField {
                             required property var modelData
                             objectName: "field" + table.index + "-" + modelData.index
-                            width: table.width
+                            x: Math.min(modelData.indent, 4) * root.theme.unit * (root.texts.mirrored ? 0 : 1)
+                            width: table.width - Math.min(modelData.indent, 4) * root.theme.unit
                             theme: root.theme
                             texts: root.texts
-                            label: root.design.label(modelData.path, root.texts.language)
+                            design: root.design
                             field: modelData
                             pointedAt: root.pointed !== null && root.pointed.group === table.index && root.pointed.field === modelData.index
                             onEditWanted: root.editWanted(table.index, modelData)
                             onPicked: word => root.design.change(table.index, modelData.index, word)
-                        }
-                    }
-                    Row {
-                        visible: table.modelData.below !== ""
-                        spacing: Math.round(0.5 * root.theme.unit)
-                        ActionButton {
-                            objectName: "lengthen" + table.index
-                            theme: root.theme
-                            primary: false
-                            glyph: "plus"
-                            text: root.texts.text(table.modelData.below === "page" ? "design.add_page" : "design.add_item")
-                            onActivated: root.design.lengthen(table.index)
-                        }
-                        ActionButton {
-                            objectName: "shorten" + table.index
-                            theme: root.theme
-                            primary: false
-                            quiet: true
-                            enabled: table.modelData.belowCount > 1
-                            glyph: "minus"
-                            text: root.texts.text(table.modelData.below === "page" ? "design.remove_page" : "design.remove_item")
-                            onActivated: root.design.shorten(table.index)
+                            onExtended: root.design.extend(table.index, modelData.index)
+                            onReduced: root.design.reduce(table.index, modelData.index)
+                            onMovedUp: root.design.moveUp(table.index, modelData.index)
                         }
                     }
                     ActionButton {
@@ -259,11 +252,10 @@ Rectangle {
                 }
             }
             Flow {
-                visible: root.design.sections[root.design.section]?.name === "blocks"
                 width: sheet.width
                 spacing: Math.round(0.5 * root.theme.unit)
                 Repeater {
-                    model: ["consent", "explanation", "questionnaire", "screening"]
+                    model: root.design.sections[root.design.section]?.added ?? []
                     ActionButton {
                         required property string modelData
                         objectName: "add-" + modelData
@@ -271,6 +263,7 @@ Rectangle {
                         primary: false
                         glyph: "plus"
                         text: root.design.label([modelData], root.texts.language)
+                        label: root.texts.fill("design.add_named", text)
                         onActivated: root.design.add(modelData)
                     }
                 }

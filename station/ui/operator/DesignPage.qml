@@ -155,7 +155,8 @@ Rectangle {
             onEditWanted: (group, field) => {
                 root.edited = { group: group, field: field }
                 entry.refused = ""
-                entry.open(field.value)
+                // a word of the file is not typed, but chosen
+                entry.open(field.kind === "expression" && field.allowed.includes(field.value) && entry.says(field.value) !== field.value ? "" : field.value)
             }
             onCopyWanted: group => {
                 root.edited = { group: group }
@@ -235,16 +236,21 @@ Rectangle {
         objectName: "fieldEntry"
         anchors.fill: parent
         theme: look
-        title: root.edited?.field ? root.design.label(root.edited.field.path, texts.language) : ""
-        help: root.edited?.field?.help ?? ""
-        suggestions: root.edited?.field?.allowed ?? []
-        pick: suggestions.length > 0 && !list && root.edited.field.kind !== "expression"
-        list: root.edited?.field?.list ?? false
-        numbers: ["number", "integer"].includes(root.edited?.field?.kind)
+        readonly property var field: root.edited?.field ?? null
+        title: field === null ? "" : field.kind === "entry" ? texts.text("design.add_entry") : root.design.label(field.title, texts.language)
+        help: texts.say(field?.help ?? "")
+        suggestions: field?.allowed ?? []
+        says: word => root.design.word(field?.key ?? "", word, texts.language)
+        pick: suggestions.length > 0 && field.kind === "word"
+        list: field?.list ?? false
+        closed: field?.closed ?? false
+        numbers: field?.kind === "number"
         sentences: !numbers
+        lines: field?.kind === "text"
         emptyAllowed: root.edited?.field ? !root.edited.field.required : false
         keepText: texts.text("design.use")
         cancelText: texts.text("operator.cancel")
+        unsetText: texts.text("design.not_set")
         onAccepted: text => {
             if (root.design.change(root.edited.group, root.edited.field.index, text)) return
             entry.refused = root.trouble()

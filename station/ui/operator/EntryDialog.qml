@@ -9,12 +9,20 @@ Rectangle {
     property string title
     property string keepText
     property string cancelText
+    /// With `pick`: the text of a button that takes the choice back; "" without one.
+    property string unsetText
     property var suggestions: []
     property bool emptyAllowed: false
     property bool pick: false
     property bool list: false
+    /// True if nothing but the suggestions can be chosen.
+    property bool closed: false
+    /// How a suggestion is said on the page.
+    property var says: word => word
     /// True if sentences are typed. The keyboard then has capitals and more signs.
     property bool sentences: false
+    /// True if the text may have several lines. In the line that is typed, a line break looks like a space.
+    property bool lines: false
     /// True if a number is typed, or several. The keyboard then has nothing else.
     property bool numbers: false
     /// An explanation of what to type, and the reason why the last text was refused.
@@ -39,7 +47,8 @@ Rectangle {
         typed(told)
     }
     function choose(word: string) {
-        if (pick) {
+        if (pick || (!list && says(word) !== word)) {
+            if (pick && entry.text === word) return cancel()
             entry.text = word
             keep()
         } else if (list) {
@@ -89,7 +98,7 @@ Rectangle {
             radius: root.theme.radius
             color: root.theme.raised
             border { color: root.theme.action; width: root.theme.stroke }
-            visible: !root.pick
+            visible: !root.pick && !(root.list && root.closed)
             TextInput {
                 id: entry
                 objectName: "entry"
@@ -116,6 +125,17 @@ Rectangle {
                 onActivated: root.keep()
             }
             ActionButton {
+                objectName: "unsetEntry"
+                visible: root.pick && root.emptyAllowed && root.unsetText !== "" && entry.text !== ""
+                theme: root.theme
+                primary: false
+                text: root.unsetText
+                onActivated: {
+                    entry.text = ""
+                    root.keep()
+                }
+            }
+            ActionButton {
                 objectName: "cancelEntry"
                 theme: root.theme
                 primary: false
@@ -139,6 +159,7 @@ Rectangle {
             ScreenKeyboard {
                 visible: !root.pick && !(root.list && root.suggestions.length > 0)
                 full: root.sentences
+                lines: root.lines
                 numbers: root.numbers
                 width: parent.width
                 theme: root.theme
@@ -166,7 +187,7 @@ Rectangle {
                         primary: chosen
                         quiet: !chosen
                         glyph: chosen ? "tick" : ""
-                        text: modelData
+                        text: root.says(modelData)
                         onActivated: root.choose(modelData)
                     }
                 }

@@ -74,14 +74,18 @@ void DesignController::close() {
 }
 
 bool DesignController::make(const QString& goal, const QString& name) try {
+  const bool empty = goal == "empty";
   const auto* chosen = view::find_goal(goal.toStdString());
-  if (chosen == nullptr) return false;
+  if (chosen == nullptr && !empty) return false;
   if (!is_name(name)) return refuse(core::plain("name"));
   const auto path = path_for(name.toStdString());
   if (QFileInfo::exists(QString::fromStdString(path))) return refuse(core::plain("taken"));
-  const auto source = core::read_file(place_.templates + "/" + chosen->file + ".toml");
+  auto source =
+      empty ? view::empty_study(name.toStdString())
+            : view::study_from(*chosen, core::read_file(place_.templates + "/" + chosen->file + ".toml"),
+                               name.toStdString());
   saved_.clear(), old_version_.clear();
-  begin(view::study_from(*chosen, source, name.toStdString()), path);
+  begin(std::move(source), path);
   return true;
 } catch (const std::exception& error) {
   return refuse(phrases_of(error).front());
@@ -101,7 +105,6 @@ bool DesignController::open(const QString& path) try {
 }
 
 void DesignController::begin(std::string text, const std::string& path) {
-  if (!schema_) schema_.emplace(core::read_file(place_.templates + "/protocol.schema.json"));
   if (!rig_) {
     rig_ = rig_without_messages(place_.rig);
     surface_ = {rig::outline_of(*rig_)};
@@ -158,7 +161,7 @@ void DesignController::make_form() {
   }
   std::vector<core::Problem> problems;
   for (const auto& remark : remarks_) problems.push_back(remark.problem);
-  form_ = view::form_of(*draft_->document(), *schema_, problems);
+  form_ = view::form_of(*draft_->document(), problems);
 }
 
 void DesignController::start_check() {
@@ -219,6 +222,12 @@ const view::Group* DesignController::group(int index) const {
                                                                : nullptr;
 }
 
+const view::Field* DesignController::field(int index, int of) const {
+  const auto* in = group(index);
+  const bool has = in != nullptr && of >= 0 && of < static_cast<int>(in->fields.size());
+  return has ? &in->fields[static_cast<std::size_t>(of)] : nullptr;
+}
+
 void DesignController::touch(bool touched) {
   touched_ = touched;
   check_job_.hold(touched);
@@ -251,66 +260,91 @@ bool DesignController::goTo(int remark) {
   return false;
 }
 
-bool DesignController::change(int index, int field, const QString& typed) try {
-  const auto* in = group(index);
-  if (in == nullptr || field < 0 || field >= static_cast<int>(in->fields.size())) return false;
-  take_change(
-      view::changed(*draft_->document(), in->fields[static_cast<std::size_t>(field)], typed.toStdString()));
+bool DesignController::guarded(const std::function<void()>& action) try {
+  action();
   return true;
 } catch (const core::BadInput& bad) {
   return refuse(reason(bad));
+} catch (const std::exception& error) {
+  return refuse(core::phrase_of(error));
 }
 
-bool DesignController::copy(int index, const QString& name) try {
+bool DesignController::edit(const std::function<std::string()>& make) {
+  return draft_ && guarded([&] { take_change(make()); });
+}
+
+bool DesignController::change(int index, int of, const QString& typed) {
+  const auto* changed = field(index, of);
+  if (changed == nullptr) return false;
+  if (changed->input == view::Field::Input::name && !is_name(typed)) return refuse(core::plain("name"));
+  return edit([&] { return view::changed(*draft_->document(), *changed, typed.toStdString()); });
+}
+
+bool DesignController::copy(int index, const QString& name) {
   const auto* from = group(index);
   if (from == nullptr) return false;
   if (!is_name(name)) return refuse(core::plain("name"));
-  take_change(draft_->document()->with_copy(from->path, name.toStdString()));
-  return true;
-} catch (const core::BadInput& bad) {
-  return refuse(reason(bad));
+  return edit([&] { return draft_->document()->with_copy(from->path, name.toStdString()); });
 }
 
 void DesignController::remove(int index) {
-  if (const auto* gone = group(index); gone != nullptr) take_change(draft_->document()->without(gone->path));
+  if (const auto* gone = group(index); gone != nullptr)
+    edit([&] { return draft_->document()->without(gone->path); });
 }
 
 void DesignController::add(const QString& kind) {
-  if (draft_ && draft_->document() != nullptr)
-    take_change(draft_->document()->with_tables(view::new_table(*draft_->document(), kind.toStdString())));
+  if (!draft_ || draft_->document() == nullptr) return;
+  edit([&] {
+    return draft_->document()->with_tables(view::new_table(*draft_->document(), kind.toStdString()));
+  });
 }
 
 void DesignController::move(int index, bool earlier) {
   const auto* moved = group(index);
   if (moved == nullptr) return;
   const auto& other = earlier ? moved->earlier : moved->later;
-  if (!other.empty()) take_change(draft_->document()->exchanged(moved->path, other));
+  if (!other.empty()) edit([&] { return draft_->document()->exchanged(moved->path, other); });
 }
 
-void DesignController::lengthen(int index) {
-  if (const auto* longer = group(index); longer != nullptr && !longer->below.empty())
-    take_change(view::with_one_more(*draft_->document(), *longer));
+void DesignController::place(int index, int to) {
+  if (group(index) == nullptr || group(to) == nullptr || index == to) return;
+  edit([&] {
+    return view::with_part_at(*draft_->document(), static_cast<std::size_t>(index),
+                              static_cast<std::size_t>(to));
+  });
 }
 
-void DesignController::shorten(int index) {
-  if (const auto* shorter = group(index); shorter != nullptr && !shorter->below.empty())
-    take_change(view::with_one_less(*draft_->document(), *shorter));
+void DesignController::extend(int index, int of) {
+  if (const auto* longer = field(index, of))
+    edit([&] { return view::extended(*draft_->document(), *longer); });
+}
+
+void DesignController::reduce(int index, int of) {
+  if (const auto* gone = field(index, of)) edit([&] { return view::reduced(*draft_->document(), *gone); });
+}
+
+void DesignController::moveUp(int index, int of) {
+  if (const auto* moved = field(index, of)) edit([&] { return view::moved_up(*draft_->document(), *moved); });
 }
 
 void DesignController::undo() {
   if (!can_undo()) return;
-  draft_->undo();
-  read_again();
+  guarded([this] {
+    draft_->undo();
+    read_again();
+  });
 }
 
 void DesignController::redo() {
   if (!can_redo()) return;
-  draft_->redo();
-  read_again();
+  guarded([this] {
+    draft_->redo();
+    read_again();
+  });
 }
 
 void DesignController::setText(const QString& text) {
-  if (draft_) take_change(text.toStdString());
+  edit([&] { return text.toStdString(); });
 }
 
 }  // namespace turnpoint::ui

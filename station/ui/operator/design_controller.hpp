@@ -4,6 +4,7 @@
 #include <QStringList>
 #include <QVariantList>
 #include <QVariantMap>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,7 +28,7 @@ namespace turnpoint::ui {
 struct DesignPlace {
   std::string folder;     ///< where new studies are saved
   std::string rig;        ///< the rig on which a study is checked
-  std::string templates;  ///< folder with the shipped protocols and their schema
+  std::string templates;  ///< folder with the shipped protocols
 };
 
 /// A protocol file that somebody makes or changes in forms. Each change is made in the text of the file,
@@ -42,7 +43,7 @@ class DesignController : public QObject {
   Q_PROPERTY(QString name READ name NOTIFY changed)
   /// a name for a new study, from the command line
   Q_PROPERTY(QString suggested READ suggested NOTIFY changed)
-  /// pages of the form as {name, problems}
+  /// pages of the form as {name, problems, added (kinds of tables that can be added there)}
   Q_PROPERTY(QVariantList sections READ sections NOTIFY changed)
   Q_PROPERTY(int section READ section NOTIFY changed)
   /// tables of the chosen page, with their fields; see group_of() in design_lists.cpp
@@ -132,13 +133,18 @@ class DesignController : public QObject {
   Q_INVOKABLE bool change(int group, int field, const QString& typed);
   Q_INVOKABLE bool copy(int group, const QString& name);
   Q_INVOKABLE void remove(int group);
-  /// Adds a consent, an explanation, a questionnaire or a screening at the end of the session.
+  /// Adds a table of one of the kinds of the chosen page at the end of the file, such as a block at the end
+  /// of the session.
   Q_INVOKABLE void add(const QString& kind);
   /// Lets a part of the session change places with the one before it, or after it.
   Q_INVOKABLE void move(int group, bool earlier);
-  /// Adds a page or an item at the end of an explanation or a questionnaire, or removes the last one.
-  Q_INVOKABLE void lengthen(int group);
-  Q_INVOKABLE void shorten(int group);
+  /// Brings a part of the session to the place of another one.
+  Q_INVOKABLE void place(int group, int to);
+  /// For a field that is a table or a list of tables: adds the table, or one more at the end of the list;
+  /// removes the table; lets it change places with the one before it.
+  Q_INVOKABLE void extend(int group, int field);
+  Q_INVOKABLE void reduce(int group, int field);
+  Q_INVOKABLE void moveUp(int group, int field);
   Q_INVOKABLE void undo();
   Q_INVOKABLE void redo();
   Q_INVOKABLE void setText(const QString& text);
@@ -158,6 +164,8 @@ class DesignController : public QObject {
 
   /// Returns the label for a key of the file, such as "Zone · from (mm)".
   Q_INVOKABLE static QString label(const QStringList& path, const QString& language);
+  /// Returns how a value of a key is said, such as "Two intervals" for "2ifc".
+  Q_INVOKABLE static QString word(const QString& key, const QString& value, const QString& language);
 
  Q_SIGNALS:
   void changed();
@@ -174,6 +182,11 @@ class DesignController : public QObject {
   };
   void begin(std::string text, const std::string& path);
   void take_change(std::string text);
+  /// Does what QML asks for. An exception, which would end the program in QML, becomes `trouble`; the result
+  /// is false then.
+  bool guarded(const std::function<void()>& action);
+  /// Changes the draft to the text that `make` returns. If `make` throws, the draft stays as it was.
+  bool edit(const std::function<std::string()>& make);
   void read_again();
   void start_check();
   void start_profiles();
@@ -187,10 +200,10 @@ class DesignController : public QObject {
   void raise_version();
   std::string path_for(const std::string& name) const;
   const view::Group* group(int index) const;
+  const view::Field* field(int group, int index) const;
 
   DesignPlace place_;
   SourceChecker checker_;
-  std::optional<view::Schema> schema_;
   std::optional<view::Draft> draft_;
   std::string name_, path_, saved_;
   std::optional<rig::Rig> rig_;

@@ -6,6 +6,7 @@
 #include "station/ui/operator/design_controller.hpp"
 #include "station/ui/operator/design_lists.hpp"
 #include "station/ui/operator/facts.hpp"
+#include "station/ui/shared/operator_screen.hpp"
 #include "station/view/goals.hpp"
 
 namespace turnpoint::ui {
@@ -15,6 +16,8 @@ QVariantList DesignController::goals(const QString& language) {
   for (const auto& goal : view::goals())
     list += QVariantMap{{"word", goal.word},
                         {"says", QString::fromStdString(view::describe(goal, language.toStdString()))}};
+  list += QVariantMap{{"word", "empty"},
+                      {"says", QString::fromStdString(core::text("design.empty", language.toStdString()))}};
   return list;
 }
 
@@ -33,6 +36,15 @@ QString DesignController::label(const QStringList& path, const QString& language
   return all;
 }
 
+QString DesignController::word(const QString& key, const QString& value, const QString& language) {
+  if (key == "languages") return own_name(value.toStdString());
+  const bool yes = value == "true", no = value == "false";
+  const auto text = yes || no ? std::string(yes ? "design.yes" : "design.no") : word_key(key, value);
+  return core::catalogue("en").count(text) > 0
+             ? QString::fromStdString(core::text(text, language.toStdString()))
+             : value;
+}
+
 QVariantList DesignController::sections() const {
   QVariantList list;
   for (const auto& section : form_) {
@@ -44,8 +56,9 @@ QVariantList DesignController::sections() const {
     }
     const auto problems = std::count_if(all.begin(), all.end(),
                                         [this](std::size_t i) { return remarks_[i].kind == Kind::problem; });
-    list +=
-        QVariantMap{{"name", QString::fromStdString(section.name)}, {"problems", static_cast<int>(problems)}};
+    list += QVariantMap{{"name", QString::fromStdString(section.name)},
+                        {"problems", static_cast<int>(problems)},
+                        {"added", to_list(section.added)}};
   }
   return list;
 }

@@ -7,6 +7,7 @@
 #include "station/core/texts.hpp"
 #include "station/session/prepare.hpp"
 #include "station/ui/operator/facts.hpp"
+#include "station/ui/platform/vector_state.hpp"
 #include "station/view/scene_figures.hpp"
 
 namespace turnpoint::ui {
@@ -90,6 +91,7 @@ void PreviewController::plan() {
 }
 
 void PreviewController::work(const std::stop_token& stop) {
+  clear_upper_halves();
   for (;;) {
     Wanted wanted;
     {

@@ -66,8 +66,9 @@ Item {
         readonly property real least: places.visible ? 10 * root.theme.unit : root.page.hasMark && !root.counted ? 7 * root.theme.unit : 0
         visible: !root.counted && !root.page.answerNow && height >= 7 * root.theme.unit && (root.cue || root.stimulus || root.page.kind === PageModel.Response)
         anchors { left: parent.left; right: parent.right; top: parent.top }
-        /// What is below the surface besides the question.
-        readonly property real below: bars.height + pacer.height + ((bars.visible ? 1 : 0) + (pacer.visible ? 1 : 0) + 1) * root.theme.unit
+        /// What is below the surface besides the question and the pacer.
+        readonly property real belowWithoutPacer: bars.height + (bars.visible ? 2 : 1) * root.theme.unit
+        readonly property real below: belowWithoutPacer + pacer.height + (pacer.visible ? 1 : 0) * root.theme.unit
         height: Math.round(Math.max(least, Math.min(0.46 * parent.height, parent.height - answers.height - below - Math.max(asked.height + root.theme.unit, (pacer.visible ? 3.6 : bars.visible ? 3.5 : 9) * root.theme.unit))))
         surface: root.page.surface
         hasMark: root.page.hasMark
@@ -210,7 +211,7 @@ Item {
         anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
         height: Math.max(leastHeight, Math.min(Math.round(0.36 * parent.height), most))
         // the question and, if it speaks of the mark, the surface keep their place
-        most: Math.floor(parent.height - asked.height - bars.height - ((bars.visible ? 1 : 0) + 1) * root.theme.unit - surface.least)
+        most: Math.floor(parent.height - asked.height - surface.belowWithoutPacer - surface.least)
         theme: root.theme
         answers: root.page.answers
         captions: root.page.captions

@@ -7,6 +7,7 @@
 #include "station/core/texts.hpp"
 #include "station/session/open_touch.hpp"
 #include "station/system/clocks.hpp"
+#include "station/ui/platform/vector_state.hpp"
 #include "station/view/report_pages.hpp"
 
 namespace turnpoint::ui {
@@ -87,6 +88,7 @@ void SessionRunner::begin(session::Setup setup, const std::string& language) {
 
 /// Runs the session. The session thread calls this.
 void SessionRunner::run() {
+  clear_upper_halves();
   try {
     summary_ = session::run(setup_, &bridge_, inputs_, view_.get());
   } catch (...) {

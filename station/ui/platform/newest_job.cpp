@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "station/ui/platform/vector_state.hpp"
+
 namespace turnpoint::ui {
 
 NewestJob::NewestJob(QObject& owner)
@@ -56,6 +58,7 @@ void NewestJob::abandon() {
 }
 
 void NewestJob::run(const std::stop_token& stop) {
+  clear_upper_halves();
   for (;;) {
     Wanted now;
     std::stop_token abandoned;

@@ -31,9 +31,9 @@ Column {
         ar: { letters: ["ضصثقفغعهخحج", "شسيبلاتنمكط", "ئءؤرىةوزظدذ"], marks: ["أإآ؟،؛«»ـ-", "ًٌٍَُِّْ_.", "٠١٢٣٤٥٦٧٨٩"] }
     })
     readonly property var keys: layouts[layout] ?? layouts.en
-    readonly property var signs: ["?!'():/+*="]
-    readonly property var rows: numbers ? ["789", "456", "123", "0.-", ",e+"]
-        : ["1234567890"].concat(accents ? keys.marks : keys.letters, full && !accents && layout !== "ja" ? signs : [])
+    readonly property var signs: ["?!'():/+*=", "<>%→\"&;€━[]"]
+    readonly property var rows: numbers ? ["789", "456", "123", "0.-", ",e+ "]
+        : ["1234567890"].concat(accents ? keys.marks : keys.letters, full && layout !== "ja" ? [signs[accents ? 1 : 0]] : [])
     readonly property real gap: Math.round(0.4 * theme.unit)
     readonly property real keyWidth: numbers ? Math.min(2 * theme.controlHeight, Math.floor((width - 4 * gap) / 4.5)) : Math.floor((width - 12 * gap) / 12)
     readonly property real keyHeight: Math.min(theme.controlHeight, keyWidth)
@@ -80,7 +80,8 @@ Column {
                 Key {
                     required property string modelData
                     objectName: "letter" + modelData
-                    text: root.capitals ? root.large(modelData) : modelData
+                    text: modelData === " " ? "␣" : root.capitals ? root.large(modelData) : modelData
+                    label: modelData === " " ? texts.text("space") : text
                     onActivated: root.type(modelData)
                 }
             }
@@ -134,7 +135,7 @@ Column {
             onActivated: root.nextLayout()
         }
         Key {
-            objectName: "letter "
+            objectName: root.numbers ? "" : "letter "
             width: 4 * root.keyWidth + 3 * root.gap
             text: "␣"
             label: texts.text("space")

@@ -10,8 +10,6 @@
 
 namespace turnpoint::ui {
 
-namespace {
-
 QString own_name(const std::string& language) {
   if (language == "en") return "English";  // Qt names the largest country, too
   if (language == "es") return "Español";
@@ -19,14 +17,13 @@ QString own_name(const std::string& language) {
   return name.left(1).toUpper() + name.mid(1);
 }
 
-}  // namespace
-
 OperatorScreen::OperatorScreen(std::function<bool(char32_t)> drawable, QObject* parent)
     : QObject(parent), drawable_(std::move(drawable)) {}
 
 OperatorScreen::OperatorScreen(QObject* parent) : OperatorScreen(system::drawable, parent) {}
 
-/// A font for a language has the letters of the language's own name. Every font has those of Europe, up to U+024F.
+/// A font for a language has the letters of the language's own name. Every font has those of Europe, up to
+/// U+024F.
 bool OperatorScreen::is_drawable(const QString& language) const {
   const auto letters = own_name(language.toStdString()).toStdU32String();
   return std::all_of(letters.begin(), letters.end(),

@@ -4,8 +4,12 @@
 #include <QString>
 #include <QVariantList>
 #include <functional>
+#include <string>
 
 namespace turnpoint::ui {
+
+/// The name of a language in this language, such as "Deutsch".
+QString own_name(const std::string& language);
 
 /// How the operator's pages look: language, light or dark theme, and size of the text. The participant's
 /// pages do not depend on it, because they are part of the study. GUI thread only.
