@@ -20,7 +20,7 @@ TEST_CASE("the simulated rig loads in SI units", "[rig]") {
   CHECK(rig.surface.modulus_Pa.value() == Approx(69e9));
   CHECK(rig.surface.yield_Pa.value() > 1e8);
   CHECK(rig.surface.edges == rig::Edges::clamped);
-  CHECK(rig.surface.plate_theory == rig::PlateTheory::mindlin);
+  CHECK(rig.surface.plate_theory == rig::PlateTheory::automatic);
   CHECK(rig.surface.taper.half_width_m == Approx(15.1e-3));
   CHECK(rig.surface.taper.slope.value() == Approx(0.03));
   REQUIRE(rig.transducers.size() == 1);
