@@ -692,8 +692,6 @@ std::string with_entry(const Document& document, const Field& field, const std::
   return document.with(path, typed.substr(part.value.begin, part.value.end - part.value.begin));
 }
 
-}  // namespace
-
 /// A value as a person writes it, with another name in place of one of its names, also before a dot.
 std::string with_other_name(const std::string& value, const std::string& name, const std::string& other) {
   std::string all;
@@ -741,6 +739,8 @@ std::string renamed(const Document& document, const Field& field, const std::str
   return field.input == Input::name ? now.with_name(field.path, name)
                                     : now.with(field.path, encoded(field, name));
 }
+
+}  // namespace
 
 std::string empty_study(const std::string& id) {
   return "format = \"friction-protocol/1\"\n\n[protocol]\nid = " + toml_string(id) +
