@@ -51,15 +51,18 @@ TheoryChoice choose_theory(const Surface& surface, std::span<const double> frequ
     if (std::abs(to_mindlin + to_elastic) > std::abs(thin)) thin = to_mindlin + to_elastic;
   }
   choice.shift_m = thin;
-  const double limit = tolerance_m.value_or(0);
-  choice.theory = std::abs(thin) <= limit ? PlateTheory::kirchhoff
-                  : mindlin <= limit      ? PlateTheory::mindlin
-                                          : PlateTheory::elastic;
+  constexpr double hardly_m = 5e-5;
+  choice.theory = std::abs(thin) <= tolerance_m.value_or(hardly_m) ? PlateTheory::kirchhoff
+                  : !tolerance_m || mindlin <= *tolerance_m        ? PlateTheory::mindlin
+                                                                   : PlateTheory::elastic;
   std::ostringstream text;
   text.precision(3);
   text << name(choice.theory) << ": shear moves the thin plate's boundary by " << thin * 1e3
        << " mm; Mindlin's is " << mindlin * 1e3 << " mm from the elastic section's";
-  if (tolerance_m) text << "; tolerance " << *tolerance_m * 1e3 << " mm";
+  if (tolerance_m)
+    text << "; tolerance " << *tolerance_m * 1e3 << " mm";
+  else
+    text << "; no tolerance of a boundary";
   choice.reason = text.str();
   return choice;
 }

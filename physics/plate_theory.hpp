@@ -27,7 +27,8 @@ struct TheoryChoice {
 
 // Chooses the simplest theory (Kirchhoff, Mindlin, elastic cross-section) that places the boundary within the
 // tolerance of where the elastic theory places it, at all frequencies. Without a tolerance it chooses
-// elastic. On a surface to which only Kirchhoff's theory applies, it chooses Kirchhoff.
+// Mindlin, the best theory that all models solve, or Kirchhoff if shear moves the boundary by at most 0.05
+// mm. On a surface to which only Kirchhoff's theory applies, it chooses Kirchhoff.
 TheoryChoice choose_theory(const Surface& surface, std::span<const double> frequencies_Hz,
                            std::optional<double> tolerance_m);
 

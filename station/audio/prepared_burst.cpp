@@ -189,10 +189,6 @@ void prepare_changes(const Burst& burst, const Format& format, const SynthLimits
     free_from = change.at_frame + change.frames;
   }
   out.change_count = burst.change_count;
-  // A tone that comes only with a later change runs silently until then.
-  for (std::size_t k = 0; k < static_cast<std::size_t>(out.change_count); ++k)
-    for (auto i = static_cast<std::size_t>(out.changes[k].count); i < max_tones; ++i)
-      out.changes[k].to[i] = out.tones[i];
 }
 
 // Prepares the trigger codes. Each code and the silent bits after it must end before the next code begins.

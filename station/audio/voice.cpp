@@ -73,6 +73,9 @@ void Voice::begin_glide(std::int64_t at, const PreparedChange& change) noexcept 
     }
     Partial tone = advanced(burst_.tones[k], since);
     tone.amplitude += tone.amplitude_change * along;
+    // A tone that the change does not know keeps its frequency: it comes only with a later change, or a live
+    // change added it, and it fades out now.
+    if (i >= change.count) target_[k] = {0, tone.increment, 0, 0, 0, tone.channel};
     burst_.tones[k] = gliding(tone, target_[k], glide_frames_);
   }
   burst_.tone_count = count;

@@ -54,7 +54,7 @@ struct Surface {
   double quality_factor = std::numeric_limits<double>::infinity();
   Edges edges = Edges::supported;
   Bending bending = Bending::automatic;
-  PlateTheory plate_theory = PlateTheory::kirchhoff;
+  PlateTheory plate_theory = PlateTheory::automatic;
   WideEnd wide_end = WideEnd::left;
   Taper taper;
   /// Standard uncertainties of measured values, from the optional keys `*_sd`; 0 if not given.

@@ -63,7 +63,7 @@ Keys surface() {
       word("bending", {"auto", "on", "off"}, "whether the stiffness to bending counts")
           .by_default("\"auto\""),
       word("plate_theory", {"kirchhoff", "mindlin", "elastic", "auto"}, "how a clamped plate is calculated")
-          .by_default("\"kirchhoff\""),
+          .by_default("\"auto\""),
       word("wide_end", {"left", "right"}, "where the wide end is, seen by the participant")
           .by_default("\"left\""),
       number("tension_sd_Pa", {0, 1e12, Ends::closed, "Pa"}, "standard deviation of `tension_Pa`")
@@ -74,7 +74,9 @@ Keys surface() {
       number("modulus_sd_GPa", {0, 2000, Ends::closed, "GPa"},
              "standard deviation of `modulus_GPa`, with the uncertainty of Poisson's ratio")
           .by_default("0"),
-      number("quality_factor_sd", {0, 1e6}, "standard deviation of `quality_factor`; in proportion, of a measured one too").by_default("0"),
+      number("quality_factor_sd", {0, 1e6},
+             "standard deviation of `quality_factor`; in proportion, of a measured one too")
+          .by_default("0"),
       number("temperature_sd_K", {0, 100, Ends::closed, "K"},
              "standard deviation of the temperature, around the one for which the other values hold")
           .by_default("0"),

@@ -147,10 +147,10 @@ void read_deviations(core::TableReader& reader, Surface& surface) {
 
 void read_plate_theory(core::TableReader& reader, Surface& surface) {
   const auto word = reader.word("plate_theory");
-  surface.plate_theory = word == "mindlin"   ? PlateTheory::mindlin
+  surface.plate_theory = word == "kirchhoff" ? PlateTheory::kirchhoff
+                         : word == "mindlin" ? PlateTheory::mindlin
                          : word == "elastic" ? PlateTheory::elastic
-                         : word == "auto"    ? PlateTheory::automatic
-                                             : PlateTheory::kirchhoff;
+                                             : PlateTheory::automatic;
   const bool needed = word == "mindlin" || word == "elastic";
   const double poisson = surface.poisson.value_or(-1);
   if (needed && (surface.tension_Pa > 0 || surface.edges != Edges::clamped || poisson < 0 || poisson > 0.49))

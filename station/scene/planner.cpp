@@ -81,6 +81,7 @@ struct Planner::State : ToneDesigner {
   std::map<std::string, Solution> solutions;
   /// one planner per plate theory, used if the rig file leaves the choice of the theory open
   std::map<physics::PlateTheory, Planner> by_theory;
+  std::map<std::optional<double>, physics::TheoryChoice> theories;  ///< by the tolerance of a boundary
   /// uncertainty of the level at a tone's last maximum, by the number of steps of the tone's frequency from 1
   /// Hz
   std::map<int, std::optional<double>> level_sd_dB;
@@ -273,9 +274,14 @@ Planner& Planner::by_theory(physics::PlateTheory theory) {
 DrivePlan Planner::plan(const Scene& scene) {
   if (state_->rig.surface.plate_theory == rig::PlateTheory::automatic) {
     const auto& rig = state_->rig;
-    const std::array band{lowest_frequency(rig, core::kAudible_Hz),
-                          highest_frequency(rig, core::kHighestShareOfRate * rig.output.rate_Hz)};
-    const auto choice = physics::choose_theory(surface(), band, scene.tolerance.boundary_m);
+    auto found = state_->theories.find(scene.tolerance.boundary_m);
+    if (found == state_->theories.end()) {
+      const std::array band{lowest_frequency(rig, core::kAudible_Hz),
+                            highest_frequency(rig, core::kHighestShareOfRate * rig.output.rate_Hz)};
+      const auto choice = physics::choose_theory(surface(), band, scene.tolerance.boundary_m);
+      found = state_->theories.emplace(scene.tolerance.boundary_m, choice).first;
+    }
+    const auto& choice = found->second;
     DrivePlan plan = by_theory(choice.theory).plan(scene);
     plan.reason += "; " + choice.reason;
     return plan;

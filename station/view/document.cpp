@@ -182,6 +182,30 @@ std::string Document::inside_braces(const Part& table, const std::string& entry)
   return text.insert(end, ", " + entry);
 }
 
+Document::Item Document::item_at(const Span& value) const {
+  const auto begins = [this](std::size_t at) { return at == 0 ? 0 : text_.rfind('\n', at - 1) + 1; };
+  const auto after_blanks = [this](std::size_t at) {
+    return std::min(text_.find_first_not_of(" \t", at), text_.size());
+  };
+  Item item;
+  item.value = value;
+  item.line.begin = begins(value.begin);
+  auto at = after_blanks(value.end);
+  item.comma = at < text_.size() && text_[at] == ',';
+  item.comment.begin = item.comma ? at + 1 : value.end;
+  at = after_blanks(item.comment.begin);
+  if (at < text_.size() && text_[at] == '#') at = core::line_end(text_, at);
+  item.comment.end = item.line.end = at;
+  item.alone = after_blanks(item.line.begin) == value.begin && at == core::line_end(text_, at);
+  item.above = {item.line.begin, item.line.begin};
+  while (item.above.begin > 0) {
+    const auto line = begins(item.above.begin - 1);
+    if (text_[after_blanks(line)] != '#') break;
+    item.above.begin = line;
+  }
+  return item;
+}
+
 std::string Document::inserted(const Path& path, const std::string& value) const {
   std::size_t known = 0;
   const auto* table = &root_;
@@ -208,9 +232,13 @@ std::string Document::inserted(const Path& path, const std::string& value) const
   if (table->kind == Part::Kind::array) {
     auto text = text_;
     if (known + 1 != path.size() || path[known] != std::to_string(table->parts.size())) no_such(path);
-    return table->parts.empty()
-               ? text.replace(table->value.begin, table->value.end - table->value.begin, "[" + value + "]")
-               : text.insert(table->parts.back().value.end, ", " + value);
+    if (table->parts.empty())
+      return text.replace(table->value.begin, table->value.end - table->value.begin, "[" + value + "]");
+    const auto last = item_at(table->parts.back().value);
+    if (!last.alone) return text.insert(last.value.end, ", " + value);
+    const auto indentation = text.substr(last.line.begin, last.value.begin - last.line.begin);
+    text.insert(last.line.end, line_break_ + indentation + value);
+    return last.comma ? text : text.insert(last.value.end, ",");
   }
   if (!table->is_table()) no_such(path);
   const bool by_headers = table->kind == Part::Kind::dotted && table->prefix.empty();
@@ -248,6 +276,9 @@ std::string Document::without(const Path& path) const {
   const auto* parent = find({path.begin(), path.end() - 1});
   auto text = text_;
   if (parent->kind == Part::Kind::array || parent->kind == Part::Kind::inline_table) {
+    // An item that has lines for itself goes with the comment behind it.
+    if (const auto item = item_at(part->value); parent->kind == Part::Kind::array && item.alone)
+      return checked(text.erase(item.line.begin, text.find('\n', item.line.end) + 1 - item.line.begin));
     // Remove the item with the comma after it or, for the last item, with the comma before it.
     std::vector<Span> items;
     for (const auto& item : parent->parts) items.push_back({item.key.begin, item.value.end});
@@ -312,32 +343,43 @@ std::string Document::with_name(const Path& path, const std::string& name) const
   return checked(text);
 }
 
-/// The text of a table with the tables below it and the comments in the lines directly above it.
+/// The text of a table with the tables below it, with the comments in the lines directly above it, and with
+/// those directly below its last key that an empty line ends.
 Span Document::with_comments(const Path& path) const {
   const auto* part = find(path);
   if (part == nullptr || part->kind != Part::Kind::table) no_such(path);
   const auto tables = tables_of(*part);
-  const auto line_before = [this](std::size_t at) {  // where the line before this one begins
-    return at < 2 ? std::string::npos : text_.rfind('\n', at - 2) + 1;
-  };
-  auto begin = tables.front()->value.begin;
-  for (auto line = line_before(begin); line != std::string::npos && text_[line] == '#';
-       line = line_before(begin))
-    begin = line;
-  return {begin, tables.back()->value.end};
+  const auto begin = item_at(tables.front()->value).above.begin;
+  auto end = tables.back()->value.end;
+  for (auto last = core::line_end(text_, end);;) {
+    const auto line = text_.find_first_not_of(" \t\r", last);  // the line break, then what follows it
+    const auto next = line == std::string::npos ? line : text_.find_first_not_of(" \t", line + 1);
+    if (next == std::string::npos || text_[next] == '\n' || text_[next] == '\r') return {begin, last};
+    if (text_[next] != '#') return {begin, end};
+    last = core::line_end(text_, next);
+  }
 }
 
 std::string Document::exchanged(const Path& first, const Path& second) const {
-  const auto span = [this](const Path& path) {
+  // The pieces of the text that change places, in their order.
+  const auto pieces_of = [this](const Path& path) -> std::vector<Span> {
     const auto* part = find(path);
-    return part == nullptr || part->kind == Part::Kind::table ? with_comments(path) : part->value;
+    if (part == nullptr || part->kind == Part::Kind::table) return {with_comments(path)};
+    const auto item = item_at(part->value);
+    return item.alone ? std::vector{item.above, item.value, item.comment} : std::vector{item.value};
   };
-  auto a = span(first), b = span(second);
-  if (b.begin < a.begin) std::swap(a, b);
-  if (a.end > b.begin) no_such(second);
-  const auto piece = [this](std::size_t from, std::size_t to) { return text_.substr(from, to - from); };
-  return checked(piece(0, a.begin) + piece(b.begin, b.end) + piece(a.end, b.begin) + piece(a.begin, a.end) +
-                 text_.substr(b.end));
+  auto a = pieces_of(first), b = pieces_of(second);
+  if (b.front().begin < a.front().begin) std::swap(a, b);
+  if (a.size() != b.size() || a.back().end > b.front().begin) no_such(second);
+  auto text = text_;
+  const auto replace_all = [&](const std::vector<Span>& spans, const std::vector<Span>& by) {
+    for (auto i = spans.size(); i-- > 0;)
+      text.replace(spans[i].begin, spans[i].end - spans[i].begin, text_, by[i].begin,
+                   by[i].end - by[i].begin);
+  };
+  replace_all(b, a);
+  replace_all(a, b);
+  return checked(text);
 }
 
 std::string Document::with_tables(const std::string& tables) const {

@@ -40,17 +40,25 @@ class Document {
   /// Adds a copy of a table directly after it. A table of a list ([[block]]) gets this `name` as its key
   /// "name"; another table ([scene.edge]) gets it as the last part of its header.
   std::string with_copy(const Path& path, const std::string& name) const;
-  /// Gives another name to a table that has its name in its header, such as [scene.edge]. What refers to it
-  /// by its old name stays as it is.
+  /// Gives another name to a table that has its name in its header, such as [scene.edge].
   std::string with_name(const Path& path, const std::string& name) const;
-  /// Lets two tables with headers change places, with the tables below them and the comments directly above
-  /// them; or two items of a list within a line.
+  /// Lets two tables with headers change places, with the tables below them and the comments above and below
+  /// them; or two items of a list, with their comments if each has lines for itself.
   std::string exchanged(const Path& first, const Path& second) const;
   /// Adds tables at the end of the text.
   std::string with_tables(const std::string& tables) const;
 
  private:
   std::string inserted(const Path& path, const std::string& value) const;
+  /// An item of a list, or a header. `alone` says whether nothing else is in its lines but a comma and a
+  /// comment.
+  struct Item {
+    Span value, line;
+    Span above;    ///< the comments in the lines directly above it
+    Span comment;  ///< what follows its comma, or the item, up to the end of the line
+    bool comma = false, alone = false;
+  };
+  Item item_at(const Span& value) const;
   std::string inside_braces(const Part& table, const std::string& entry) const;
   std::string new_line_at(std::size_t at, const std::string& line) const;
   std::string checked(std::string text) const;

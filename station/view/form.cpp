@@ -692,6 +692,54 @@ std::string with_entry(const Document& document, const Field& field, const std::
   return document.with(path, typed.substr(part.value.begin, part.value.end - part.value.begin));
 }
 
+/// A value as a person writes it, with another name in place of one of its names, also before a dot.
+std::string with_other_name(const std::string& value, const std::string& name, const std::string& other) {
+  std::string all;
+  for (std::size_t at = 0; at <= value.size();) {
+    const auto comma = std::min(value.find(", ", at), value.size());
+    const auto end = std::min(value.find(kThen, at), comma);
+    const auto one = value.substr(at, end - at);
+    const auto next = end == value.size() ? end + 1 : end + (end == comma ? 2 : std::string(kThen).size());
+    all += (one == name || one.starts_with(name + ".") ? other + one.substr(name.size()) : one) +
+           value.substr(end, next - end);
+    at = next;
+  }
+  return all;
+}
+
+/// Whether the value of a field can be or begin with the name of a table of this kind.
+bool refers(const Group& group, const Field& field, const std::string& kind) {
+  const auto& key = field.key->name.empty() ? field.path.back() : field.key->name;
+  const bool at_levels = group.path.front() == "factor" && group.name == "instruction" && key == "levels";
+  return referred_table(key) == kind || (kind == "sequence" && key == "after_each") ||
+         (kind == "scene" && key == "correct") || (kind == "instructions" && at_levels) ||
+         (group.path.front() == "screening" && key == "pass");
+}
+
+/// The file's text with another name for a table, also in the keys and values that refer to it.
+std::string renamed(const Document& document, const Field& field, const std::string& name) {
+  const auto& kind = field.path.front();
+  auto text = document.text();
+  for (const auto& section : Maker(document).make())
+    for (const auto& group : section.groups)
+      for (const auto& other : group.fields) {
+        if (!other.present || other.key == nullptr) continue;
+        const Document now(text, document.file());
+        auto path = other.path;
+        const auto typed =
+            refers(group, other, kind) ? with_other_name(other.value, field.value, name) : other.value;
+        if (typed != other.value)
+          text = now.with(path, encoded(other, typed));
+        else if (other.key->name == "SCENE" && kind == "scene" && path.back() == field.value) {
+          path.back() = name;
+          text = Document(now.with(path, now.written(other.path)), now.file()).without(other.path);
+        }
+      }
+  const Document now(text, document.file());
+  return field.input == Input::name ? now.with_name(field.path, name)
+                                    : now.with(field.path, encoded(field, name));
+}
+
 }  // namespace
 
 std::string empty_study(const std::string& id) {
@@ -768,7 +816,7 @@ std::string changed(const Document& document, const Field& field, const std::str
   if (field.present && typed == field.value) return document.text();
   if (field.input == Input::entry)
     return typed.empty() ? document.text() : with_entry(document, field, typed);
-  if (field.input == Input::name) return document.with_name(field.path, typed.empty() ? field.value : typed);
+  if (field.input == Input::name) return typed.empty() ? document.text() : renamed(document, field, typed);
   if (typed.empty()) {
     if (!field.present || field.required) return document.text();
     // A table that has no heading of its own on the page goes with its last key.
@@ -776,6 +824,10 @@ std::string changed(const Document& document, const Field& field, const std::str
     const bool goes_with = above.size() > field.heading && document.find(above)->parts.size() == 1;
     return document.without(goes_with ? above : field.path);
   }
+  // In expressions, the names of factors are not replaced, so that those stay everywhere.
+  if (field.present && field.path.size() == 3 && field.path.back() == "name" &&
+      field.path.front() != "factor")
+    return renamed(document, field, typed);
   const auto value = encoded(field, typed);
   return Document(cleared(document, field.path), document.file()).with(field.path, value);
 }

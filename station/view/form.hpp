@@ -86,7 +86,8 @@ std::string referred_table(const std::string& key);
 std::string encoded(const Field& field, const std::string& typed);
 
 /// Returns the file's text with the typed value in this field. An empty `typed` removes the key if the file
-/// need not have it.
+/// need not have it. Another name of a table is also given to what refers to it, except for a factor's, which
+/// expressions have.
 std::string changed(const Document& document, const Field& field, const std::string& typed);
 
 /// The file's text with the table of a field, or with one table more at the end of its list: a copy of the

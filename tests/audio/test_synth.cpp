@@ -219,6 +219,36 @@ TEST_CASE("a tone that comes only with the second change is silent until then, a
   CHECK((rendered(burst) == rendered(from_onset)));
 }
 
+TEST_CASE("a tone that a live change added keeps its frequency while a change of the burst fades it out",
+          "[drive][synth]") {
+  Burst burst = one_tone(22000, 0.25);
+  burst.length_frames = 120000;
+  burst.change_count = 1;
+  burst.changes[0] = {60000, 9600, one_tone(22000, 0.25).tones};
+  Change live{30000, 960, one_tone(22000, 0.25).tones};
+  live.to.count = 2;
+  live.to.tones[1] = {31000, 0.125, 0.5, 1};
+  const Format format{rate, 2, 24};
+  PreparedBurst prepared = prepare(burst, format);
+  Synth synth(format);
+  REQUIRE(synth.start(prepared));
+  std::vector<double> samples(2 * 120000);
+  synth.render(0, std::span<double>(samples).first(2 * 20000));
+  REQUIRE(synth.change(prepared.id, prepare_change(live, prepared, format)));
+  synth.render(20000, std::span<double>(samples).subspan(2 * 20000));
+  // The second difference of a sinusoid is -(2 sin(pi f / rate))^2 times the sinusoid, whatever its
+  // amplitude, except for what a slow change of the amplitude adds.
+  const double squared = std::pow(2 * std::sin(M_PI * 31000.0 / rate), 2);
+  double largest = 0, faded = 0;
+  for (std::size_t k = 60001; k + 1 < 120000; ++k) {
+    const double y = samples[2 * k + 1];
+    largest = std::max(largest, std::abs(samples[2 * k + 3] - 2 * y + samples[2 * k - 1] + squared * y));
+    if (k > 69600) faded = std::max(faded, std::abs(y));
+  }
+  CHECK(largest < 1e-3 * 0.125);
+  CHECK(faded == 0);
+}
+
 TEST_CASE("a burst starts and ends exactly at its frames, and all samples before and after it are zero",
           "[drive][synth]") {
   Burst burst = one_tone(20000, 0.5, M_PI / 2);

@@ -221,10 +221,11 @@ TEST_CASE(
   CHECK(choose_theory(s, band, 20e-3).theory == PlateTheory::kirchhoff);
   CHECK(choose_theory(s, band, 1e-3).theory == PlateTheory::mindlin);
   CHECK(choose_theory(s, band, 0.1e-3).theory == PlateTheory::elastic);
-  CHECK(choose_theory(s, band, {}).theory == PlateTheory::elastic);
+  CHECK(choose_theory(s, band, {}).theory == PlateTheory::mindlin);
   CHECK(choose_theory(s, band, 1e-3).shift_m == Approx(14.7e-3).margin(0.15e-3));
   s.thickness_m = 0.05e-3;
   CHECK(choose_theory(s, {{1e3}}, 1e-3).theory == PlateTheory::kirchhoff);
+  CHECK(choose_theory(s, {{1e3}}, {}).theory == PlateTheory::kirchhoff);
   CHECK(choose_theory(seed_brass(), band, 1e-6).theory == PlateTheory::kirchhoff);
 }
 

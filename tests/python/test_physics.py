@@ -23,7 +23,7 @@ def rig_surface():
         s = tomllib.load(file)["surface"]
     taper = physics.LinearTaper(half_width_m=s["taper"]["half_width_mm"] / 1e3, slope=s["taper"]["slope"])
     return physics.Surface(density_kg_m3=s["density_kg_m3"], thickness_m=s["thickness_mm"] / 1e3, length_m=s["length_mm"] / 1e3,
-                           quality_factor=s["quality_factor"], taper=taper, edges=s["edges"], theory=s["plate_theory"],
+                           quality_factor=s["quality_factor"], taper=taper, edges=s["edges"], theory="mindlin",
                            modulus_Pa=s["modulus_GPa"] * 1e9, poisson=s["poisson"])
 
 

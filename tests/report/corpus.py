@@ -763,7 +763,8 @@ def compare_trade(report, session, deep):
                     and run[i - 2]["block_index"] == run[i + 1]["block_index"]:
                 gaps.append(float(run[i + 1]["response_time"]) - float(run[i - 1]["response_time"]))
         report.same(path + ".post_error_slowing_s", student_mean(gaps))
-        report.same(path + ".deadline_s", float(rows[0]["deadline"]) if rows[0]["deadline"] != "n/a" else None)
+        deadlines = {r["deadline"] for r in rows}  # one only if all trials have the same
+        report.same(path + ".deadline_s", float(deadlines.pop()) if len(deadlines) == 1 and deadlines != {"n/a"} else None)
         pairs = [(a["response"], b["response"], b["correct_response"]) for a, b in following(session)
                  if a["instruction"] == b["instruction"] == condition and "n/a" not in (a["correct_response"], b["correct_response"])]
         known = [(now == before) - (right == before) for before, now, right in pairs if "unsure" not in (before, now)]

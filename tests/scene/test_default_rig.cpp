@@ -67,7 +67,8 @@ TEST_CASE("boundaries from 100 to 205 mm are inside the band, whatever the plate
   for (const char* name : {"simulated", "raspberry-pi-aluminium", "pc-usb"}) {
     auto rig = shipped(name);
     CAPTURE(name);
-    CHECK(rig.surface.plate_theory == rig::PlateTheory::mindlin);
+    CHECK(rig.surface.plate_theory == rig::PlateTheory::automatic);
+    CHECK(surface_of(rig).theory == physics::PlateTheory::mindlin);
     CHECK(reachable(rig));
     CHECK(rig.transducers[0].low_Hz <= kLowest_Hz);
     CHECK(rig.transducers[0].high_Hz >= kHighest_Hz);

@@ -330,6 +330,27 @@ TEST_CASE("two tables change places with their comments and the tables below the
   CHECK(Document("a = 1", "").with_tables("[n]\n") == "a = 1\n\n[n]\n");
 }
 
+TEST_CASE("each comment stays with its item, and with its table", "[document]") {
+  const Document list("l = [\n  # the list\n  1, # one\n  2,\n  3 # three\n]\nv = 1\n", "f.toml");
+  CHECK(list.exchanged({"l", "1"}, {"l", "2"}) ==
+        "l = [\n  # the list\n  1, # one\n  3, # three\n  2\n]\nv = 1\n");
+  CHECK(list.without({"l", "2"}) == "l = [\n  # the list\n  1, # one\n  2,\n]\nv = 1\n");
+  CHECK(list.without({"l", "0"}) == "l = [\n  # the list\n  2,\n  3 # three\n]\nv = 1\n");
+  CHECK(list.with({"l", "3"}, "4") == "l = [\n  # the list\n  1, # one\n  2,\n  3, # three\n  4\n]\nv = 1\n");
+  const Document above("l = [\n  # one\n  1,\n  # two\n  2,\n]\n", "f.toml");
+  CHECK(above.exchanged({"l", "1"}, {"l", "0"}) == "l = [\n  # two\n  2,\n  # one\n  1,\n]\n");
+  const Document within("l = [1, 2, 3] # all\n", "f.toml");
+  CHECK(within.exchanged({"l", "1"}, {"l", "2"}) == "l = [1, 3, 2] # all\n");
+  CHECK(within.without({"l", "2"}) == "l = [1, 2] # all\n");
+  const Document windows("l = [\r\n  1, # one\r\n  2 # two\r\n]\r\n", "f.toml");
+  CHECK(windows.exchanged({"l", "0"}, {"l", "1"}) == "l = [\r\n  2, # two\r\n  1 # one\r\n]\r\n");
+  CHECK(windows.without({"l", "1"}) == "l = [\r\n  1, # one\r\n]\r\n");
+
+  const Document tables("[[b]]\nv = 1\n# u = 2, switched off\n\n  # about two\n[[b]]\nv = 2\n", "f.toml");
+  CHECK(tables.exchanged({"b", "0"}, {"b", "1"}) ==
+        "  # about two\n[[b]]\nv = 2\n\n[[b]]\nv = 1\n# u = 2, switched off\n");
+}
+
 TEST_CASE("a key beside tables with headers below an item of a list is added to this item", "[document]") {
   const std::string first = "[[p]]\nname = \"a\"\n[p.grid.x]\nv = [1]\n[p.grid.y]\nv = [2]\n";
   const std::string second = "\n[[p]]\nname = \"b\"\n[p.grid.x]\nv = [3]\n";

@@ -216,6 +216,39 @@ TEST_CASE("what is typed into a field is what the reader of protocols reads", "[
   CHECK(type(source, {"task", "kind"}, "") == source);
 }
 
+TEST_CASE("another name of a table is also given to what refers to it", "[form]") {
+  int renamed = 0;
+  for (const auto& file : shipped()) {
+    const Document document(core::read_file(file), file);
+    for (const auto& section : form_of(document, {}))
+      for (const auto& group : section.groups)
+        for (const auto& field : group.fields) {
+          const bool name =
+              field.input == Field::Input::name || (field.path.size() == 3 && field.path.back() == "name");
+          if (!name || !field.present || field.path.front() == "factor") continue;
+          INFO(file << ": " << field.path.front() << " " << field.value);
+          ++renamed;
+          const auto other = view::changed(document, field, "another-name");
+          std::vector<std::string> problems;
+          try {
+            protocol::parse(other, file);
+          } catch (const core::BadInput& bad) {
+            for (const auto& problem : bad.problems()) problems.push_back(core::format(problem));
+          }
+          CHECK(problems == std::vector<std::string>{});
+          // and back
+          const Document now(other, file);
+          auto path = field.path;
+          if (field.input == Field::Input::name) path.back() = "another-name";
+          const auto form = form_of(now, {});
+          const auto* again = find(form, path);
+          REQUIRE(again != nullptr);
+          CHECK(said(view::changed(now, *again, field.value)) == said(document.text()));
+        }
+  }
+  CHECK(renamed > 100);
+}
+
 TEST_CASE("a decimal comma is refused where it would become two numbers", "[form]") {
   const auto file = root + "/protocols/friction-2ifc.toml";
   const Document document(core::read_file(file), file);

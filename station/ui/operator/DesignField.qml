@@ -27,7 +27,7 @@ Item {
     function said(value: string) : string {
         return value.split(", ").map(one => field.allowed.includes(one) ? design.word(field.key, one, texts.language) : one).join(", ")
     }
-    height: Math.max(heading ? head.height : words ? chips.height + about.height : value.height, name.height) + notes.height + Math.round(0.5 * theme.unit)
+    height: Math.max(heading ? head.height : words ? chips.height + (about.visible ? about.implicitHeight + Math.round(0.3 * theme.unit) : 0) : value.height, name.height) + notes.height + Math.round(0.5 * theme.unit)
 
     Rectangle {
         visible: root.pointedAt
@@ -40,13 +40,14 @@ Item {
         id: name
         anchors { left: parent.left; top: parent.top }
         width: root.heading ? parent.width - head.width - root.theme.unit : 0.4 * parent.width - root.theme.unit
-        height: root.theme.controlHeight
+        // a label of two parts is a longer one
+        height: Math.round((root.field.label.length > 1 ? 1.35 : 1) * root.theme.controlHeight)
         text: root.label
         color: root.wrong ? root.theme.wrong : !root.field.present ? root.theme.quiet : root.heading ? root.theme.action : root.theme.ink
         font { pixelSize: root.theme.textBody; weight: root.field.present ? Font.DemiBold : Font.Normal }
         verticalAlignment: Text.AlignVCenter
         wrapMode: Text.WordWrap
-        maximumLineCount: 2
+        maximumLineCount: 3
         fontSizeMode: Text.Fit
         minimumPixelSize: 0.75 * root.theme.textSmall
     }
@@ -98,6 +99,13 @@ Item {
                 theme: root.theme
                 chosen: root.field.value === modelData
                 text: root.said(modelData)
+                // smaller letters where a long choice has no room
+                size: Math.floor(root.theme.textBody * Math.min(1, (chips.width - 4 * root.theme.unit) / (natural.width + 1.1 * root.theme.textBody)))
+                TextMetrics {
+                    id: natural
+                    text: root.said(modelData)
+                    font { family: Application.font.family; pixelSize: root.theme.textBody; weight: Font.DemiBold }
+                }
                 onActivated: if (!chosen) root.picked(modelData)
             }
         }
@@ -118,7 +126,6 @@ Item {
         id: about
         anchors { right: parent.right; top: chips.bottom }
         width: 0.6 * parent.width
-        height: visible ? implicitHeight + Math.round(0.3 * root.theme.unit) : 0
         visible: root.words && text !== ""
         text: root.texts.say(root.field.help)
         color: root.theme.quiet

@@ -156,7 +156,7 @@ Rectangle {
                 root.edited = { group: group, field: field }
                 entry.refused = ""
                 // a word of the file is not typed, but chosen
-                entry.open(field.kind === "expression" && field.allowed.includes(field.value) && entry.says(field.value) !== field.value ? "" : field.value)
+                entry.open(field.kind === "expression" && field.allowed.includes(field.value) && entry.said(field.value) !== field.value ? "" : field.value)
             }
             onCopyWanted: group => {
                 root.edited = { group: group }
@@ -240,7 +240,7 @@ Rectangle {
         title: field === null ? "" : field.kind === "entry" ? texts.text("design.add_entry") : root.design.label(field.title, texts.language)
         help: texts.say(field?.help ?? "")
         suggestions: field?.allowed ?? []
-        says: word => root.design.word(field?.key ?? "", word, texts.language)
+        sayings: Object.fromEntries(suggestions.map(word => [word, root.design.word(field?.key ?? "", word, texts.language)]))
         pick: suggestions.length > 0 && field.kind === "word"
         list: field?.list ?? false
         closed: field?.closed ?? false

@@ -17,8 +17,8 @@ Rectangle {
     property bool list: false
     /// True if nothing but the suggestions can be chosen.
     property bool closed: false
-    /// How a suggestion is said on the page.
-    property var says: word => word
+    /// How a suggestion is said on the page, where that is not the suggestion itself.
+    property var sayings: ({})
     /// True if sentences are typed. The keyboard then has capitals and more signs.
     property bool sentences: false
     /// True if the text may have several lines. In the line that is typed, a line break looks like a space.
@@ -41,13 +41,16 @@ Rectangle {
         entry.forceActiveFocus()
         entry.cursorPosition = entry.length
     }
+    function said(word: string): string {
+        return sayings[word] ?? word
+    }
     function tell() {
         if (entry.text === told) return
         told = entry.text
         typed(told)
     }
     function choose(word: string) {
-        if (pick || (!list && says(word) !== word)) {
+        if (pick || (!list && said(word) !== word)) {
             if (pick && entry.text === word) return cancel()
             entry.text = word
             keep()
@@ -187,7 +190,7 @@ Rectangle {
                         primary: chosen
                         quiet: !chosen
                         glyph: chosen ? "tick" : ""
-                        text: root.says(modelData)
+                        text: root.said(modelData)
                         onActivated: root.choose(modelData)
                     }
                 }
