@@ -99,7 +99,8 @@ Json to_json(const rehearsal::Check& check, const std::string& signal) {
                       {"name", block.name},
                       {"instruction", block.instruction.empty() ? Json(nullptr) : Json(block.instruction)},
                       {"practice", block.practice},
-                      {"trials", spread_json(block.trials)}});
+                      {"trials", spread_json(block.trials)},
+                      {"duration_s", spread_json(block.duration_s)}});
   for (const auto& cue : check.cues.reports)
     cues.push_back({{"cue", cue.cue},
                     {"low", json_number(cue.low)},
@@ -224,9 +225,10 @@ void print(std::ostream& out, const rehearsal::Check& check, const std::string& 
   for (const auto& block : check.blocks) {
     const auto visit = block.visit.empty() ? "" : block.visit + ": ";
     print(out, block.before, visit);
-    fmt::print(out, "  {}{}{}{}: {} trials\n", visit, block.practice ? "practice block " : "block ",
-               block.name, block.instruction.empty() ? "" : " (" + block.instruction + ")",
-               range(block.trials, 1));
+    fmt::print(out, "  {}{}{}{}: {} trials, {} minutes\n", visit,
+               block.practice ? "practice block " : "block ", block.name,
+               block.instruction.empty() ? "" : " (" + block.instruction + ")", range(block.trials, 1),
+               range(block.duration_s, 60));
     print(out, block.after, visit);
   }
   if (check.simulated_sessions > 0)

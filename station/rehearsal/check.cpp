@@ -41,14 +41,14 @@ using protocol::Protocol;
 // estimates of those times.
 constexpr double instruction_s = 12, explored_share = 0.5, setting_s = 15;
 
-/// The result of one simulated session: the time that a person would take, and the number of trials in each
-/// block. Repeated attempts at a block are added up.
+/// The result of one simulated session: the number of trials in each block, and the time that a person would
+/// take. Repeated attempts at a block are added up.
 struct Estimate {
-  double duration_s = 0;
   std::vector<CheckedBlock> blocks;
-  std::vector<double> trials;
+  std::vector<double> trials, durations_s;
 
-  double sum() const { return std::accumulate(trials.begin(), trials.end(), 0.0); }
+  double all_trials() const { return std::accumulate(trials.begin(), trials.end(), 0.0); }
+  double duration_s() const { return std::accumulate(durations_s.begin(), durations_s.end(), 0.0); }
 };
 
 double longest_s(const Protocol& protocol) {
@@ -120,8 +120,8 @@ Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::u
           earlier);
   const auto rehearsal = rehearse(protocol, visit, seed, person(protocol), earlier);
   Estimate estimate;
-  estimate.duration_s = rehearsal.duration_s + rehearsal.trials * exploring_s(protocol);
-  for (const auto& [start, trials] : rehearsal.blocks) {
+  for (std::size_t b = 0; b < rehearsal.blocks.size(); ++b) {
+    const auto& [start, trials] = rehearsal.blocks[b];
     // Repeated practice is listed as one block. Its number of trials is the sum over all attempts.
     if (start.attempt == 0) {
       estimate.blocks.push_back({protocol::in_words(protocol, visit),
@@ -133,11 +133,13 @@ Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::u
                                  {}});
       estimate.blocks.back().before =
           interludes(protocol, order, static_cast<std::size_t>(start.block_index), visit);
-      estimate.trials.push_back(0);
+      estimate.trials.push_back(0), estimate.durations_s.push_back(0);
     }
-    estimate.trials.back() += static_cast<double>(trials.size());
-    estimate.duration_s +=
-        instruction_s + breaks_s(order[static_cast<std::size_t>(start.block_index)], trials.size());
+    const auto count = static_cast<double>(trials.size());
+    estimate.trials.back() += count;
+    estimate.durations_s.back() +=
+        rehearsal.block_s[b] + count * exploring_s(protocol) + instruction_s +
+        breaks_s(order[static_cast<std::size_t>(start.block_index)], trials.size());
   }
   if (!estimate.blocks.empty())
     estimate.blocks.back().after = interludes(protocol, order, order.size(), visit);
@@ -150,15 +152,19 @@ void add_visit(const std::vector<Estimate>& estimates, Check& check) {
   if (estimates.empty()) return;
   std::vector<double> durations, trials;
   auto blocks = estimates.front().blocks;
-  std::vector<std::vector<double>> by_block(blocks.size());
   for (const auto& estimate : estimates) {
-    for (std::size_t b = 0; b < std::min(by_block.size(), estimate.trials.size()); ++b)
-      by_block[b].push_back(estimate.trials[b]);
-    durations.push_back(estimate.duration_s);
-    trials.push_back(estimate.sum());
+    durations.push_back(estimate.duration_s());
+    trials.push_back(estimate.all_trials());
   }
   for (std::size_t b = 0; b < blocks.size(); ++b) {
-    blocks[b].trials = spread_of(by_block[b]);
+    std::vector<double> own_trials, own_s;
+    for (const auto& estimate : estimates) {
+      if (b >= estimate.trials.size()) continue;
+      own_trials.push_back(estimate.trials[b]);
+      own_s.push_back(estimate.durations_s[b]);
+    }
+    blocks[b].trials = spread_of(own_trials);
+    blocks[b].duration_s = spread_of(own_s);
     check.blocks.push_back(std::move(blocks[b]));
   }
   const auto duration_s = spread_of(durations);
@@ -380,7 +386,7 @@ Spread spread_of(std::vector<double> values) {
 
 SessionLength session_length(const Protocol& protocol, std::uint64_t seed) {
   const auto estimate = simulate(protocol, {}, seed);
-  return {estimate.sum(), estimate.duration_s};
+  return {estimate.all_trials(), estimate.duration_s()};
 }
 
 Check session_lengths(const Protocol& protocol, std::optional<int> sessions) {

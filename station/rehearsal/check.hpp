@@ -37,7 +37,6 @@ SessionLength session_length(const protocol::Protocol& protocol, std::uint64_t s
 inline constexpr double kLengthPrecision = 0.03;
 inline constexpr int kMostSessions = 1000;
 
-/// A block as a participant will run it.
 /// A part of a session without trials: a questionnaire, a consent, an explanation or a screening.
 struct CheckedInterlude {
   protocol::InterludeKind kind = protocol::InterludeKind::questionnaire;
@@ -45,6 +44,7 @@ struct CheckedInterlude {
   std::size_t pages = 0;  ///< number of questions or pages; 0 for a screening
 };
 
+/// A block as a participant will run it.
 struct CheckedBlock {
   std::string visit;  ///< such as "session 2, group trained"; "" if there is only one session and no group
   int session = 0;    ///< number of the planned session; 0 if the protocol plans none
@@ -52,6 +52,7 @@ struct CheckedBlock {
   std::string name, instruction;
   bool practice = false;
   Spread trials;
+  Spread duration_s = {};  ///< as Check::duration_s: with its instruction and its breaks
   /// what comes before the block and, for the last block of a session, after it
   std::vector<CheckedInterlude> before = {}, after = {};
 };

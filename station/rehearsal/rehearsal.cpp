@@ -131,6 +131,7 @@ Rehearsal rehearse(const protocol::Protocol& protocol, const protocol::Visit& vi
   trial::Director director(protocol, visit, seed, &programs, earlier);
   std::int64_t now_ns = 0;
   while (const auto* block = director.block()) {
+    const auto begun_ns = now_ns;
     auto& record = rehearsal.blocks.emplace_back();
     record.start = trial::block_start(*block, director.block_index(), director.attempt());
     now_ns += page_ns;
@@ -153,6 +154,7 @@ Rehearsal rehearse(const protocol::Protocol& protocol, const protocol::Visit& vi
     }
     for (auto& estimate : director.estimates()) rehearsal.estimates.push_back(std::move(estimate));
     director.finish_block();
+    rehearsal.block_s.push_back(static_cast<double>(now_ns - begun_ns) * 1e-9);
   }
   rehearsal.long_runs = director.long_runs();
   rehearsal.duration_s = static_cast<double>(now_ns) * 1e-9;

@@ -27,6 +27,7 @@ struct Rehearser {
 /// A simulated session: the rows that `run` would have stored, except those of tones.
 struct Rehearsal {
   std::vector<core::BlockRecord> blocks;            ///< every attempt at every block, in order
+  std::vector<double> block_s;                      ///< how long each of them took
   std::vector<trial::ProcedureEstimate> estimates;  ///< estimates of the procedures at the end of each block
   /// by how much runs of trials were longer than the protocol allows
   std::map<std::string, trial::Director::LongRun> long_runs;

@@ -44,10 +44,12 @@ namespace {
 using core::number;
 using core::Phrase, core::phrase, core::plain;
 
+std::string shown(double value, double unit) { return number(std::round(value / unit * 10) / 10, 4); }
+
 Phrase range(const rehearsal::Spread& spread, double unit) {
-  const auto shown = [&](double value) { return plain(number(std::round(value / unit * 10) / 10, 4)); };
-  const auto low = shown(spread.low), median = shown(spread.median), high = shown(spread.high);
-  return low == high ? median : phrase("check.range", {median, low, high});
+  const auto low = shown(spread.low, unit), median = shown(spread.median, unit),
+             high = shown(spread.high, unit);
+  return low == high ? plain(median) : phrase("check.range", {plain(median), plain(low), plain(high)});
 }
 
 std::string joined(const std::set<std::string>& list) {
@@ -85,7 +87,65 @@ Phrase describe(const rehearsal::CheckedBlock& block) {
   title.values.push_back(plain(block.name));
   if (!block.instruction.empty() && block.instruction != block.name)
     title.values.push_back(plain(" (" + block.instruction + ")"));
-  return {"check.block_trials", "", {title, range(block.trials, 1)}};
+  return {"",
+          "",
+          {{"check.block_trials", "", {title, range(block.trials, 1)}},
+           plain(", "),
+           phrase("check.minutes", {range(block.duration_s, 60)})}};
+}
+
+/// A number of the blocks of one part of the session: that of the only one or, if they differ, between which
+/// values it lies in all of them.
+Phrase range(const std::vector<const rehearsal::CheckedBlock*>& blocks,
+             rehearsal::Spread rehearsal::CheckedBlock::*what, double unit) {
+  auto whole = blocks.front()->*what;
+  const auto first = core::say(range(whole, unit), "en");
+  bool same = true;
+  for (const auto* block : blocks) {
+    const auto& one = block->*what;
+    whole.low = std::min(whole.low, one.low), whole.high = std::max(whole.high, one.high);
+    same = same && core::say(range(one, unit), "en") == first;
+  }
+  if (same) return range(blocks.front()->*what, unit);
+  const auto low = shown(whole.low, unit), high = shown(whole.high, unit);
+  return low == high ? plain(low) : plain(low + "\u2013" + high);
+}
+
+/// How many of these blocks each visit has, as "4 × "; nothing if it is one.
+std::string times(const std::vector<const rehearsal::CheckedBlock*>& blocks) {
+  std::map<std::string, int> by_visit;
+  for (const auto* block : blocks) ++by_visit[block->visit];
+  const auto [least, most] = std::minmax_element(by_visit.begin(), by_visit.end(),
+                                                 [](auto& a, auto& b) { return a.second < b.second; });
+  if (most->second == 1) return "";
+  const auto fewest = least->second == most->second ? "" : std::to_string(least->second) + "\u2013";
+  return fewest + std::to_string(most->second) + " \u00d7 ";
+}
+
+void add_lengths(const rehearsal::Check& check, CheckWords& words) {
+  std::map<std::string, std::vector<const rehearsal::CheckedBlock*>> by_name;
+  const auto add_pages = [&](const std::vector<rehearsal::CheckedInterlude>& parts) {
+    for (const auto& [kind, name, pages] : parts)
+      if (pages > 0)
+        words.lengths[{protocol::name(kind), name}] =
+            phrase(kind == protocol::InterludeKind::questionnaire ? "design.number_of_questions"
+                                                                  : "design.number_of_pages",
+                   {plain(pages)});
+  };
+  for (const auto& block : check.blocks) {
+    by_name[block.name].push_back(&block);
+    add_pages(block.before);
+    add_pages(block.after);
+  }
+  for (const auto& [name, blocks] : by_name) {
+    const auto count = plain(times(blocks));
+    words.lengths[{"block", name}] = {
+        "",
+        "",
+        {phrase("operator.trials"), plain(": "), count, range(blocks, &rehearsal::CheckedBlock::trials, 1),
+         plain("   \u00b7   "), count,
+         phrase("check.minutes", {range(blocks, &rehearsal::CheckedBlock::duration_s, 60)})}};
+  }
 }
 
 /// The parts of the session without trials, in the order in which they come.
@@ -184,6 +244,7 @@ CheckWords words_of(const rehearsal::Check& check) {
     words.facts.emplace_back(phrase(block.practice ? "practice" : "design.keys.block"), describe(block));
     add_interludes(block.after, words);
   }
+  add_lengths(check, words);
   add_tones(check, words);
   for (const auto& cue : check.cues.reports) {
     const bool leaks = cue.above_chance();

@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -84,6 +85,10 @@ struct CheckWords {
     core::Phrase what, hint;
   };
   std::vector<Remark> remarks;
+  /// For each part of the session, by the words for its kind and its name: how many trials it has and how
+  /// long it takes, or how many pages it has. The blocks of a sequence have the name of the sequence; a part
+  /// that comes several times is said once. Empty if there are problems.
+  std::map<std::pair<std::string, std::string>, core::Phrase> lengths;
 };
 CheckWords words_of(const rehearsal::Check& check);
 

@@ -58,6 +58,19 @@ TEST_CASE("the duration estimated by check is that of a rehearsed session plus t
   CHECK(check.duration_s.median == Approx(rehearsal.duration_s + beside_s));
 }
 
+TEST_CASE("the blocks of a session take the time of the session together, each its own share", "[check]") {
+  const std::string root = TURNPOINT_SOURCE_DIR;
+  const auto check = rehearsal::session_lengths(protocol::load(root + "/protocols/speed-accuracy.toml"), 1);
+  double sum_s = 0, fast_s = 0, careful_s = 0;
+  for (const auto& block : check.blocks) {
+    CHECK(block.duration_s.median > block.trials.median);  // a trial takes more than a second
+    sum_s += block.duration_s.median;
+    (block.instruction == "speed" ? fast_s : careful_s) += block.duration_s.median;
+  }
+  CHECK(sum_s == Approx(check.duration_s.median));
+  CHECK(fast_s < careful_s);
+}
+
 TEST_CASE("a procedure that continues has fewer trials on the second day, and check says how many",
           "[check]") {
   const std::string root = TURNPOINT_SOURCE_DIR;

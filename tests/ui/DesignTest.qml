@@ -8,6 +8,7 @@ PageTest {
     readonly property var everySection: ["study", "question", "scenes", "levels", "blocks", "timing", "other"]
 
     function init() {
+        failOnWarning(/Error/)
         taps = 0
         room.open("1234")
     }

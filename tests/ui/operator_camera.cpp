@@ -40,11 +40,12 @@ void OperatorCamera::shoot(const QString& page, const QString& name, QVariantMap
   properties["pixelsPerMm"] = panel_.pixels_per_mm;
   QQmlEngine engine;
   engine.addImportPath("qrc:/qt/qml");
+  // The first page of the program makes the module and its singletons known.
+  QQmlComponent component(&engine, QUrl("qrc:/qt/qml/Turnpoint/" + page));
   auto* screen = engine.singletonInstance<OperatorScreen*>(qmlTypeId("Turnpoint", 1, 0, "OperatorScreen"));
   screen->set_language(look_.language);
   screen->set_dark(look_.dark);
   screen->set_text_percent(look_.text_percent);
-  QQmlComponent component(&engine, QUrl("qrc:/qt/qml/Turnpoint/" + page));
   QQuickWindow window;
   auto* item = qobject_cast<QQuickItem*>(component.createWithInitialProperties(properties));
   if (item == nullptr) qFatal("%s: %s", qPrintable(page), qPrintable(component.errorString()));

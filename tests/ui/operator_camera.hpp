@@ -54,6 +54,7 @@ class OperatorCamera {
   /// `figure` is the name of the figure to show; the first one if there is none of that name.
   void shoot_report(const view::ReportPages& pages, const QString& name, const std::string& figure = "");
 
+  std::string language() const { return look_.language.toStdString(); }
   int count() const { return count_; }
 
  private:

@@ -1,5 +1,5 @@
 // Renders every page in every size and language into PNG files, for people to look at:
-//   screenshots --out DIR [--languages en,ja] [--sizes 800x480,1280x800] [--only rest,early]
+//   screenshots --out DIR [--languages en,ja,dark] [--sizes 800x480,1280x800] [--only rest,early]
 #include <QCommandLineParser>
 #include <QDir>
 #include <QFile>
@@ -10,8 +10,15 @@
 #include <QQuickWindow>
 #include <QTemporaryDir>
 #include <QTest>
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -36,14 +43,18 @@ Q_IMPORT_QML_PLUGIN(TurnpointPlugin)
 
 namespace {
 
+using turnpoint::ui::DesignController;
 using turnpoint::ui::Look;
 using turnpoint::ui::OperatorCamera;
+using turnpoint::ui::OperatorController;
 using turnpoint::ui::Panel;
 using turnpoint::ui::panel_of;
+using turnpoint::ui::RigController;
 using turnpoint::ui::SessionBridge;
 using turnpoint::ui::StartController;
 using turnpoint::ui::wait_for;
 
+const QString kSource = TURNPOINT_SOURCE_DIR;
 const QStringList kLanguages{"en", "de", "ja", "es", "zh", "ar"};
 
 /// Renders the station's window for one panel in one language.
@@ -116,26 +127,13 @@ class Camera {
   int count_ = 0;
 };
 
-/// A name for the pictures, and how the pages look in them.
-using Looks = std::vector<std::pair<QString, Look>>;
+/// The operator's pages have these looks besides those of the languages.
+const std::vector<std::pair<QString, Look>> kLooks{{"dark", {"en", true}}, {"large", {"en", false, 200}}};
 
-Looks looks_of(const QStringList& languages) {
-  Looks looks{{"dark", {"en", true}}, {"large", {"en", false, 200}}};
-  for (const auto& language : languages) looks.push_back({language, {language}});
-  return looks;
-}
-
-/// Calls `shoot` with a camera for each panel and each look. Returns the number of pictures.
-int shoot_each(const QString& out, const QStringList& sizes, const Looks& looks,
-               const std::function<void(OperatorCamera&)>& shoot) {
-  int count = 0;
-  for (const auto& size : sizes)
-    for (const auto& [name, look] : looks) {
-      OperatorCamera camera(out, panel_of(size), size + "-operator-" + name + "-", look);
-      shoot(camera);
-      count += camera.count();
-    }
-  return count;
+Look look_of(const QString& name) {
+  for (const auto& [known, look] : kLooks)
+    if (known == name) return look;
+  return {name};
 }
 
 /// The first item below `item` with this name; null if there is none.
@@ -153,189 +151,335 @@ void ask_reason(QQuickWindow& window) {
   QMetaObject::invokeMethod(dialog, "open", Q_ARG(QString, "leaves the country tomorrow"));
 }
 
-/// Renders the start page after it has refused a session that begins too early, and the dialog that asks why
-/// it does so nevertheless.
-int shoot_early(const QString& out, const QStringList& sizes, const QStringList& languages) {
-  using namespace turnpoint;
-  const std::string source = TURNPOINT_SOURCE_DIR;
-  const QTemporaryDir folder;
-  QDir::setCurrent(folder.path());
-  QFile::copy(QString::fromStdString(source + "/tests/support/thin_plate.toml"), "plate.toml");
-  const session::StationRequest request{source + "/protocols", "plate.toml", ui::today_exhibit(".")};
-  ui::OperatorController early(request);
-  ui::StudiesController studies(request);
-  ui::SessionsController sessions(request);
-  ui::RigController rig(request);
-  ui::DesignController design({folder.path().toStdString(), request.rig, request.protocols});
-  for (int i = 0; i < early.protocols().size(); ++i)
-    if (early.protocols()[i].toMap()["id"] == "friction-training") early.select(i);
-  wait_for([&] { return !early.checking(); });
-  early.enterParticipant("P01");
-  early.begin();
-  wait_for([&] { return !early.preparing() && !early.checking(); });
-  const QVariantMap pages{{"operating", QVariant::fromValue(&early)},
-                          {"studies", QVariant::fromValue(&studies)},
-                          {"sessions", QVariant::fromValue(&sessions)},
-                          {"rig", QVariant::fromValue(&rig)},
-                          {"design", QVariant::fromValue(&design)}};
-  const auto ready = [] { return true; };
-  return shoot_each(out, sizes, looks_of(languages), [&](OperatorCamera& camera) {
-    camera.shoot("StationPages.qml", "early", pages);
-    camera.shoot("StationPages.qml", "early-reason", pages, ready, ask_reason);
-  });
-}
-
 /// The designer with a study that has a mistake, so that a problem is at its field.
-void begin_study(turnpoint::ui::DesignController& design) {
+void begin_study(DesignController& design) {
   design.make("contrast", "my-study");
   auto text = design.text();
   design.setText(text.replace("deadline_s = 3.0", "deadline_s = -3.0"));
 }
 
-/// Renders the operator's pages with their bar in several languages, in the dark theme, and with large text.
-int shoot_places(const QString& out, const QStringList& sizes, const QStringList& languages,
-                 turnpoint::ui::OperatorController& operating) {
-  using namespace turnpoint;
-  const auto& request = operating.request();
-  ui::StudiesController studies(request);
-  studies.open();
-  studies.select(3);
-  wait_for([&] { return !studies.checking(); });
-  ui::SessionsController sessions(request);
-  ui::RigController rig(request);
-  rig.selfTest();
-  wait_for([&] { return rig.busy().isEmpty(); });
-  rig.examine();
-  wait_for([&] { return rig.busy().isEmpty(); });
-  const QTemporaryDir studies_folder;
-  ui::DesignController design(
-      {studies_folder.path().toStdString(), request.rig, TURNPOINT_SOURCE_DIR "/protocols"});
-  const auto design_ready = [&] {
-    return design.verdict() != "checking" &&
-           (design.stage() != "form" || design.verdict() == "bad" || !design.profiles().isEmpty()) &&
-           !design.precision()->busy();
+/// A picture of an operator's page.
+struct OperatorPicture {
+  QString name;
+  std::function<void(OperatorCamera&)> shoot;
+};
+
+/// Returns a function that makes something in a language, and remembers it.
+template <typename Make>
+auto by_language(const Make& make) {
+  using Made = std::invoke_result_t<Make, std::string>;
+  return [make, made = std::make_shared<std::map<std::string, Made>>()](
+             const std::string& language) -> const Made& {
+    const auto found = made->find(language);
+    return found != made->end() ? found->second : made->emplace(language, make(language)).first->second;
   };
-  auto with_cells = request;
-  with_cells.rig = "plate-with-cells.toml";
-  QFile::copy(TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated-forces.toml", "plate-with-cells.toml");
-  ui::RigController weighing(with_cells), weighed(with_cells);
-  weighed.weigh();
-  while (!weighed.busy().isEmpty()) {
-    wait_for([&] { return weighed.busy().isEmpty() || weighed.asked() == "weight"; });
-    weighed.answer("read");
+}
+
+/// Prepares what the operator's pages show, each thing when the first picture needs it. All files are in a
+/// temporary folder, which is the current one, so that a picture in a manual shows no folder of the machine
+/// on which it was made.
+class OperatorStudio {
+ public:
+  OperatorStudio() {
+    QDir::setCurrent(folder_.path());
+    QFile::copy(kSource + "/tests/support/thin_plate.toml", "plate.toml");
+    QFile::copy(kSource + "/deploy/rigs/simulated-forces.toml", "plate-with-cells.toml");
   }
-  weighed.selfTest();
-  wait_for([&] { return weighed.busy().isEmpty(); });
-  weighing.weigh();
-  wait_for([&] { return weighing.asked() == "weight"; });
-  return shoot_each(out, sizes, looks_of(languages), [&](OperatorCamera& camera) {
-    design.close();
+
+  std::vector<OperatorPicture> pictures() {
+    std::vector<OperatorPicture> all;
+    add_places(all);
+    add_rig(all);
+    add_design(all);
+    add_sessions(all);
+    add_tools(all);
+    return all;
+  }
+
+ private:
+  void add_places(std::vector<OperatorPicture>& all) {
     for (const char* place : {"run", "studies", "sessions", "rig"})
-      camera.shoot("StationPages.qml", place,
-                   {{"operating", QVariant::fromValue(&operating)},
-                    {"studies", QVariant::fromValue(&studies)},
-                    {"sessions", QVariant::fromValue(&sessions)},
-                    {"rig", QVariant::fromValue(&rig)},
-                    {"design", QVariant::fromValue(&design)},
-                    {"shown", place}},
-                   [&] { return !studies.checking() && !operating.checking(); });
-    camera.shoot("RigPage.qml", "weights", {{"rig", QVariant::fromValue(&weighing)}, {"tab", "weights"}});
-    for (const char* series : {"", "boundaries", "response", "friction", "sound", "panel_button"}) {
-      weighed.guide()->begin(series);
-      if (series == std::string("response")) {
-        weighed.guide()->play();
-        const auto percent = [&] {
-          const auto readings = weighed.guide()->readings();
-          return readings.isEmpty() ? 0 : readings[0].toMap()["percent"].toDouble();
-        };
-        wait_for([&] { return percent() > 1; });  // the first reading is from the ramp of the tone
-      }
-      camera.shoot("RigPage.qml", QString("guide-") + series,
-                   {{"rig", QVariant::fromValue(&weighed)}, {"tab", "guide"}});
-      weighed.guide()->leave();
-    }
-    camera.shoot("RigPage.qml", "self-test", {{"rig", QVariant::fromValue(&weighed)}, {"tab", "selfTest"}});
-    camera.shoot("RigPage.qml", "residuals", {{"rig", QVariant::fromValue(&weighed)}, {"tab", "weights"}});
-    const auto shoot_design = [&](const QString& picture, const QString& beside = "") {
-      camera.shoot("DesignPage.qml", picture, {{"design", QVariant::fromValue(&design)}, {"beside", beside}},
-                   design_ready);
-      design.precision()->set_watched(false);
+      all.push_back({place, [this, place](OperatorCamera& camera) {
+                       if (place == std::string("studies")) choose_study();
+                       if (place == std::string("rig")) examine_rig();
+                       design().close();
+                       auto pages = station_pages(operating());
+                       pages["shown"] = place;
+                       camera.shoot("StationPages.qml", place, pages,
+                                    [this] { return !studies_->checking() && !operating_->checking(); });
+                     }});
+    const auto ready = [] { return true; };
+    all.push_back({"early", [=, this](OperatorCamera& camera) {
+                     camera.shoot("StationPages.qml", "early", station_pages(early()), ready);
+                   }});
+    all.push_back({"early-reason", [=, this](OperatorCamera& camera) {
+                     camera.shoot("StationPages.qml", "early-reason", station_pages(early()), ready,
+                                  ask_reason);
+                   }});
+    all.push_back({"participant", [this](OperatorCamera& camera) {
+                     camera.shoot("OperatorPage.qml", "participant",
+                                  {{"operating", QVariant::fromValue(&operating())}, {"typing", true}});
+                   }});
+  }
+
+  void add_rig(std::vector<OperatorPicture>& all) {
+    const auto add = [&all](
+                         const QString& name, const QString& tab,
+                         const std::function<RigController&()>& prepared,
+                         const std::function<void(RigController&)>& leave = [](RigController&) {}) {
+      all.push_back({name, [=](OperatorCamera& camera) {
+                       auto& rig = prepared();
+                       camera.shoot("RigPage.qml", name, {{"rig", QVariant::fromValue(&rig)}, {"tab", tab}});
+                       leave(rig);
+                     }});
     };
-    design.startNew();
-    shoot_design("design-goals");
-    design.make("contrast", "my-study");
-    for (int section = 0; section < 7; ++section) {
-      design.show(section);
-      shoot_design("design-" + QString::number(section));
+    add("weights", "weights", [this]() -> RigController& { return weighing(); });
+    for (const QString series : {"", "boundaries", "response", "friction", "sound", "panel_button"})
+      add(
+          "guide-" + series, "guide", [this, series]() -> RigController& { return guided(series); },
+          [](RigController& rig) { rig.guide()->leave(); });
+    add("self-test", "selfTest", [this]() -> RigController& { return weighed(); });
+    add("residuals", "weights", [this]() -> RigController& { return weighed(); });
+  }
+
+  void add_design(std::vector<OperatorPicture>& all) {
+    const auto add = [&](
+                         const QString& name, const QString& beside, const std::function<void()>& prepare,
+                         const std::function<void()>& leave = [] {}) {
+      all.push_back({name, [=, this](OperatorCamera& camera) {
+                       prepare();
+                       camera.shoot("DesignPage.qml", name,
+                                    {{"design", QVariant::fromValue(&design())}, {"beside", beside}},
+                                    [this] { return design_ready(); });
+                       design().precision()->set_watched(false);
+                       leave();
+                     }});
+    };
+    const auto made = [this](int section) {
+      if (design().stage() != "form") design().make("contrast", "my-study");
+      design().show(section);
+    };
+    add("design-goals", "", [this] { design().startNew(); });
+    for (int section = 0; section < 7; ++section)
+      add("design-" + QString::number(section), "", [=] { made(section); });
+    for (const QString beside : {"text", "pages", "precision"})
+      add("design-" + beside, beside, [=] { made(6); });
+    const auto close = [this] { design().close(); };
+    add(
+        "design-pages-trial", "pages",
+        [=, this] {
+          made(6);
+          design().pages()->show(2);
+          design().pages()->choose("de");
+        },
+        close);
+    add("design-check", "check", [=] { made(6); });
+    add(
+        "design-problem", "",
+        [this] {
+          begin_study(design());
+          design().show(5);
+        },
+        close);
+  }
+
+  /// The view of a running session, and reports.
+  static void add_sessions(std::vector<OperatorPicture>& all) {
+    using namespace turnpoint;
+    const auto live = [](const char* protocol, int trials) {
+      return by_language(
+          [=](const std::string& language) { return ui::live_exhibit(protocol, trials, language); });
+    };
+    const auto add_live = [&all](const char* name, const auto& exhibit,
+                                 const std::optional<view::FingerGauges>& gauges = std::nullopt) {
+      all.push_back({name, [=](OperatorCamera& camera) {
+                       camera.shoot_live(exhibit(camera.language()), name, gauges);
+                     }});
+    };
+    const auto adaptive = live("boundary-adaptive", 40);
+    add_live("live", adaptive);
+    add_live(
+        "live-gauges", adaptive,
+        view::FingerGauges{{0.45, 0.3, 0.6, "0.68 N"}, {0.4, 0.25, 0.55, "82 mm/s"}, {0.62, 0, 0, "186 mm"}});
+    add_live("live-2ifc", live("friction-2ifc", 12));
+    add_live("live-oddity", live("two-spots-oddity", 12));
+    const auto report = [](const char* protocol, auto exhibit) {
+      return by_language([=](const std::string& language) { return exhibit(protocol, language); });
+    };
+    const auto add_report = [&all](const char* name, const auto& exhibit, const char* figure = "") {
+      all.push_back({name, [=](OperatorCamera& camera) {
+                       camera.shoot_report(exhibit(camera.language()), name, figure);
+                     }});
+    };
+    add_report("report-trade", report("speed-accuracy", ui::report_exhibit));
+    add_report("report-boundary", report("boundary-constant", ui::report_exhibit));
+    const auto forces = report("speed-accuracy", ui::forces_exhibit);
+    add_report("report-forces", forces, "finger");
+    add_report("report-friction", forces, "friction");
+  }
+
+  /// What is measured or tried out apart from a session.
+  void add_tools(std::vector<OperatorPicture>& all) {
+    using turnpoint::ui::PreviewController;
+    const auto add_preview = [&](const char* name, const char* protocol) {
+      const auto controller = std::make_shared<std::unique_ptr<PreviewController>>();
+      all.push_back({name, [=](OperatorCamera& camera) {
+                       auto& preview = *controller;
+                       if (!preview)
+                         preview = std::make_unique<PreviewController>(turnpoint::view::PreviewRequest{
+                             (kSource + "/protocols/" + protocol + ".toml").toStdString(),
+                             (kSource + "/tests/support/thin_plate.toml").toStdString(),
+                             "",
+                             {}});
+                       camera.shoot("PreviewPage.qml", name,
+                                    {{"controller", QVariant::fromValue(preview.get())}},
+                                    [&] { return !preview->busy(); });
+                     }});
+    };
+    add_preview("preview", "demo");
+    add_preview("preview-zone", "friction-2ifc");
+    all.push_back(
+        {"panel-latency", [this](OperatorCamera& camera) {
+           camera.shoot("LatencyPage.qml", "panel-latency", {{"controller", QVariant::fromValue(&latency_)}});
+         }});
+  }
+
+  /// The pages with their bar.
+  QVariantMap station_pages(OperatorController& shown) {
+    if (!studies_) studies_.emplace(request_);
+    if (!sessions_) sessions_.emplace(request_);
+    if (!rig_) rig_.emplace(request_);
+    return {{"operating", QVariant::fromValue(&shown)},
+            {"studies", QVariant::fromValue(&*studies_)},
+            {"sessions", QVariant::fromValue(&*sessions_)},
+            {"rig", QVariant::fromValue(&*rig_)},
+            {"design", QVariant::fromValue(&design())}};
+  }
+
+  OperatorController& operating() {
+    if (!operating_) {
+      turnpoint::ui::interrupted_exhibit(".");
+      operating_.emplace(request_);
+      operating_->select(9);
+      wait_for([&] { return !operating_->checking(); });
     }
-    for (const char* beside : {"text", "pages", "precision"})
-      shoot_design(QString("design-") + beside, beside);
-    design.pages()->show(2);
-    design.pages()->choose("de");
-    shoot_design("design-pages-trial", "pages");
-    shoot_design("design-check", "check");
-    begin_study(design);
-    design.show(5);
-    shoot_design("design-problem");
-  });
+    return *operating_;
+  }
+
+  /// The start page after it has refused a session that begins too early.
+  OperatorController& early() {
+    if (early_) return *early_;
+    auto request = request_;
+    request.database = turnpoint::ui::today_exhibit(".");
+    early_.emplace(request);
+    for (int i = 0; i < early_->protocols().size(); ++i)
+      if (early_->protocols()[i].toMap()["id"] == "friction-training") early_->select(i);
+    wait_for([&] { return !early_->checking(); });
+    early_->enterParticipant("P01");
+    early_->begin();
+    wait_for([&] { return !early_->preparing() && !early_->checking(); });
+    return *early_;
+  }
+
+  void choose_study() {
+    if (studies_chosen_) return;
+    station_pages(operating());
+    studies_->open();
+    studies_->select(3);
+    wait_for([&] { return !studies_->checking(); });
+    studies_chosen_ = true;
+  }
+
+  void examine_rig() {
+    if (rig_examined_) return;
+    station_pages(operating());
+    rig_->selfTest();
+    wait_for([&] { return rig_->busy().isEmpty(); });
+    rig_->examine();
+    wait_for([&] { return rig_->busy().isEmpty(); });
+    rig_examined_ = true;
+  }
+
+  turnpoint::session::StationRequest with_cells() const {
+    auto request = request_;
+    request.rig = "plate-with-cells.toml";
+    return request;
+  }
+
+  /// A rig on whose force cells weights are being put.
+  RigController& weighing() {
+    if (!weighing_) {
+      weighing_.emplace(with_cells());
+      weighing_->weigh();
+      wait_for([&] { return weighing_->asked() == "weight"; });
+    }
+    return *weighing_;
+  }
+
+  /// A rig whose force cells have been calibrated.
+  RigController& weighed() {
+    if (weighed_) return *weighed_;
+    weighed_.emplace(with_cells());
+    weighed_->weigh();
+    while (!weighed_->busy().isEmpty()) {
+      wait_for([&] { return weighed_->busy().isEmpty() || weighed_->asked() == "weight"; });
+      weighed_->answer("read");
+    }
+    weighed_->selfTest();
+    wait_for([&] { return weighed_->busy().isEmpty(); });
+    return *weighed_;
+  }
+
+  /// The same rig in a series of guided measurements.
+  RigController& guided(const QString& series) {
+    auto* guide = weighed().guide();
+    guide->begin(series);
+    if (series != "response") return *weighed_;
+    guide->play();
+    wait_for([&] {  // the first reading is from the ramp of the tone
+      const auto readings = guide->readings();
+      return !readings.isEmpty() && readings[0].toMap()["percent"].toDouble() > 1;
+    });
+    return *weighed_;
+  }
+
+  DesignController& design() {
+    if (!design_)
+      design_.emplace(
+          turnpoint::ui::DesignPlace{studies_folder_.path().toStdString(), request_.rig, request_.protocols});
+    return *design_;
+  }
+
+  bool design_ready() {
+    return design().verdict() != "checking" &&
+           (design().stage() != "form" || design().verdict() == "bad" || !design().profiles().isEmpty()) &&
+           !design().precision()->busy();
+  }
+
+  QTemporaryDir folder_, studies_folder_;
+  turnpoint::session::StationRequest request_{(kSource + "/protocols").toStdString(), "plate.toml",
+                                              "lab.sqlite"};
+  std::optional<OperatorController> operating_, early_;
+  std::optional<turnpoint::ui::StudiesController> studies_;
+  std::optional<turnpoint::ui::SessionsController> sessions_;
+  std::optional<RigController> rig_, weighing_, weighed_;
+  std::optional<DesignController> design_;
+  turnpoint::ui::LatencyController latency_{turnpoint::rig::LatencyReference::photodiode};
+  bool studies_chosen_ = false, rig_examined_ = false;
+};
+
+const std::vector<const char*> kModes{"live", "pilot", "simulated"};
+
+/// The names of the pictures that shoot_participant() takes.
+QStringList participant_names() {
+  QStringList names{"gate-locked", "gate", "language", "consent", "code"};
+  for (const char* mode : kModes)
+    for (const auto& exhibit : turnpoint::ui::gallery_in_mode("en", mode))
+      names << QString::fromStdString(exhibit.name);
+  return names;
 }
 
-/// Renders the pages about a session in one language: the view of a running session, reports, and what is
-/// measured or tried out apart from a session.
-int shoot_sessions(const QString& out, const QStringList& sizes, const QString& shown,
-                   turnpoint::ui::OperatorController& operating) {
-  using namespace turnpoint;
-  const std::string source = TURNPOINT_SOURCE_DIR, language = shown.toStdString();
-  ui::PreviewController preview(
-      {source + "/protocols/demo.toml", source + "/tests/support/thin_plate.toml", "", {}});
-  ui::PreviewController zones(
-      {source + "/protocols/friction-2ifc.toml", source + "/tests/support/thin_plate.toml", "", {}});
-  wait_for([&] { return !preview.busy() && !zones.busy(); });
-  const auto live = ui::live_exhibit("boundary-adaptive", 40, language),
-             live2 = ui::live_exhibit("friction-2ifc", 12, language);
-  const auto live3 = ui::live_exhibit("two-spots-oddity", 12, language);
-  const auto report = ui::report_exhibit("speed-accuracy", language),
-             report2 = ui::report_exhibit("boundary-constant", language),
-             report3 = ui::forces_exhibit("speed-accuracy", language);
-  const view::FingerGauges gauges{
-      {0.45, 0.3, 0.6, "0.68 N"}, {0.4, 0.25, 0.55, "82 mm/s"}, {0.62, 0, 0, "186 mm"}};
-  ui::LatencyController latency(rig::LatencyReference::photodiode);
-  return shoot_each(out, sizes, {{shown, {shown}}}, [&](OperatorCamera& camera) {
-    camera.shoot("OperatorPage.qml", "participant",
-                 {{"operating", QVariant::fromValue(&operating)}, {"typing", true}});
-    camera.shoot_live(live, "live");
-    camera.shoot_live(live, "live-gauges", gauges);
-    camera.shoot_live(live2, "live-2ifc");
-    camera.shoot_live(live3, "live-oddity");
-    camera.shoot_report(report, "report-trade");
-    camera.shoot_report(report2, "report-boundary");
-    camera.shoot_report(report3, "report-forces", "finger");
-    camera.shoot_report(report3, "report-friction", "friction");
-    camera.shoot("PreviewPage.qml", "preview", {{"controller", QVariant::fromValue(&preview)}},
-                 [&] { return !preview.busy(); });
-    camera.shoot("PreviewPage.qml", "preview-zone", {{"controller", QVariant::fromValue(&zones)}},
-                 [&] { return !zones.busy(); });
-    camera.shoot("LatencyPage.qml", "panel-latency", {{"controller", QVariant::fromValue(&latency)}});
-  });
-}
-
-int shoot_operator(const QString& out, const QStringList& sizes, const QStringList& languages) {
-  using namespace turnpoint;
-  const std::string source = TURNPOINT_SOURCE_DIR;
-  // Short relative names, so that a picture in a manual shows no folder of the machine on which it was made.
-  const QTemporaryDir folder;
-  QDir::setCurrent(folder.path());
-  QFile::copy(QString::fromStdString(source + "/tests/support/thin_plate.toml"), "plate.toml");
-  ui::interrupted_exhibit(".");
-  ui::OperatorController operating({source + "/protocols", "plate.toml", "lab.sqlite"});
-  operating.select(9);
-  wait_for([&] { return !operating.checking(); });
-  int count = shoot_places(out, sizes, languages, operating);
-  for (const auto& language : languages) count += shoot_sessions(out, sizes, language, operating);
-  return count;
-}
-
-int shoot_all(Camera& camera, const QString& language) {
+int shoot_participant(Camera& camera, const QString& language) {
   camera.shoot_gate();
   camera.start().ask({kLanguages, "", "", "2026-03", "pilot"});
   camera.shoot("language");
@@ -344,10 +488,20 @@ int shoot_all(Camera& camera, const QString& language) {
   camera.start().consent();
   camera.shoot("code");
   camera.start().enterCode("P07");
-  for (const char* mode : {"live", "pilot", "simulated"})
+  for (const char* mode : kModes)
     for (const auto& exhibit : turnpoint::ui::gallery_in_mode(language.toStdString(), mode))
       camera.shoot(exhibit.page, QString::fromStdString(exhibit.name));
   return camera.count();
+}
+
+/// Ends the program with status 2 if a word of the option is not one of those allowed.
+void refuse_others(const char* option, const QStringList& words, const QStringList& allowed) {
+  for (const auto& word : words)
+    if (!allowed.contains(word)) {
+      std::fprintf(stderr, "screenshots: --%s: %s; allowed: %s\n", option, qPrintable(word),
+                   qPrintable(allowed.join(", ")));
+      std::exit(2);
+    }
 }
 
 }  // namespace
@@ -358,31 +512,46 @@ int main(int argc, char** argv) {
   QGuiApplication app(argc, argv);
   QCommandLineParser parser;
   parser.addHelpOption();
-  parser.addOptions({{"out", "Folder for the pictures", "dir", "screenshots"},
-                     {"languages", "Languages", "list", "en,ja"},
-                     {"sizes", "Panel sizes in pixels, WIDTHxHEIGHT or WIDTHxHEIGHT@INCHES", "list",
-                      "800x480,1280x800,1920x1080,800x1280"},
-                     {"only", "Some participant's pages, early, operator", "list", ""}});
+  parser.addOptions(
+      {{"out", "Folder for the pictures", "dir", "screenshots"},
+       {"languages", "Languages; dark and large (text) are looks of the operator's pages in English", "list",
+        "en,ja,dark,large"},
+       {"sizes", "Panel sizes in pixels, WIDTHxHEIGHT or WIDTHxHEIGHT@INCHES", "list",
+        "800x480,1280x800,1920x1080,800x1280"},
+       {"only", "Names of pictures; operator: all pictures of the operator's pages", "list", ""}});
   parser.process(app);
   turnpoint::ui::set_fonts();
   const QString out = QDir(parser.value("out")).absolutePath();
   if (!QDir().mkpath(out)) qFatal("cannot make %s", qPrintable(out));
   const auto sizes = parser.value("sizes").split(','), languages = parser.value("languages").split(',');
-  const auto only = parser.value("only").split(',', Qt::SkipEmptyParts);
+  auto looks = kLanguages;
+  for (const auto& [name, look] : kLooks) looks << name;
+  refuse_others("languages", languages, looks);
+
+  OperatorStudio studio;
+  auto pictures = studio.pictures();
+  const auto participant = participant_names();
+  auto only = parser.value("only").split(',', Qt::SkipEmptyParts);
+  auto allowed = QStringList("operator") + participant;
+  for (const auto& picture : pictures) allowed << picture.name;
+  refuse_others("only", only, allowed);
+  if (!only.isEmpty() && !only.contains("operator"))
+    std::erase_if(pictures, [&](const auto& picture) { return !only.contains(picture.name); });
+  const bool any_participant = only.isEmpty() || std::ranges::any_of(only, [&](const auto& name) {
+                                 return participant.contains(name);
+                               });
+
   int count = 0;
-  for (const auto& size : sizes) {
+  for (const auto& size : sizes)
     for (const auto& language : languages) {
-      if (!kLanguages.contains(language))
-        qFatal("--languages: %s; allowed: en, de, ja, es, zh, ar", qPrintable(language));
-      Camera camera(out, panel_of(size), size + "-" + language + "-", only);
-      count += shoot_all(camera, language);
+      if (any_participant && kLanguages.contains(language)) {
+        Camera camera(out, panel_of(size), size + "-" + language + "-", only);
+        count += shoot_participant(camera, language);
+      }
+      OperatorCamera camera(out, panel_of(size), size + "-operator-" + language + "-", look_of(language));
+      for (const auto& picture : pictures) picture.shoot(camera);
+      count += camera.count();
     }
-  }
-  const auto wanted = [&](const char* part) {
-    return only.isEmpty() || only.contains("operator") || only.contains(part);
-  };
-  if (wanted("early")) count += shoot_early(out, sizes, languages);
-  if (wanted("operator")) count += shoot_operator(out, sizes, languages);
-  std::printf("%d pictures in %s\n", count, qPrintable(QDir(out).absolutePath()));
+  std::printf("%d pictures in %s\n", count, qPrintable(out));
   return 0;
 }

@@ -362,6 +362,39 @@ Item {
             refused(() => design.moveUp(0, moved.index))
         }
 
+        function test_each_card_says_how_many_trials_it_has_and_how_long_it_takes() {
+            begin("contrast", "l")
+            tap("section-blocks")
+            tap("add-explanation")
+            const design = designPage().design
+            const says = index => find(room.screen, "length" + index).text
+            const parts = () => groupsNow().map((part, index) => part.name + ": " + says(index))
+            const unknown = text => parts().every(part => part.endsWith(": " + text))
+            verify(unknown("Checking …"), parts().join("\n"))
+            tryVerify(() => ["good", "warned"].includes(design.verdict), 60000)
+            verify(/^practice: Trials: 6   ·   [0-9.]+( \([0-9.]+ to [0-9.]+\))? min$/.test(parts()[0]), parts()[0])
+            verify(/^main: Trials: [0-9.]+ \([0-9.]+ to [0-9.]+\)   ·   [0-9.]+ \([0-9.]+ to [0-9.]+\) min$/.test(parts()[1]), parts()[1])
+            compare(parts()[2], "explanation-1: Pages: 1")
+            // the list of the check has the same figures
+            tap("side-check")
+            const listed = texts(room.screen).find(text => text.startsWith("main, trials: "))
+            compare("main, " + says(1).replace("T", "t").replace("   ·   ", ", "), listed)
+            // another number of trials: no figure from before is shown
+            tapField("trials")
+            erase(1)
+            type("9")
+            verify(unknown("Checking …"), parts().join("\n"))
+            tryVerify(() => says(0).startsWith("Trials: 9 "), 60000)
+            const good = design.text
+            design.setText(good.replace("trials = 9", "trials = -9"))
+            compare(design.verdict, "bad")
+            verify(unknown("Not known: the file has a mistake"), parts().join("\n"))
+            design.setText(good)
+            tryVerify(() => says(0).startsWith("Trials: 9 "), 60000)
+            design.setText("not TOML")
+            verify(unknown("Not known: the file has a mistake"), parts().join("\n"))
+        }
+
         function order() { return designPage().design.groups.map(group => group.kind + " " + group.name).join(", ") }
         /// Where a name of the session's parts is in the text.
         function placeOf(name) { return designPage().design.text.indexOf('name = "' + name + '"') }

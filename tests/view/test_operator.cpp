@@ -320,7 +320,8 @@ TEST_CASE("the facts of a check are said in each language, with the names from t
   rehearsal::Check check;
   check.rig_name = "plate";
   check.duration_s = {300, 360, 480};
-  check.blocks = {{"session 2, group trained", 2, "trained", "main", "speed", false, {20, 20, 20}}};
+  check.blocks = {
+      {"session 2, group trained", 2, "trained", "main", "speed", false, {20, 20, 20}, {60, 90, 150}}};
   const auto said = [&](const char* language) {
     std::vector<std::string> lines;
     for (const auto& [label, value] : view::words_of(check).facts)
@@ -329,9 +330,51 @@ TEST_CASE("the facts of a check are said in each language, with the names from t
   };
   using Lines = std::vector<std::string>;
   CHECK(said("en") == Lines{"Rig: plate", "Trials: 0", "Duration: 6 (5 to 8) min",
-                            "Block: session 2, group trained: main (speed), trials: 20"});
-  CHECK(said("de") == Lines{"Aufbau: plate", "Durchgänge: 0", "Dauer: 6 (5 bis 8) min",
-                            "Block: Sitzung 2, Gruppe trained: main (speed), Durchgänge: 20"});
+                            "Block: session 2, group trained: main (speed), trials: 20, 1.5 (1 to 2.5) min"});
+  CHECK(said("de") ==
+        Lines{"Aufbau: plate", "Durchgänge: 0", "Dauer: 6 (5 bis 8) min",
+              "Block: Sitzung 2, Gruppe trained: main (speed), Durchgänge: 20, 1.5 (1 bis 2.5) min"});
+}
+
+TEST_CASE("each part of a session has its length for a card, with the figures of the check", "[operator]") {
+  using Kind = protocol::InterludeKind;
+  rehearsal::Check check;
+  const auto block = [&](const char* visit, const char* name, rehearsal::Spread trials,
+                         rehearsal::Spread duration_s) {
+    check.blocks.push_back({visit, 0, "", name, "", false, trials, duration_s});
+  };
+  const auto says = [&](const char* kind, const char* name, const char* language = "en") {
+    return core::say(view::words_of(check).lengths.at({kind, name}), language);
+  };
+  block("", "practice", {6, 6, 6}, {61, 61, 62});
+  block("", "main", {40, 44, 50}, {400, 480, 600});
+  check.blocks.front().before = {
+      {Kind::consent, "form", 1}, {Kind::explanation, "intro", 3}, {Kind::screening, "who", 0}};
+  check.blocks.back().after = {{Kind::questionnaire, "after", 4}};
+  CHECK(says("block", "practice") == "Trials: 6   ·   1 min");
+  CHECK(says("block", "main") == "Trials: 44 (40 to 50)   ·   8 (6.7 to 10) min");
+  CHECK(says("block", "main", "de") == "Durchgänge: 44 (40 bis 50)   ·   8 (6.7 bis 10) min");
+  CHECK(says("consent", "form") == "Pages: 1");
+  CHECK(says("explanation", "intro") == "Pages: 3");
+  CHECK(says("questionnaire", "after") == "Questions: 4");
+  CHECK(view::words_of(check).lengths.count({"screening", "who"}) == 0);
+
+  SECTION("the blocks of a sequence are said together") {
+    check.blocks.clear();
+    for (const double s : {300, 360, 360, 300}) block("", "main", {84, 84, 84}, {s, s, s});
+    CHECK(says("block", "main") == "Trials: 4 \u00d7 84   ·   4 \u00d7 5\u20136 min");
+  }
+  SECTION("a block of several visits is said once") {
+    check.blocks.clear();
+    for (const char* visit : {"session 1", "session 2"}) block(visit, "main", {84, 84, 84}, {300, 300, 300});
+    CHECK(says("block", "main") == "Trials: 84   ·   5 min");
+    block("session 2", "main", {80, 84, 84}, {300, 300, 300});
+    CHECK(says("block", "main") == "Trials: 1\u20132 \u00d7 80\u201384   ·   1\u20132 \u00d7 5 min");
+  }
+  SECTION("while there is a mistake nothing is known") {
+    check.problems.push_back({{"a.toml", 3, 1}, core::plain("what"), core::plain("allowed")});
+    CHECK(view::words_of(check).lengths.empty());
+  }
 }
 
 TEST_CASE("a check that is no longer wanted is abandoned before it plans anything", "[operator]") {

@@ -14,7 +14,8 @@ Item {
     required property Flickable view
     signal chosen(group: int)
 
-    readonly property real step: theme.controlHeight + Math.round(0.5 * theme.unit)
+    readonly property real cardHeight: Math.max(theme.controlHeight, Math.ceil(1.4 * (theme.textBody + theme.textSmall) + theme.unit))
+    readonly property real step: cardHeight + Math.round(0.5 * theme.unit)
     /// The card that is dragged, and the place between two cards where it would come, from 0; -1 if none is dragged.
     property int held: -1
     property int place: -1
@@ -30,7 +31,13 @@ Item {
 
     function follow() {
         lifted = mapFromItem(view, 0, finger).y - grabbed
-        place = Math.max(0, Math.min(parts.length, Math.round((lifted + 0.5 * theme.controlHeight) / step)))
+        place = Math.max(0, Math.min(parts.length, Math.round((lifted + 0.5 * cardHeight) / step)))
+    }
+    /// What a card says below its name. The figures are those of the last check; none are shown while it runs.
+    function lengthOf(index: int) : string {
+        if (design.verdict === "checking") return texts.text("operator.checking")
+        if (design.verdict === "bad") return texts.text("design.length_unknown")
+        return texts.say(design.lengths[index] ?? "")
     }
     /// Ends the dragging and changes nothing.
     function letGo() {
@@ -53,7 +60,7 @@ Item {
             readonly property bool filled: dragged || tap.pressed
             objectName: "card" + index
             width: root.width
-            height: root.theme.controlHeight
+            height: root.cardHeight
             y: dragged ? root.lifted : index * root.step
             z: dragged ? 1 : 0
             radius: root.theme.radius
@@ -64,19 +71,32 @@ Item {
                 anchors.fill: parent
                 activeFocusOnTab: true
                 Accessible.role: Accessible.Button
-                Accessible.name: name.text
+                Accessible.name: name.text + (length.text === "" ? "" : ", " + length.text)
                 Accessible.onPressAction: root.chosen(card.index)
                 Keys.onReturnPressed: root.chosen(card.index)
                 Keys.onSpacePressed: root.chosen(card.index)
-                PlainText {
-                    id: name
-                    readAloud: false
-                    anchors { left: grip.visible ? grip.right : parent.left; right: parent.right; top: parent.top; bottom: parent.bottom; leftMargin: grip.visible ? 0 : root.theme.unit; rightMargin: root.theme.unit }
-                    text: root.design.label([card.modelData.kind], root.texts.language) + (card.modelData.name === "" ? "" : "  “" + card.modelData.name + "”")
-                    color: card.filled ? root.theme.actionText : root.theme.ink
-                    font { pixelSize: root.theme.textBody; weight: Font.DemiBold }
-                    verticalAlignment: Text.AlignVCenter
-                    elide: Text.ElideRight
+                Column {
+                    anchors { left: grip.visible ? grip.right : parent.left; right: parent.right; verticalCenter: parent.verticalCenter; leftMargin: grip.visible ? 0 : root.theme.unit; rightMargin: root.theme.unit }
+                    PlainText {
+                        id: name
+                        readAloud: false
+                        width: parent.width
+                        text: root.design.label([card.modelData.kind], root.texts.language) + (card.modelData.name === "" ? "" : "  “" + card.modelData.name + "”")
+                        color: card.filled ? root.theme.actionText : root.theme.ink
+                        font { pixelSize: root.theme.textBody; weight: Font.DemiBold }
+                        elide: Text.ElideRight
+                    }
+                    PlainText {
+                        id: length
+                        objectName: "length" + card.index
+                        readAloud: false
+                        width: parent.width
+                        visible: text !== ""
+                        text: root.lengthOf(card.index)
+                        color: card.filled ? root.theme.actionText : root.theme.quiet
+                        font.pixelSize: root.theme.textSmall
+                        elide: Text.ElideRight
+                    }
                 }
                 MouseArea {
                     id: grip

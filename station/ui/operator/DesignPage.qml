@@ -240,7 +240,7 @@ Rectangle {
         title: field === null ? "" : field.kind === "entry" ? texts.text("design.add_entry") : root.design.label(field.title, texts.language)
         help: texts.say(field?.help ?? "")
         suggestions: field?.allowed ?? []
-        sayings: Object.fromEntries(suggestions.map(word => [word, root.design.word(field?.key ?? "", word, texts.language)]))
+        sayings: suggestions.reduce((said, word) => Object.assign(said, { [word]: root.design.word(field?.key ?? "", word, texts.language) }), {})
         pick: suggestions.length > 0 && field.kind === "word"
         list: field?.list ?? false
         closed: field?.closed ?? false

@@ -53,6 +53,9 @@ class DesignController : public QObject {
   Q_PROPERTY(QVariantList facts READ facts NOTIFY changed)
   /// language of the figures, such as "de"
   Q_PROPERTY(QString language READ language WRITE set_language NOTIFY changed)
+  /// How many trials each table of the chosen page has and how long it takes, as the check last found; "" for
+  /// a table of which it says nothing, and for all while the check runs or the file has a mistake.
+  Q_PROPERTY(QVariantList lengths READ lengths NOTIFY changed)
   Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)
   /// state of the check: checking, good, warned or bad
   Q_PROPERTY(QString verdict READ verdict NOTIFY changed)
@@ -94,6 +97,7 @@ class DesignController : public QObject {
   QVariantList groups() const;
   QVariantList remarks() const;
   QVariantList facts() const;
+  QVariantList lengths() const;
   QString language() const { return language_; }
   void set_language(const QString& language);  // the setter of a QML property must have this name (NOLINT)
   QVariantList cues() const;

@@ -86,6 +86,17 @@ void DesignController::set_language(const QString& language) {
 
 QVariantList DesignController::facts() const { return to_list(words_.facts); }
 
+QVariantList DesignController::lengths() const {
+  QVariantList list;
+  if (section_ >= static_cast<int>(form_.size())) return list;
+  for (const auto& group : form_[static_cast<std::size_t>(section_)].groups) {
+    const auto& kind = group.path.front();
+    const auto found = words_.lengths.find({kind == "sequence" ? "block" : kind, group.name});
+    list += found == words_.lengths.end() ? QVariant("") : to_variant(found->second);
+  }
+  return list;
+}
+
 QVariantList DesignController::cues() const {
   QVariantList list;
   for (const auto& cue : words_.cues)

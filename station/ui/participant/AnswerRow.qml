@@ -18,8 +18,8 @@ Item {
     readonly property bool captioned: captions.some(caption => caption !== "")
     /// True if the captions do not fit on the buttons. They are then listed below them.
     readonly property bool listed: captioned && plan.listed
-    /// How the answers are arranged: {columns, rows, gap, target (the least height of a button), listed}. Large targets
-    /// come first, and then few rows.
+    /// How the answers are arranged: {columns, rows, gap, target (the least height of a button), listed, small (whether letters
+    /// must be smaller than the smallest size)}. Large targets come first, and then few rows.
     readonly property var plan: {
         const targets = [theme.targetMin, Math.round(0.8 * theme.targetMin), theme.targetLeast]
         const gaps = captioned ? [theme.unit, 2] : [theme.targetGap, Math.min(theme.targetGap, Math.round(2 * theme.pixelsPerMm)), 2]
@@ -34,17 +34,28 @@ Item {
                             const made = arranged(rows, target, gap, listed)
                             if (made) return made
                         }
-        // nothing fits: the widest buttons that are still high enough
+        // long texts take all the height that there is, and may take a little of what a finger needs
+        for (let rows = 1; rows <= count; ++rows) {
+            const made = arranged(rows, tallest(rows), 2, captioned)
+            if (made) return made
+        }
+        // nothing fits: the widest buttons that are still high enough, with smaller letters rather than broken words
         let columns = 1
-        while (columns < count && Math.ceil(count / columns) * (theme.targetLeast + 2) > most) ++columns
-        return { columns: columns, rows: Math.ceil(count / columns), gap: 2, target: theme.targetLeast, listed: captioned }
+        while (columns < count && Math.ceil(count / columns) * (lowest + 2) > most) ++columns
+        const rows = Math.ceil(count / columns)
+        return { columns: columns, rows: rows, gap: 2, target: count > 0 ? tallest(rows) : theme.targetLeast, listed: captioned, small: count > 0 }
+    }
+    readonly property int lowest: Math.round(0.75 * theme.targetLeast)
+    /// The height of the buttons if so many rows with a narrow gap fill the height.
+    function tallest(rows: int) : real {
+        return Math.max(lowest, Math.floor((most - (captioned ? legend.implicitHeight + theme.unit : 0) + 2) / rows) - 2)
     }
     function arranged(rows: int, target: real, gap: real, listed: bool) : var {
         const columns = Math.ceil(count / rows)
         if (Math.ceil(count / columns) !== rows) return null
         const buttonWidth = Math.floor((width - (columns - 1) * gap) / columns)
         const high = rows * (target + gap) - gap + (listed ? legend.implicitHeight + theme.unit : 0)
-        if (buttonWidth < target || high > most || !fitting(buttonWidth - 2 * insetOf(columns), target, rows, listed)) return null
+        if (buttonWidth < Math.min(target, theme.targetMin) || high > most || !fitting(buttonWidth - 2 * insetOf(columns), target, rows, listed)) return null
         return { columns: columns, rows: rows, gap: gap, target: target, listed: listed }
     }
     readonly property int rows: Math.max(1, plan.rows)
@@ -105,7 +116,7 @@ Item {
             text: root.answers[index] ?? ""
             font { pixelSize: root.theme.textTitle; weight: Font.DemiBold }
             fontSizeMode: Text.Fit
-            minimumPixelSize: root.theme.textLeast
+            minimumPixelSize: Math.round((root.plan.small ? 0.65 : 1) * root.theme.textLeast)
             wrapMode: Text.WordWrap
         }
     }

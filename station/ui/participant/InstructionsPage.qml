@@ -36,7 +36,7 @@ Item {
         anchors {
             left: parent.left; right: parent.right
             top: badge.visible ? badge.bottom : title.bottom; topMargin: root.theme.unit
-            bottom: surface.top; bottomMargin: root.theme.unit
+            bottom: surface.visible ? surface.top : go.top; bottomMargin: root.theme.unit
         }
         text: root.texts.phrased(root.page.text)
     }
