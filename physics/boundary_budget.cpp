@@ -266,9 +266,9 @@ BoundaryBudget boundary_budget(const Surface& surface, double f, double x) {
 namespace {
 
 constexpr int kDraws = 64;
-// A thick plate is replaced by a thin one up to this h/W at the turning point, and unless it is found that
-// the level is less uncertain than that; then it matters how far each resonance is.
-constexpr double thickest = 0.35, little_dB = 1;
+// A thick plate is replaced by a thin one up to this h/W at the turning point, unless that is found to be
+// less uncertain than this; then it matters how far each resonance is.
+constexpr double thickest_replaced = 0.35, little_dB = 1;
 
 // Returns the surface with one parameter away from its value by this many standard deviations. What cannot be
 // negative is distributed log-normally.
@@ -298,9 +298,10 @@ Surface thin_equivalent(const Surface& surface, double f) {
   const double wider = cut_off_half_width_m(thin, f) / cut_off_m(f);
   // A loss acts on a wave by the derivative of ln k to ln f, which is 1/2 on a thin plate.
   constexpr double aside = 1e-4;
-  thin.quality_factor *= aside / std::log(cut_off_m(f * (1 - aside)) / cut_off_m(f * (1 + aside)));
+  thin.quality_factor = std::max(
+      1.0, thin.quality_factor * aside / std::log(cut_off_m(f * (1 - aside)) / cut_off_m(f * (1 + aside))));
   if (auto* linear = std::get_if<LinearTaper>(&thin.taper))
-    linear->half_width_m *= wider, linear->slope *= wider;
+    linear->half_width_m *= wider, linear->slope = std::min(1.0, linear->slope * wider);
   else if (auto* exponential = std::get_if<ExponentialTaper>(&thin.taper))
     exponential->half_width_m *= wider;
   else
@@ -435,7 +436,7 @@ Uncertainty uncertainty(const Surface& surface, double f, double at_m) {
       one = away(one, uncertain[i], deviations(static_cast<Eigen::Index>(i), draw));
     }
   if (surface.theory != PlateTheory::kirchhoff &&
-      surface.thickness_m <= thickest * cut_off_half_width_m(surface, f)) {
+      surface.thickness_m <= thickest_replaced * cut_off_half_width_m(surface, f)) {
     const SolveLevel solve = [](const Surface& s, double at_Hz, double x) {
       return level_dB(thin_equivalent(s, at_Hz), at_Hz, x);
     };
@@ -443,6 +444,21 @@ Uncertainty uncertainty(const Surface& surface, double f, double at_m) {
     if (budget.total_dB > little_dB) return {budget, solve};
   }
   return {spread(surface, f, at_m, drawn, level_dB), level_dB};
+}
+
+// Standard deviation of the level if only this parameter is uncertain.
+double alone_dB(const Surface& surface, double f, double at_m, Parameter parameter, SolveLevel solve) {
+  // Gauss and Hermite's five points of a normal deviate.
+  constexpr std::array points{1.355626179974266, 2.856970013872806},
+      weights{0.222075922005613, 0.011257411327721};
+  const double here_dB = solve(surface, f, at_m);
+  double mean = 0, square = 0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (const double side : {-1.0, 1.0}) {
+      const double moved = solve(away(surface, parameter, side * points[i]), f, at_m) - here_dB;
+      mean += weights[i] * moved, square += weights[i] * moved * moved;
+    }
+  return std::sqrt(std::max(0.0, square - mean * mean));
 }
 
 }  // namespace
@@ -457,21 +473,12 @@ LevelBudget level_budget(const Surface& surface, double f, double at_m) {
   validate(surface, f);
   require_on_surface(surface, "at_m", at_m);
   auto [budget, solve] = uncertainty(surface, f, at_m);
-  if (budget.total_dB == 0) return budget;
-  const double here_dB = solve(surface, f, at_m);
   for (const Parameter parameter : parameters(surface)) {
     const double sd = standard_deviation(surface, parameter);
     if (!(sd > 0)) continue;
-    // Gauss and Hermite's five points of a normal deviate.
-    constexpr std::array points{1.355626179974266, 2.856970013872806},
-        weights{0.222075922005613, 0.011257411327721};
-    double mean = 0, square = 0;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      for (const double side : {-1.0, 1.0}) {
-        const double moved = solve(away(surface, parameter, side * points[i]), f, at_m) - here_dB;
-        mean += weights[i] * moved, square += weights[i] * moved * moved;
-      }
-    budget.parts.push_back({parameter, sd, std::sqrt(std::max(0.0, square - mean * mean))});
+    double part_dB = alone_dB(surface, f, at_m, parameter, solve);
+    if (solve != level_dB && part_dB < little_dB) part_dB = alone_dB(surface, f, at_m, parameter, level_dB);
+    budget.parts.push_back({parameter, sd, part_dB});
   }
   std::stable_sort(budget.parts.begin(), budget.parts.end(),
                    [](const auto& a, const auto& b) { return a.level_dB > b.level_dB; });

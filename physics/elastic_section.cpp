@@ -14,7 +14,8 @@ namespace {
 constexpr double thin_root = 2.3650203724313520;
 constexpr double thickest = 2, highest_poisson = 0.49;
 
-constexpr double table[][12] = {
+constexpr std::size_t poisson_terms = 12;
+constexpr double table[][poisson_terms] = {
 #include "physics/elastic_table.inc"
 };
 
