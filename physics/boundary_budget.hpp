@@ -37,7 +37,7 @@ Surface changed(Surface surface, Parameter parameter, double by);
 // The derivative of a boundary's position with respect to a parameter (m per SI unit) at constant frequency.
 // `boundary_m` is the boundary's position at that frequency. For every definition of the boundary, taper and
 // plate theory, the result agrees with solving again on changed surfaces to 1 % of the largest derivative. It
-// is 0 for the quality factor. Takes microseconds (plate theory elastic: 0.1 s).
+// is 0 for the quality factor. Takes microseconds.
 double boundary_derivative(const Surface& surface, Parameter parameter, double frequency_Hz,
                            double boundary_m);
 
@@ -76,10 +76,13 @@ struct LevelBudget {
 // there, divided by that of the drive edge. They shift the standing wave against the drive edge, through many
 // decibels between a resonance and the next minimum, so that a derivative says nothing. The model `mode` is
 // solved on 64 surfaces whose parameters are drawn together, with their correlations, by Latin hypercube
-// sampling (McKay, Beckman, Conover 1979) with a fixed seed, and five times for each parameter alone.
-// Densities, moduli, thicknesses, tensions and
-// quality factors are log-normal. Throws std::invalid_argument if a standard deviation is so large that a
-// drawn surface cannot exist.
+// sampling (McKay, Beckman, Conover 1979) with a fixed seed, and five times for each parameter alone. A thick
+// plate with h/W to 0.35 at its turning point is replaced by the thin plate with the same wavenumber, turning
+// points and loss; on aluminium plates of 2 and 3 mm in Mindlin's theory, 22 to 38 kHz, this changes the
+// total by 5 % and the ends of the interval by 1.2 dB at most. What this finds to be below 1 dB, total or
+// part, is solved on the thick plate itself. Densities, moduli, thicknesses, tensions and quality factors are
+// log-normal. Throws std::invalid_argument if a standard deviation is so large that a drawn surface cannot
+// exist.
 LevelBudget level_budget(const Surface& surface, double frequency_Hz, double at_m);
 
 // The same without the parts.

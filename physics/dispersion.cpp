@@ -48,7 +48,7 @@ Dispersion::Dispersion(const Surface& s)
   if (theory == PlateTheory::kirchhoff) return;
   mindlin_ = MindlinPlate(s);
   if (theory == PlateTheory::mindlin) return;
-  elastic_ = &ElasticCutOff::of(s.poisson);
+  elastic_.emplace(s.poisson);
   const double rigidity = *s.modulus_Pa / (2 * (1 + s.poisson));
   shear_speed_m_s_ = std::sqrt(rigidity / s.density_kg_m3);
   mindlin_.shear_N_per_m = 5 / (6 - s.poisson) * rigidity * s.thickness_m;

@@ -2,6 +2,7 @@
 // Computes wavenumbers and local cut-off frequencies from tension, bending stiffness and the support of the
 // sides.
 #include <complex>
+#include <optional>
 
 #include "physics/elastic_section.hpp"
 #include "physics/mindlin_plate.hpp"
@@ -46,7 +47,7 @@ struct Dispersion {
 
  private:
   MindlinPlate mindlin_;
-  const ElasticCutOff* elastic_ = nullptr;
+  std::optional<ElasticCutOff> elastic_;
   double shear_speed_m_s_ = 0;
   double thickness_m_ = 0;
 };

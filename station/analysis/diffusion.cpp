@@ -381,8 +381,8 @@ class Sampler {
     const double tail = (1 - confidence) / 2;
     std::vector<std::size_t> order(at_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::vector<double> value(
-        at_.size());  // side by side in memory, which makes sorting several times faster
+    // The values stand side by side in memory, which makes sorting several times faster.
+    std::vector<double> value(at_.size());
     for (Eigen::Index k = 0; k < at_[0].size(); ++k) {
       for (std::size_t i = 0; i < at_.size(); ++i) value[i] = at_[i][k];
       std::sort(order.begin(), order.end(),

@@ -86,7 +86,7 @@ CASES = {
     "skipped": '<testcase name="skipped" time="0" status="notrun"><skipped message="SKIP_RETURN_CODE=77"/>'
                "<system-out>skipped: no validator; pip install it\n</system-out></testcase>",
     "partly": '<testcase name="partly" time="2" status="run"><system-out>test_x (X.test_x) ... skipped \'no screen here\'\n</system-out></testcase>',
-    "bad": '<testcase name="bad" time="3" status="fail"><failure message=""/><system-out></system-out></testcase>',
+    "bad": '<testcase name="bad" time="3" status="fail"><failure message=""/><system-out>1 == 2\nno more\n</system-out></testcase>',
     "gone": '<testcase name="gone" time="0" status="notrun"><skipped message="Unable to find executable"/><system-out/></testcase>',
 }
 
@@ -130,6 +130,8 @@ class Summary(unittest.TestCase):
             status, lines = self.summary(cases)
             self.assertEqual(status, 1, lines)
             self.assertTrue(lines[-1].startswith("tests/run: FAILED"), lines)
+            if "bad" in cases:
+                self.assertEqual(lines[lines.index("  bad") + 1:][:2], ["    1 == 2", "    no more"])
         self.assertEqual(self.summary(["good"], "--failed-parts", "1")[0], 1)
 
 

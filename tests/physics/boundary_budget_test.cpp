@@ -172,6 +172,7 @@ TEST_CASE("the uncertainty of a level agrees with the scatter of random surfaces
   int inside = 0, all = 0;
   for (const Surface& nominal : {plate(), thick, membrane(LinearTaper{0.03, 0.1}), lossy, fitted}) {
     const bool pair = !nominal.correlations.empty();
+    const int inside_before = inside, all_before = all;
     for (const double f : {24e3, 30e3, 38e3}) {
       const auto level_dB = [&](const Surface& s, double x) {
         const auto line = make_centre_line(s, f, Model::mode);
@@ -204,10 +205,28 @@ TEST_CASE("the uncertainty of a level agrees with the scatter of random surfaces
       CHECK(budget.total_dB == Approx(sampled).epsilon(0.15));
       for (const auto& part : budget.parts) CHECK(part.level_dB <= budget.parts.front().level_dB);
     }
+    CHECK(inside - inside_before > 0.91 * (all - all_before));
   }
   CAPTURE(inside, all);
   CHECK(inside > 0.93 * all);
   CHECK(inside < 0.97 * all);
+  // a thick plate's level that hardly varies: the thin plate in its place is left
+  Surface steady = thick;
+  steady.sd = {};
+  steady.sd.thickness_m = 0.005e-3;
+  const double x = make_centre_line(steady, 30e3, Model::mode)->last_peak_m().value();
+  const auto at = [&](double thicker_m) {
+    const auto line = make_centre_line(changed(steady, Parameter::thickness, thicker_m), 30e3, Model::mode);
+    return 8.685889638 * (line->value(x).ln_magnitude() - line->value(0).ln_magnitude());
+  };
+  double mean = 0, square = 0;
+  constexpr int draws = 200;
+  for (int i = 0; i < draws; ++i) {
+    const double moved = at(steady.sd.thickness_m * normal(random)) - at(0);
+    mean += moved / draws, square += moved * moved / draws;
+  }
+  CHECK(level_budget(steady, 30e3, x).total_dB < 1);
+  CHECK(level_budget(steady, 30e3, x).total_dB == Approx(std::sqrt(square - mean * mean)).epsilon(0.2));
   Surface known = plate();
   known.sd = {};
   CHECK(level_budget(known, 30e3, 0.1).total_dB == 0);

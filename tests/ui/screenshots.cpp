@@ -494,14 +494,15 @@ int shoot_participant(Camera& camera, const QString& language) {
   return camera.count();
 }
 
-/// Ends the program with status 2 if a word of the option is not one of those allowed.
-void refuse_others(const char* option, const QStringList& words, const QStringList& allowed) {
+/// Whether all words of the option are among those allowed; says which is not.
+bool are_allowed(const char* option, const QStringList& words, const QStringList& allowed) {
   for (const auto& word : words)
     if (!allowed.contains(word)) {
       std::fprintf(stderr, "screenshots: --%s: %s; allowed: %s\n", option, qPrintable(word),
                    qPrintable(allowed.join(", ")));
-      std::exit(2);
+      return false;
     }
+  return true;
 }
 
 }  // namespace
@@ -526,7 +527,7 @@ int main(int argc, char** argv) {
   const auto sizes = parser.value("sizes").split(','), languages = parser.value("languages").split(',');
   auto looks = kLanguages;
   for (const auto& [name, look] : kLooks) looks << name;
-  refuse_others("languages", languages, looks);
+  if (!are_allowed("languages", languages, looks)) return 2;
 
   OperatorStudio studio;
   auto pictures = studio.pictures();
@@ -534,7 +535,7 @@ int main(int argc, char** argv) {
   auto only = parser.value("only").split(',', Qt::SkipEmptyParts);
   auto allowed = QStringList("operator") + participant;
   for (const auto& picture : pictures) allowed << picture.name;
-  refuse_others("only", only, allowed);
+  if (!are_allowed("only", only, allowed)) return 2;
   if (!only.isEmpty() && !only.contains("operator"))
     std::erase_if(pictures, [&](const auto& picture) { return !only.contains(picture.name); });
   const bool any_participant = only.isEmpty() || std::ranges::any_of(only, [&](const auto& name) {

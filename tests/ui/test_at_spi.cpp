@@ -133,13 +133,16 @@ class Station {
       for (const auto& window : children_of(application)) listen(window, all);
     return all;
   }
-  /// Waits until there is an object with this role and name, and returns it.
+  /// Waits until there is an object with this role and name, and returns it. A name that ends with an
+  /// ellipsis is the beginning of one.
   Heard await(const QString& role, const QString& name) const {
     QElapsedTimer waited;
     waited.start();
     while (waited.elapsed() < kPatience_ms) {
       for (const auto& object : heard())
-        if (object.role == role && object.name == name) return object;
+        if (object.role == role &&
+            (object.name == name || (name.endsWith(u'…') && object.name.startsWith(name.chopped(1)))))
+          return object;
       QThread::msleep(200);
     }
     QString all;
@@ -204,7 +207,7 @@ TEST_CASE("the operator's pages are read and used over AT-SPI", "[at-spi]") {
   // A protocol is chosen, and the participant's code is asked for.
   REQUIRE(press(station.await("page tab", "Run").node));
   REQUIRE(press(station.await("list item", "demo, Demo: where does the smooth part end?").node));
-  station.await("label", "main, trials: 10");  // what `check` says of the demo
+  station.await("label", "main, trials: 10, …");  // what `check` says of the demo
   REQUIRE(press(station.await("push button", "enter it now").node));
   station.await("push button", "A");
   CHECK(named_controls(station) > 20);

@@ -81,6 +81,7 @@ Item {
                         id: name
                         readAloud: false
                         width: parent.width
+                        horizontalAlignment: Text.AlignLeft
                         text: root.design.label([card.modelData.kind], root.texts.language) + (card.modelData.name === "" ? "" : "  “" + card.modelData.name + "”")
                         color: card.filled ? root.theme.actionText : root.theme.ink
                         font { pixelSize: root.theme.textBody; weight: Font.DemiBold }
@@ -91,6 +92,7 @@ Item {
                         objectName: "length" + card.index
                         readAloud: false
                         width: parent.width
+                        horizontalAlignment: Text.AlignLeft
                         visible: text !== ""
                         text: root.lengthOf(card.index)
                         color: card.filled ? root.theme.actionText : root.theme.quiet

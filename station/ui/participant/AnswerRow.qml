@@ -41,7 +41,7 @@ Item {
         }
         // nothing fits: the widest buttons that are still high enough, with smaller letters rather than broken words
         let columns = 1
-        while (columns < count && Math.ceil(count / columns) * (lowest + 2) > most) ++columns
+        while (columns < count && Math.ceil(count / columns) * (lowest + 2) > most - (captioned ? legend.implicitHeight + theme.unit : 0)) ++columns
         const rows = Math.ceil(count / columns)
         return { columns: columns, rows: rows, gap: 2, target: count > 0 ? tallest(rows) : theme.targetLeast, listed: captioned, small: count > 0 }
     }

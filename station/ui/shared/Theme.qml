@@ -21,7 +21,7 @@ QtObject {
     readonly property real unit: Math.max(1, Math.floor(Math.min(width / 80, height / 48, dense ? 3 * pixelsPerMm : Infinity)))
     readonly property real margin: Math.round((dense ? 1.6 : 3) * unit)
     readonly property real targetMin: Math.ceil(20 * pixelsPerMm)
-    /// The smallest target on a panel that has no room for larger ones.
+    /// The smallest target on a panel that has no room for larger ones; long answers may be three quarters as high.
     readonly property real targetLeast: Math.ceil(12 * pixelsPerMm)
     readonly property real targetGap: Math.round(Math.max(5 * pixelsPerMm, 3 * unit))
     readonly property real controlHeight: Math.round(dense ? Math.max(8 * pixelsPerMm, 3.6 * unit) * Math.max(1, 0.75 * textScale) : Math.max(11 * pixelsPerMm, 7 * unit))

@@ -2,6 +2,9 @@
 """Computes cut-offs and waves of clamped strips by other methods than the library's.
 
     python3 make_section.py > section.csv
+    python3 make_section.py table > ../../../physics/elastic_table.inc
+
+The second command makes the library's table of cut-offs (physics/elastic_section.hpp), in about five minutes.
 
 Needs python3-numpy, python3-scipy and scikit-fem. The half-width is 1, G = rho = 1, and t is the thickness. There are
 three kinds of rows:
@@ -14,6 +17,8 @@ three kinds of rows:
   mindlin,nu,kappa,t,omega,Re,Im,...
       The same in Mindlin's theory with shear factor kappa, by Chebyshev collocation across the strip.
 """
+import sys
+
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
@@ -119,11 +124,33 @@ def symmetric(values):
     return squares
 
 
+def thin(t, nu):
+    """The cut-off of a thin strip (Kirchhoff)."""
+    return 2.3650203724313520**2 * t / np.sqrt(6 * (1 - nu))
+
+
+def table(terms=18, ratios=12):
+    """Returns the coefficients a[j, i] of cut_off / thin = sum of a[j, i] T_j(t - 1) T_i(nu / 0.245 - 1). Chebyshev points
+    in both directions, except for the smallest t: there the ratio is 1 at t = 0, because a mesh that is fine enough for the
+    corners of so thin a strip leaves too few digits."""
+    t = 1 + np.cos(np.pi * (np.arange(terms) + 0.5) / terms)
+    nu = 0.245 * (1 + np.cos(np.pi * (np.arange(ratios) + 0.5) / ratios))
+    t[-1] = 0
+    ratio = np.array([[cut_off(at, n) / thin(at, n) if at > 0 else 1 for n in nu] for at in t])
+    by_t = np.polynomial.chebyshev.chebvander(t - 1, terms - 1)
+    by_nu = np.polynomial.chebyshev.chebvander(nu / 0.245 - 1, ratios - 1)
+    return la.solve(by_t, la.solve(by_nu, ratio.T).T)
+
+
 def row(*cells):
     print(",".join(c if isinstance(c, str) else f"{c:.12g}" for c in cells), flush=True)
 
 
-if __name__ == "__main__":
+if __name__ == "__main__" and sys.argv[1:] == ["table"]:
+    print("// Made by tests/physics/oracles/make_section.py table. A row for each degree in h/W, a column for each in Poisson's ratio.")
+    for line in table():
+        print("{" + ", ".join(f"{value:.9f}" for value in line) + "},")
+elif __name__ == "__main__":
     for nu in (0.0, 0.2, 0.33, 0.4, 0.45):
         for t in (0.05, 0.1, 0.2, 0.3, 0.4, 0.6):
             row("cut", nu, t, cut_off(t, nu, layers=8))
@@ -134,7 +161,7 @@ if __name__ == "__main__":
             waves = sorted(waves, key=lambda v: (-v.real, -v.imag))
             row("wave", nu, t, part * at, *[x for v in waves for x in (v.real, v.imag)])
     for nu, kappa, t in ((0.33, 5 / 6, 0.1), (0.33, 0.9, 0.25), (0.2, 0.87, 0.4)):
-        at = 2.3650203724313520**2 * t / np.sqrt(6 * (1 - nu))  # cut-off of a thin strip
+        at = thin(t, nu)
         for part in (1.3, 1.0, 0.9, 0.7, 0.5):
             waves = sorted(symmetric(mindlin_waves2(t, nu, kappa, part * at))[:2], key=lambda v: (-v.real, -v.imag))
             row("mindlin", nu, kappa, t, part * at, *[x for v in waves for x in (v.real, v.imag)])
