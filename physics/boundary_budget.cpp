@@ -266,9 +266,6 @@ BoundaryBudget boundary_budget(const Surface& surface, double f, double x) {
 namespace {
 
 constexpr int kDraws = 64;
-// A thick plate is replaced by a thin one up to this h/W at the turning point, unless that is found to be
-// less uncertain than this; then it matters how far each resonance is.
-constexpr double thickest_replaced = 0.35, little_dB = 1;
 
 // Returns the surface with one parameter away from its value by this many standard deviations. What cannot be
 // negative is distributed log-normally.
@@ -287,8 +284,17 @@ Surface away(const Surface& surface, Parameter parameter, double deviations) {
   }
 }
 
+// Whether waves of this frequency on a thick plate are those on some thin plate, see thin_equivalent(): up to
+// h/W = 0.35 at the turning point, with sides and a loss for which there is such a plate.
+bool has_thin_equivalent(const Surface& surface, double f) {
+  const auto* linear = std::get_if<LinearTaper>(&surface.taper);
+  return surface.theory != PlateTheory::kirchhoff &&
+         surface.thickness_m <= 0.35 * cut_off_half_width_m(surface, f) && surface.quality_factor >= 10 &&
+         (linear == nullptr || linear->slope <= 0.5);
+}
+
 // The thin plate on which waves of this frequency have the same wavenumber, the same turning points and the
-// same loss as on a thick plate. Its model `mode` costs a twentieth.
+// same loss as on a thick plate. Its model `mode` is much cheaper.
 Surface thin_equivalent(const Surface& surface, double f) {
   Surface thin = surface;
   thin.theory = PlateTheory::kirchhoff;
@@ -298,10 +304,9 @@ Surface thin_equivalent(const Surface& surface, double f) {
   const double wider = cut_off_half_width_m(thin, f) / cut_off_m(f);
   // A loss acts on a wave by the derivative of ln k to ln f, which is 1/2 on a thin plate.
   constexpr double aside = 1e-4;
-  thin.quality_factor = std::max(
-      1.0, thin.quality_factor * aside / std::log(cut_off_m(f * (1 - aside)) / cut_off_m(f * (1 + aside))));
+  thin.quality_factor *= aside / std::log(cut_off_m(f * (1 - aside)) / cut_off_m(f * (1 + aside)));
   if (auto* linear = std::get_if<LinearTaper>(&thin.taper))
-    linear->half_width_m *= wider, linear->slope = std::min(1.0, linear->slope * wider);
+    linear->half_width_m *= wider, linear->slope *= wider;
   else if (auto* exponential = std::get_if<ExponentialTaper>(&thin.taper))
     exponential->half_width_m *= wider;
   else
@@ -399,9 +404,17 @@ double quantile(const std::vector<double>& sorted, double share) {
   return std::lerp(sorted[below], sorted[below + 1], at - static_cast<double>(below));
 }
 
+// How levels are found: on the surface itself, or on the thin plate in its place.
 using SolveLevel = double (*)(const Surface&, double, double);
 
-// The spread of the levels that `solve` finds on the drawn surfaces.
+double thin_level_dB(const Surface& surface, double f, double at_m) {
+  return level_dB(thin_equivalent(surface, f), f, at_m);
+}
+
+// Where the thin plate finds less than this, it matters how far each resonance is: the thick plate is solved.
+constexpr double little_dB = 1;
+
+// The spread of the levels on the drawn surfaces.
 LevelBudget spread(const Surface& surface, double f, double at_m, const std::vector<Surface>& drawn,
                    SolveLevel solve) {
   std::vector<double> levels;
@@ -418,40 +431,12 @@ LevelBudget spread(const Surface& surface, double f, double at_m, const std::vec
   return budget;
 }
 
-struct Uncertainty {
-  LevelBudget budget;
-  SolveLevel solve;  // how the levels were found
-};
-
-Uncertainty uncertainty(const Surface& surface, double f, double at_m) {
-  std::vector<Parameter> uncertain;
-  for (const Parameter parameter : parameters(surface))
-    if (standard_deviation(surface, parameter) > 0) uncertain.push_back(parameter);
-  if (uncertain.empty()) return {{}, level_dB};
-  std::vector<Surface> drawn(kDraws, surface);
-  const Eigen::MatrixXd deviations = draws(surface, f, uncertain);
-  for (Eigen::Index draw = 0; draw < kDraws; ++draw)
-    for (std::size_t i = 0; i < uncertain.size(); ++i) {
-      Surface& one = drawn[static_cast<std::size_t>(draw)];
-      one = away(one, uncertain[i], deviations(static_cast<Eigen::Index>(i), draw));
-    }
-  if (surface.theory != PlateTheory::kirchhoff &&
-      surface.thickness_m <= thickest_replaced * cut_off_half_width_m(surface, f)) {
-    const SolveLevel solve = [](const Surface& s, double at_Hz, double x) {
-      return level_dB(thin_equivalent(s, at_Hz), at_Hz, x);
-    };
-    const LevelBudget budget = spread(surface, f, at_m, drawn, solve);
-    if (budget.total_dB > little_dB) return {budget, solve};
-  }
-  return {spread(surface, f, at_m, drawn, level_dB), level_dB};
-}
-
-// Standard deviation of the level if only this parameter is uncertain.
-double alone_dB(const Surface& surface, double f, double at_m, Parameter parameter, SolveLevel solve) {
+// Standard deviation of the level if only this parameter is uncertain; `here_dB` is the surface's own.
+double alone_dB(const Surface& surface, double f, double at_m, Parameter parameter, SolveLevel solve,
+                double here_dB) {
   // Gauss and Hermite's five points of a normal deviate.
   constexpr std::array points{1.355626179974266, 2.856970013872806},
       weights{0.222075922005613, 0.011257411327721};
-  const double here_dB = solve(surface, f, at_m);
   double mean = 0, square = 0;
   for (std::size_t i = 0; i < points.size(); ++i)
     for (const double side : {-1.0, 1.0}) {
@@ -466,18 +451,34 @@ double alone_dB(const Surface& surface, double f, double at_m, Parameter paramet
 LevelBudget level_uncertainty(const Surface& surface, double f, double at_m) {
   validate(surface, f);
   require_on_surface(surface, "at_m", at_m);
-  return uncertainty(surface, f, at_m).budget;
+  std::vector<Parameter> uncertain;
+  for (const Parameter parameter : parameters(surface))
+    if (standard_deviation(surface, parameter) > 0) uncertain.push_back(parameter);
+  if (uncertain.empty()) return {};
+  std::vector<Surface> drawn(kDraws, surface);
+  const Eigen::MatrixXd deviations = draws(surface, f, uncertain);
+  for (Eigen::Index draw = 0; draw < kDraws; ++draw)
+    for (std::size_t i = 0; i < uncertain.size(); ++i) {
+      Surface& one = drawn[static_cast<std::size_t>(draw)];
+      one = away(one, uncertain[i], deviations(static_cast<Eigen::Index>(i), draw));
+    }
+  if (has_thin_equivalent(surface, f)) {
+    const LevelBudget budget = spread(surface, f, at_m, drawn, thin_level_dB);
+    if (budget.total_dB > little_dB) return budget;
+  }
+  return spread(surface, f, at_m, drawn, level_dB);
 }
 
 LevelBudget level_budget(const Surface& surface, double f, double at_m) {
-  validate(surface, f);
-  require_on_surface(surface, "at_m", at_m);
-  auto [budget, solve] = uncertainty(surface, f, at_m);
+  LevelBudget budget = level_uncertainty(surface, f, at_m);
+  const bool by_thin = has_thin_equivalent(surface, f) && budget.total_dB > little_dB;
+  const double here_dB = level_dB(surface, f, at_m);
+  const double thin_here_dB = by_thin ? thin_level_dB(surface, f, at_m) : here_dB;
   for (const Parameter parameter : parameters(surface)) {
     const double sd = standard_deviation(surface, parameter);
     if (!(sd > 0)) continue;
-    double part_dB = alone_dB(surface, f, at_m, parameter, solve);
-    if (solve != level_dB && part_dB < little_dB) part_dB = alone_dB(surface, f, at_m, parameter, level_dB);
+    double part_dB = by_thin ? alone_dB(surface, f, at_m, parameter, thin_level_dB, thin_here_dB) : 0;
+    if (part_dB <= little_dB) part_dB = alone_dB(surface, f, at_m, parameter, level_dB, here_dB);
     budget.parts.push_back({parameter, sd, part_dB});
   }
   std::stable_sort(budget.parts.begin(), budget.parts.end(),

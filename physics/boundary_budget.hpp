@@ -78,11 +78,9 @@ struct LevelBudget {
 // solved on 64 surfaces whose parameters are drawn together, with their correlations, by Latin hypercube
 // sampling (McKay, Beckman, Conover 1979) with a fixed seed, and five times for each parameter alone. A thick
 // plate with h/W to 0.35 at its turning point is replaced by the thin plate with the same wavenumber, turning
-// points and loss; on aluminium plates of 2 and 3 mm in Mindlin's theory, 22 to 38 kHz, this changes the
-// total by 5 % and the ends of the interval by 1.2 dB at most. What this finds to be below 1 dB, total or
-// part, is solved on the thick plate itself. Densities, moduli, thicknesses, tensions and quality factors are
-// log-normal. Throws std::invalid_argument if a standard deviation is so large that a drawn surface cannot
-// exist.
+// points and loss; what this finds to be below 1 dB, total or part, is solved on the thick plate itself.
+// Densities, moduli, thicknesses, tensions and quality factors are log-normal. Throws std::invalid_argument
+// if a standard deviation is so large that a drawn surface cannot exist.
 LevelBudget level_budget(const Surface& surface, double frequency_Hz, double at_m);
 
 // The same without the parts.

@@ -14,10 +14,10 @@ namespace {
 constexpr double thin_root = 2.3650203724313520;
 constexpr double thickest = 2, highest_poisson = 0.49;
 
-constexpr std::size_t poisson_terms = 12;
-constexpr double table[][poisson_terms] = {
+// A row for each term in h/W, and in it one for each term in Poisson's ratio.
+constexpr std::array<std::array<double, 12>, 18> table{{
 #include "physics/elastic_table.inc"
-};
+}};
 
 // Sum of coefficient[k] T_k(x), by Clenshaw's recurrence.
 double chebyshev(std::span<const double> coefficient, double x) noexcept {
@@ -34,9 +34,10 @@ double chebyshev(std::span<const double> coefficient, double x) noexcept {
 
 ElasticCutOff::ElasticCutOff(double poisson)
     : kirchhoff_(thin_root * thin_root / std::sqrt(6 * (1 - poisson))) {
-  static_assert(std::size(table) == terms);
   require(poisson >= 0 && poisson <= highest_poisson, "poisson", poisson, "0 to 0.49");
-  for (int k = 0; k < terms; ++k) coefficient_[k] = chebyshev(table[k], 2 * poisson / highest_poisson - 1);
+  std::ranges::transform(table, coefficient_.begin(), [poisson](const auto& row) {
+    return chebyshev(row, 2 * poisson / highest_poisson - 1);
+  });
 }
 
 double ElasticCutOff::value(double t) const noexcept {

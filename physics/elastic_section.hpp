@@ -1,5 +1,6 @@
 #pragma once
 // The cut-off of a clamped strip by the three-dimensional elasticity of its cross-section.
+#include <array>
 
 namespace turnpoint::physics {
 
@@ -15,15 +16,14 @@ class ElasticCutOff {
   // The cut-offs for a Poisson's ratio from 0 to 0.49.
   explicit ElasticCutOff(double poisson);
   // Returns omega W / c_s for a given h/W. The table ends at h/W = 2. Beyond that the function returns the
-  // last value, which is 4 % above the limit pi/2.
+  // last value, which is 6 to 11 % below the limit pi/2.
   double value(double thickness_per_half_width) const noexcept;
   // Returns the h/W for which omega h / c_s has this value. omega h / c_s is h/W times value(h/W).
   double thickness_per_half_width(double omega_h_per_speed) const noexcept;
 
  private:
-  static constexpr int terms = 18;
-  double coefficient_[terms];  // Chebyshev series of value() divided by Kirchhoff's value
-  double kirchhoff_;           // omega W / c_s by Kirchhoff's theory, divided by h/W
+  std::array<double, 18> coefficient_{};  // Chebyshev series of value() divided by Kirchhoff's value
+  double kirchhoff_;                      // omega W / c_s by Kirchhoff's theory, divided by h/W
 };
 
 }  // namespace turnpoint::physics

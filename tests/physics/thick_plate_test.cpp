@@ -85,6 +85,12 @@ TEST_CASE("the table of elastic cut-offs has the oracle's figures, and those of 
       const double elements = section_cut_off(SectionElements(t, nu).pencil).omega;
       CHECK(ElasticCutOff(nu).value(t) == Approx(elements).epsilon(nu <= 0.33 && t <= 0.4 ? 2e-4 : 2e-3));
     }
+  for (const double nu : {0.0, 0.33, 0.49}) {  // beyond the table
+    const double last = ElasticCutOff(nu).value(2);
+    CHECK(ElasticCutOff(nu).value(5) == last);
+    CHECK(last > 0.89 * std::numbers::pi / 2);
+    CHECK(last < 0.94 * std::numbers::pi / 2);
+  }
   CHECK_THROWS_WITH(ElasticCutOff(0.495), "poisson is 0.495; allowed: 0 to 0.49");
 }
 
