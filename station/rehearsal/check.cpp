@@ -133,7 +133,8 @@ Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::u
                                  {}});
       estimate.blocks.back().before =
           interludes(protocol, order, static_cast<std::size_t>(start.block_index), visit);
-      estimate.trials.push_back(0), estimate.durations_s.push_back(0);
+      estimate.trials.push_back(0);
+      estimate.durations_s.push_back(0);
     }
     const auto count = static_cast<double>(trials.size());
     estimate.trials.back() += count;

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -44,11 +45,16 @@ namespace {
 using core::number;
 using core::Phrase, core::phrase, core::plain;
 
-std::string shown(double value, double unit) { return number(std::round(value / unit * 10) / 10, 4); }
+/// Low, median and high as they are shown.
+using Shown = std::array<std::string, 3>;
+
+Shown shown(const rehearsal::Spread& spread, double unit) {
+  const auto one = [unit](double value) { return number(std::round(value / unit * 10) / 10, 4); };
+  return {one(spread.low), one(spread.median), one(spread.high)};
+}
 
 Phrase range(const rehearsal::Spread& spread, double unit) {
-  const auto low = shown(spread.low, unit), median = shown(spread.median, unit),
-             high = shown(spread.high, unit);
+  const auto [low, median, high] = shown(spread, unit);
   return low == high ? plain(median) : phrase("check.range", {plain(median), plain(low), plain(high)});
 }
 
@@ -87,11 +93,9 @@ Phrase describe(const rehearsal::CheckedBlock& block) {
   title.values.push_back(plain(block.name));
   if (!block.instruction.empty() && block.instruction != block.name)
     title.values.push_back(plain(" (" + block.instruction + ")"));
-  return {"",
+  return {"check.block_trials",
           "",
-          {{"check.block_trials", "", {title, range(block.trials, 1)}},
-           plain(", "),
-           phrase("check.minutes", {range(block.duration_s, 60)})}};
+          {title, range(block.trials, 1), phrase("check.minutes", {range(block.duration_s, 60)})}};
 }
 
 /// A number of the blocks of one part of the session: that of the only one or, if they differ, between which
@@ -99,16 +103,15 @@ Phrase describe(const rehearsal::CheckedBlock& block) {
 Phrase range(const std::vector<const rehearsal::CheckedBlock*>& blocks,
              rehearsal::Spread rehearsal::CheckedBlock::*what, double unit) {
   auto whole = blocks.front()->*what;
-  const auto first = core::say(range(whole, unit), "en");
-  bool same = true;
+  const auto first = shown(whole, unit);
+  if (std::ranges::all_of(blocks, [&](const auto* block) { return shown(block->*what, unit) == first; }))
+    return range(whole, unit);
   for (const auto* block : blocks) {
-    const auto& one = block->*what;
-    whole.low = std::min(whole.low, one.low), whole.high = std::max(whole.high, one.high);
-    same = same && core::say(range(one, unit), "en") == first;
+    whole.low = std::min(whole.low, (block->*what).low);
+    whole.high = std::max(whole.high, (block->*what).high);
   }
-  if (same) return range(blocks.front()->*what, unit);
-  const auto low = shown(whole.low, unit), high = shown(whole.high, unit);
-  return low == high ? plain(low) : plain(low + "\u2013" + high);
+  const auto [low, median, high] = shown(whole, unit);
+  return plain(low == high ? low : low + "\u2013" + high);
 }
 
 /// How many of these blocks each visit has, as "4 × "; nothing if it is one.

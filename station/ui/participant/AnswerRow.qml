@@ -21,6 +21,7 @@ Item {
     /// How the answers are arranged: {columns, rows, gap, target (the least height of a button), listed, small (whether letters
     /// must be smaller than the smallest size)}. Large targets come first, and then few rows.
     readonly property var plan: {
+        if (count === 0) return { columns: 1, rows: 1, gap: 2, target: theme.targetLeast, listed: false }
         const targets = [theme.targetMin, Math.round(0.8 * theme.targetMin), theme.targetLeast]
         const gaps = captioned ? [theme.unit, 2] : [theme.targetGap, Math.min(theme.targetGap, Math.round(2 * theme.pixelsPerMm)), 2]
         // The points of a scale stand in one row if they can, because its order is seen at a glance. Other answers stand in
@@ -43,7 +44,7 @@ Item {
         let columns = 1
         while (columns < count && Math.ceil(count / columns) * (lowest + 2) > most - (captioned ? legend.implicitHeight + theme.unit : 0)) ++columns
         const rows = Math.ceil(count / columns)
-        return { columns: columns, rows: rows, gap: 2, target: count > 0 ? tallest(rows) : theme.targetLeast, listed: captioned, small: count > 0 }
+        return { columns: columns, rows: rows, gap: 2, target: tallest(rows), listed: captioned, small: true }
     }
     readonly property int lowest: Math.round(0.75 * theme.targetLeast)
     /// The height of the buttons if so many rows with a narrow gap fill the height.
