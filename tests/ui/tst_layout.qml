@@ -155,6 +155,7 @@ Item {
                 for (const what of missing()) faults.push(name + ": " + what)
                 // nine answers of several long words have no room for such letters on 5 inches below the band of a pilot run
                 const smaller = name === "choices-9-long" && row.mode !== "" && inches(row.panel) < 6 && row.panel.width > row.panel.height
+                if (name === "choices-9-long" && shownItem(view, "answer0").height < 11 * row.panel.mm) faults.push(name + ": buttons of " + shownItem(view, "answer0").height / row.panel.mm + " mm")
                 for (const text of inspector.smallTexts(view, (smaller ? 0.65 : 1) * capitalsMm(row.panel) * row.panel.mm)) faults.push(name + ": " + text)
                 for (const edge of inspector.blurredEdges(view).slice(0, 1)) faults.push(name + ": blurred: " + edge)
                 for (const word of inspector.brokenWords(view)) faults.push(name + ": broken: " + word)

@@ -46,7 +46,7 @@ Item {
         const rows = Math.ceil(count / columns)
         return { columns: columns, rows: rows, gap: 2, target: tallest(rows), listed: captioned, small: true }
     }
-    readonly property int lowest: Math.round(0.75 * theme.targetLeast)
+    readonly property int lowest: Math.round(0.9 * theme.targetLeast)
     /// The height of the buttons if so many rows with a narrow gap fill the height.
     function tallest(rows: int) : real {
         return Math.max(lowest, Math.floor((most - (captioned ? legend.implicitHeight + theme.unit : 0) + 2) / rows) - 2)
