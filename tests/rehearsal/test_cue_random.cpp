@@ -65,7 +65,7 @@ Compared compare(unsigned seed, std::map<std::string, int>& features) {
 
 }  // namespace
 
-// Four cases, because one would take too long for one test: of 20 protocols each, or of 50 with TURNPOINT_CUE_SEEDS.
+// Four cases, because one would take too long for one test: of 8 protocols each, or of 50 with TURNPOINT_CUE_SEEDS.
 TEMPLATE_TEST_CASE_SIG(
     "for random protocols, the cue guard's accuracy is within 2 % of that of an observer of one cue in whole "
     "sessions",
@@ -74,7 +74,7 @@ TEMPLATE_TEST_CASE_SIG(
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   constexpr int most = 1;  // with a sanitizer a few are enough
 #else
-  const int most = asked ? 50 : 20;
+  const int most = asked ? 50 : 8;
 #endif
   const int first = (asked ? std::stoi(asked) : 0) + most * part;
   const char* const dash = asked ? std::strchr(asked, '-') : nullptr;

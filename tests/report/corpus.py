@@ -5,7 +5,7 @@ the study from trials.csv, and this program compares them.
 
     tests/report/corpus.py TURNPOINT [--each NUMBER] [--first SEED] [KIND...]
 
-NUMBER protocols of each kind (default 2). With more than two, the posterior of the diffusion model is sampled and study.R
+NUMBER protocols of each kind (default 1). With more than two, the posterior of the diffusion model is sampled and study.R
 is run as well, which takes longer. Figures that are not computed again are counted and named at the end. As a
 negative control, the CSV of one session is changed in one answer, which must be noticed.
 """
@@ -1666,7 +1666,7 @@ def one(turnpoint, name, seed, deep, spoil=False):
 
 def main():
     arguments = sys.argv[1:]
-    each, first, turnpoint = 2, 0, arguments.pop(0)
+    each, first, turnpoint = 1, 0, arguments.pop(0)
     kinds = []
     while arguments:
         word = arguments.pop(0)
