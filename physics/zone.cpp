@@ -80,18 +80,48 @@ void require_band(const ZoneProfile& profile, const ZoneRequest& r) {
 
 }  // namespace
 
-ZoneDesign design_zone(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request) {
-  check(surface, friction, request);
+// The two profiles of a solved zone: with one tone, and with all.
+struct ZoneDesigner::Solved {
+  ZoneRequest request;
+  ZoneProfile alone, all;
+};
+
+ZoneDesigner::ZoneDesigner(const Surface& surface, const FrictionMap& friction)
+    : surface_(surface), friction_(friction) {}
+ZoneDesigner::~ZoneDesigner() = default;
+
+ZoneProfile& ZoneDesigner::solve(const ZoneRequest& request) {
+  constexpr std::size_t most = 16;
+  for (auto& one : solved_) {
+    if (request.edge.kind == Edge::Kind::friction) break;
+    one->request.friction = request.friction;
+    if (one->request != request) continue;
+    one->alone.rescale_to_friction(request.friction);
+    one->all.rescale_to_friction(request.friction);
+    return one->all;
+  }
   // First design the zone with a single tone. This shows roughly where the highest tone must be before the
   // other tones are chosen.
   ZoneRequest single = request;
   single.tones = 1;
-  ZoneProfile alone(surface, friction, single, first_guess(surface, request));
+  ZoneProfile alone(surface_, friction_, single, first_guess(surface_, request));
   place(alone, single, 2e-5);
   require_band(alone, request);
-  ZoneProfile profile(surface, friction, request, alone.highest_Hz());
-  place(profile, request, 2e-7);
-  require_band(profile, request);
+  ZoneProfile all(surface_, friction_, request, alone.highest_Hz());
+  place(all, request, 2e-7);
+  require_band(all, request);
+  if (solved_.size() == most) solved_.erase(solved_.begin());
+  solved_.push_back(std::make_unique<Solved>(Solved{request, std::move(alone), std::move(all)}));
+  return solved_.back()->all;
+}
+
+ZoneDesign design_zone(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request) {
+  return ZoneDesigner(surface, friction).design(request);
+}
+
+ZoneDesign ZoneDesigner::design(const ZoneRequest& request) {
+  check(surface_, friction_, request);
+  const ZoneProfile& profile = solve(request);
   ZoneDesign design;
   design.tones = profile.tones();
   assign_phases(design.tones);
@@ -105,8 +135,9 @@ ZoneDesign design_zone(const Surface& surface, const FrictionMap& friction, cons
     reason << "; further tones would lie below " << request.band.low_Hz / 1e3 << " kHz or add nothing";
   }
   design.reason = reason.str();
-  design.warnings = surface_warnings(surface);
-  for (Warning& warning : tone_warnings(surface, design.tones)) design.warnings.push_back(std::move(warning));
+  design.warnings = surface_warnings(surface_);
+  for (Warning& warning : tone_warnings(surface_, design.tones))
+    design.warnings.push_back(std::move(warning));
   return design;
 }
 

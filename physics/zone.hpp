@@ -1,5 +1,6 @@
 #pragma once
 // Inverse design: finds the tones that produce a desired zone of friction, or a desired profile of amplitude.
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,6 +20,7 @@ struct ToneBand {
   double low_Hz = audible_limit_Hz;
   double high_Hz = 45000;
   double spacing_Hz = 1000;
+  bool operator==(const ToneBand&) const = default;
 };
 
 // Describes a zone from from_m to boundary_m with the mean relative friction `friction`. boundary_m is the
@@ -32,6 +34,7 @@ struct ZoneRequest {
   int tones = 3;          // largest number of tones
   ToneBand band;
   double fingertip_m = 10e-3;
+  bool operator==(const ZoneRequest&) const = default;
 };
 
 struct ZoneDesign {
@@ -52,6 +55,27 @@ struct ZoneDesign {
 // lowest of the map, a boundary whose tone lies outside the band, or a friction edge whose level is outside
 // (friction, 1).
 ZoneDesign design_zone(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request);
+
+class ZoneProfile;
+
+// Designs many zones on one surface: the designs are those of design_zone(). Friction changes only the level
+// of the tones if the place of the edge does not depend on it, so of such zones with the same other values,
+// only the first is solved. Keeps references to its surface and its friction.
+class ZoneDesigner {
+ public:
+  ZoneDesigner(const Surface& surface, const FrictionMap& friction);
+  ~ZoneDesigner();
+  // Throws as design_zone().
+  ZoneDesign design(const ZoneRequest& request);
+
+ private:
+  struct Solved;
+  ZoneProfile& solve(const ZoneRequest& request);
+
+  const Surface& surface_;
+  const FrictionMap& friction_;
+  std::vector<std::unique_ptr<Solved>> solved_;  // the last ones, the newest at the end
+};
 
 struct ProfilePoint {
   double x_m = 0;

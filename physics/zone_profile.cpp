@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
@@ -28,9 +29,9 @@ double interpolate_crossing(double x0, double x1, double y0, double y1, double l
 
 }  // namespace
 
-ZoneProfile::ZoneProfile(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request,
+ZoneProfile::ZoneProfile(const Surface& surface, const FrictionMap& friction, ZoneRequest request,
                          double highest_Hz)
-    : surface_(surface), friction_(friction), request_(request) {
+    : surface_(surface), friction_(friction), request_(std::move(request)) {
   const int count = std::clamp(static_cast<int>(std::ceil(surface.length_m / grid_step_m)), 200, 2000);
   for (int i = 0; i <= count; ++i) x_.push_back(surface.length_m * i / count);
   weights_of_mean_ = mean_weights();
@@ -196,7 +197,18 @@ std::vector<double> ZoneProfile::mean_weights() const {
 }
 
 void ZoneProfile::scale_to_friction() {
-  const std::vector<double> sum = summed();
+  scaled_.push_back(summed());
+  scale(scaled_.back());
+}
+
+void ZoneProfile::rescale_to_friction(double friction) {
+  request_.friction = friction;
+  scale_ = first_scale_m2;
+  scaled_before_ = false;
+  for (const auto& sum : scaled_) scale(sum);
+}
+
+void ZoneProfile::scale(const std::vector<double>& sum) {
   const auto miss = [&](double ln) {
     const double scale = std::exp(ln);
     double mean = 0;

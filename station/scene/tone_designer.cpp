@@ -100,19 +100,25 @@ std::vector<ToneTarget> ToneDesigner::zone(const Scene& scene, DrivePlan& plan) 
     request.fingertip_m = rig.friction.fingertip_m;
     request.band.low_Hz = lowest_frequency(rig, core::kAudible_Hz);
     request.band.high_Hz = highest_frequency(rig, core::kHighestShareOfRate * rig.output.rate_Hz);
-    found = designs_.emplace(key, physics::design_zone(surface, friction, request)).first;
+    DesignedZone designed{zones_.design(request), {}};
+    for (const auto& tone : designed.design.tones)
+      designed.unit_drive_m.push_back(
+          physics::drive_amplitude_m(surface, on_grid(tone.frequency_Hz, kGridPerHz), 1));
+    found = designs_.emplace(key, std::move(designed)).first;
   }
-  auto tones = found->second.tones;
-  plan.boundary_m = found->second.boundary_m;
+  const auto& [design, unit_drive_m] = found->second;
+  const auto& tones = design.tones;
+  plan.boundary_m = design.boundary_m;
   double scale = 1;
   if (wanted.friction != designed_for) scale = scale_to_friction(surface, friction, rig, tones, scene);
   scale *= std::pow(10.0, scene.rove_dB / 20);
   std::vector<ToneTarget> list;
-  for (const auto& tone : tones) {
-    const double frequency_Hz = on_grid(tone.frequency_Hz, kGridPerHz);
-    const double drive_m = physics::drive_amplitude_m(surface, frequency_Hz, 1);
-    list.push_back({{}, frequency_Hz, scene.edge, scale * tone.amplitude_m / drive_m, tone.phase_rad});
-  }
+  for (std::size_t i = 0; i < tones.size(); ++i)
+    list.push_back({{},
+                    on_grid(tones[i].frequency_Hz, kGridPerHz),
+                    scene.edge,
+                    scale * tones[i].amplitude_m / unit_drive_m[i],
+                    tones[i].phase_rad});
   return list;
 }
 

@@ -26,6 +26,13 @@ inline double on_grid(double value, double per_unit) { return std::round(value *
 class ToneDesigner {
  public:
   explicit ToneDesigner(const rig::Rig& r) : rig(r), surface(surface_of(r)), friction(friction_of(r)) {}
+  /// A copy has the maps and zones that were found, and solves further zones by itself.
+  ToneDesigner(const ToneDesigner& other)
+      : rig(other.rig),
+        surface(other.surface),
+        friction(other.friction),
+        maps_(other.maps_),
+        designs_(other.designs_) {}
 
   /// Returns the tones of a scene, all with a frequency; those that must place an edge have a boundary, too.
   /// The vibration model for the final plan is chosen later. If the scene is a zone of uniform friction, also
@@ -49,7 +56,13 @@ class ToneDesigner {
   std::vector<ToneTarget> zone(const Scene& scene, DrivePlan& plan);
 
   std::map<std::string, std::shared_ptr<const physics::BoundaryMap>> maps_;
-  std::map<std::string, physics::ZoneDesign> designs_;
+  physics::ZoneDesigner zones_{surface, friction};
+  /// A zone, and the drive amplitude of each tone (frequency on the grid) for 1 m at its last maximum.
+  struct DesignedZone {
+    physics::ZoneDesign design;
+    std::vector<double> unit_drive_m;
+  };
+  std::map<std::string, DesignedZone> designs_;
 };
 
 }  // namespace turnpoint::scene

@@ -101,6 +101,38 @@ TEST_CASE("a zone has the requested friction inside and ends at the requested bo
   }
 }
 
+TEST_CASE("a zone of another friction that shares its tones is the zone of a new design, bit by bit",
+          "[physics]") {
+  const Surface s = aluminium_plate();
+  const FrictionMap friction;
+  ZoneDesigner designer(s, friction);
+  ZoneRequest request;
+  request.from_m = 0.06;
+  for (const char* edge : {"turning", "p50", "friction=0.9", "p50"}) {
+    request.edge = parse_edge(edge);
+    for (const double wanted : {0.6, 0.8, 0.05, 0.7}) {
+      for (const double boundary : {0.15, 0.18}) {
+        CAPTURE(edge, wanted, boundary);
+        request.friction = wanted, request.boundary_m = boundary;
+        if (wanted < friction.lowest_friction()) {
+          CHECK_THROWS_AS(designer.design(request), Refused);
+          continue;
+        }
+        const ZoneDesign shared = designer.design(request), alone = design_zone(s, friction, request);
+        REQUIRE(shared.tones.size() == alone.tones.size());
+        for (std::size_t i = 0; i < alone.tones.size(); ++i) {
+          CHECK(shared.tones[i].frequency_Hz == alone.tones[i].frequency_Hz);
+          CHECK(shared.tones[i].amplitude_m == alone.tones[i].amplitude_m);
+          CHECK(shared.tones[i].phase_rad == alone.tones[i].phase_rad);
+        }
+        CHECK(shared.friction == alone.friction);
+        CHECK(shared.boundary_m == alone.boundary_m);
+        CHECK(shared.residual == alone.residual);
+      }
+    }
+  }
+}
+
 TEST_CASE("impossible zones are refused, and the message says what is allowed", "[physics]") {
   const Surface s = aluminium_plate();
   ZoneRequest request;
