@@ -248,6 +248,38 @@ class Others(unittest.TestCase):
         with self.assertRaises(analysis.NotDetermined):
             analysis.ratings([10, 0], [0, 10])
 
+    def test_scale(self):
+        # Bradley and Terry by their own equations: wins = sum of n / (1 + exp(other - own)), without a penalty, which 300
+        # trials of each pair hardly change
+        rng = np.random.default_rng(4)
+        truth = np.array([-1.2, -0.3, 0.4, 1.1])
+        pairs = np.array([(a, b) for a in range(4) for b in range(4) if a != b for _ in range(150)])
+        second = rng.random(len(pairs)) < 1 / (1 + np.exp(truth[pairs[:, 0]] - truth[pairs[:, 1]]))
+        wins = np.bincount(np.where(second, pairs[:, 1], pairs[:, 0]), minlength=4)
+        values = np.zeros(4)
+        for _ in range(2000):
+            values += (wins - [sum(300 / (1 + math.exp(values[b] - values[a])) for b in range(4) if b != a)
+                               for a in range(4)]) / 900
+        found = analysis.scale(10.0 * pairs, second)[0]
+        self.assertEqual(found.stimuli, [0, 10, 20, 30])
+        for value, own in zip(found.values, values - values.mean()):
+            self.assertLess(abs(value.value - own), 0.01)
+        self.assertEqual((found.triples, found.circular, found.consistence), (4, 0, 1))
+        self.assertTrue(found.favours_second.low < 0 < found.favours_second.high)
+        thurstone = analysis.scale(pairs, second, model="thurstone")[0]
+        self.assertLess(abs(np.corrcoef([v.value for v in thurstone.values], values)[0, 1] - 1), 1e-3)
+        scale = np.array([0, 0.1, 0.25, 0.6, 1.0])
+        triads = np.array([t for a in range(5) for b in range(a) for c in range(b) for t in ((c, b, a), (a, b, c))] * 20)
+        felt = np.abs(np.diff(scale[triads])) @ [-1, 1] + 0.2 * rng.standard_normal(len(triads))
+        found = analysis.scale(triads, felt > 0, condition=["x"] * len(triads))[0]
+        self.assertTrue(found.noise.low < 0.2 < found.noise.high)
+        self.assertLess(max(abs(v.value - s) for v, s in zip(found.values, scale)), 0.1)
+        self.assertIsNone(analysis.scale([[1, 2], [3, 4]], [1, 0])[0].values)
+        with self.assertRaisesRegex(ValueError, "model"):
+            analysis.scale(pairs, second, model="differences")
+        with self.assertRaisesRegex(ValueError, "two, three or four"):
+            analysis.scale([1, 2], [1, 0])
+
     def test_psychometric(self):
         rng = np.random.default_rng(2)
         level = np.repeat(np.arange(-3.0, 3.5), 60)

@@ -11,12 +11,12 @@ each other, or numbers outside their range, raise ValueError."""
 import numpy as np
 
 from . import _analysis
-from ._analysis import (Cell, Condition, Curve, CurveDifference, Detection, Difference, Diffusion, Estimate, Lag, Psychometric, Ratings,
+from ._analysis import (Cell, Condition, Curve, CurveDifference, Detection, Difference, Diffusion, Estimate, Lag, Psychometric, Ratings, Scale,
                         SpeedAccuracy)
 
 __all__ = ["Cell", "Condition", "Curve", "CurveDifference", "Detection", "Difference", "Diffusion", "Estimate", "Lag", "NotDetermined",
-           "Psychometric", "Ratings", "SpeedAccuracy", "area", "compare_curves", "detection", "diffusion", "first_passage",
-           "holm", "psychometric", "ratings", "response_signal", "speed_accuracy"]
+           "Psychometric", "Ratings", "Scale", "SpeedAccuracy", "area", "compare_curves", "detection", "diffusion", "first_passage",
+           "holm", "psychometric", "ratings", "response_signal", "scale", "speed_accuracy"]
 
 
 class NotDetermined(ValueError):
@@ -197,6 +197,31 @@ def compare_curves(curves) -> list[CurveDifference]:
 
     curves: what response_signal() returned for several conditions."""
     return _analysis.compare_curves(list(curves))
+
+
+def scale(stimuli, second, *, condition=None, order=(), model=None) -> list[Scale]:
+    """Scales stimuli by comparisons, one scale per condition.
+
+    stimuli: a row per trial with the values of two, three or four stimuli in order of presentation.
+    second: whether the answer was the second stimulus of a pair; for three, that the last two differ more than the first two;
+    for four, that the second pair differs more than the first.
+    condition, order: name of the condition of each trial, and their order.
+    model: for pairs "bradley-terry" (default; Bradley & Terry 1952, Biometrika 39:324-345) or "thurstone" (case V, in standard
+    deviations of what one stimulus is felt as); for three or four "differences" (maximum-likelihood difference scaling, Maloney
+    & Yang 2003, J. Vis. 3:573-585; from 0 at the lowest to 1 at the highest). Jeffreys' prior keeps values of stimuli finite
+    that were always or never chosen (Kosmidis & Firth 2021, Biometrika 108:71-82). Values that the answers do not determine
+    are None, and a statement says why."""
+    stimuli = np.asarray(stimuli, dtype=float)
+    if stimuli.ndim != 2 or stimuli.shape[1] not in (2, 3, 4) or len(stimuli) == 0:
+        raise ValueError("stimuli: a row per trial with two, three or four values is needed")
+    if not np.isfinite(stimuli).all():
+        raise ValueError("stimuli: NaN or infinite")
+    allowed = ("bradley-terry", "thurstone") if stimuli.shape[1] == 2 else ("differences",)
+    model = allowed[0] if model is None else model
+    _one_of("model", model, allowed)
+    first = stimuli[:, 0]
+    return _analysis.scale(stimuli.tolist(), _flags("second", second, first), _texts("condition", condition, first),
+                           [str(name) for name in order], model)
 
 
 def holm(p, *, family=None) -> np.ndarray:
