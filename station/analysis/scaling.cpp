@@ -517,7 +517,7 @@ std::vector<int> places_of(const std::vector<double>& values, const std::vector<
 }
 
 StimulusScale scale_of(const std::vector<const TrialRecord*>& trials, const std::string& condition,
-                       ScaleModel model) {
+                       ScaleModel model, int sessions) {
   StimulusScale scale;
   scale.condition = condition, scale.model = model;
   for (const auto* trial : trials)
@@ -545,28 +545,29 @@ StimulusScale scale_of(const std::vector<const TrialRecord*>& trials, const std:
   if (!scale.fit)
     return say("no-scale", in_pairs(model) ? "statement.no_scale_pairs" : "statement.no_scale_differences"),
            scale;
-  scale.check = check_scale(compared, n, model, *scale.fit);
+  if (sessions > 0) scale.check = check_scale(compared, n, model, *scale.fit, sessions);
   for (std::size_t i = 0; i < scale.chosen.size(); ++i)
     if (scale.chosen[i] == 0 || scale.chosen[i] == scale.presented[i]) {
       say("always-or-never", "statement.scale_always_or_never");
       break;
     }
-  if (scale.check->deviance_p < 0.05) say("poor-fit", "statement.scale_poor_fit");
-  if (!in_pairs(model) && scale.check->runs_p < 0.05) say("few-runs", "statement.scale_few_runs");
+  if (scale.check && scale.check->deviance_p < 0.05) say("poor-fit", "statement.scale_poor_fit");
+  if (!in_pairs(model) && scale.check && scale.check->runs_p < 0.05)
+    say("few-runs", "statement.scale_few_runs");
   return scale;
 }
 
 }  // namespace
 
 std::vector<StimulusScale> scales(const std::vector<TrialRecord>& trials,
-                                  const std::vector<std::string>& order, ScaleModel model) {
+                                  const std::vector<std::string>& order, ScaleModel model, int sessions) {
   std::vector<StimulusScale> all;
   for (const auto& condition : conditions_of(trials, order)) {
     std::vector<const TrialRecord*> counting;
     for (const auto& trial : trials)
       if (counted(trial) && trial.response && !trial.compared.empty() && trial.instruction == condition)
         counting.push_back(&trial);
-    all.push_back(scale_of(counting, condition, model));
+    all.push_back(scale_of(counting, condition, model, sessions));
   }
   return all;
 }

@@ -93,8 +93,9 @@ struct StimulusScale {
 };
 
 /// Analyses the answered experimental trials that compared stimuli (TrialRecord::compared), one entry for
-/// each condition. Conditions in `order` come first.
+/// each condition, checked by so many simulated sessions (0: not checked). Conditions in `order` come first.
 std::vector<StimulusScale> scales(const std::vector<TrialRecord>& trials,
-                                  const std::vector<std::string>& order, ScaleModel model);
+                                  const std::vector<std::string>& order, ScaleModel model,
+                                  int sessions = 499);
 
 }  // namespace turnpoint::analysis

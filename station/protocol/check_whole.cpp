@@ -103,7 +103,8 @@ void check_scored(core::TableReader& file, const Reading& reading) {
   const auto& task = protocol.task;
   const auto* table = file.take("task");
   const bool stated = table && table->find("correct");
-  if (!table || task.kind != TaskKind::single_interval || stated) return;
+  const bool unscored = task.kind == TaskKind::single_interval || task.kind == TaskKind::comparison;
+  if (!table || !unscored || stated) return;
   for (const auto& spec : protocol.procedures) {
     if (procedure::follows_answers(spec) && judges(task))
       reading.findings.add(
@@ -209,6 +210,25 @@ void check_adjustment(const Reading& reading) {
   }
 }
 
+// A comparison needs procedures that set a stimulus for each of its intervals, and only they can ask for one.
+void check_comparisons(const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  const bool comparing = protocol.task.kind == TaskKind::comparison;
+  for (const auto& spec : protocol.procedures) {
+    if ((spec.kind == procedure::Kind::comparisons) != comparing)
+      reading.findings.add(reading.places.of(key_of(spec, "kind")),
+                           phrase("the procedure \"%1\" does not fit the kind of task", {plain(spec.name)}),
+                           comparing ? plain("kind = \"comparisons\"")
+                                     : phrase("use %1 in [task]", {plain("kind = \"comparison\"")}));
+    else if (comparing && spec.against.size() + 1 != protocol.task.intervals.size())
+      reading.findings.add(
+          reading.places.of(key_of(spec, "against")),
+          phrase("the procedure \"%1\" sets %2 stimuli, but a trial has %3 intervals",
+                 {plain(spec.name), plain(spec.against.size() + 1), plain(protocol.task.intervals.size())}),
+          phrase("name one factor for each interval: the first in \"level\""));
+  }
+}
+
 bool has_change(const Task& task) {
   return std::any_of(task.intervals.begin(), task.intervals.end(),
                      [](const auto& scenes) { return scenes.size() > 1; });
@@ -293,6 +313,7 @@ void check_whole(core::TableReader& file, Reading& reading) {
   check_limits(reading);
   check_detection(reading);
   check_adjustment(reading);
+  check_comparisons(reading);
   const auto sources = sources_of(reading.protocol);
   const auto needed = factors_used(reading.protocol);
   for (const auto& name : needed) check_values(sources, name, reading);

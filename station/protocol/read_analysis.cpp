@@ -73,6 +73,7 @@ core::Phrase without_effect(const std::string& word, const Protocol& protocol) {
   // do not add a second message: the reader of [task] has reported a task without choices
   if (word == "trace" || task.choices.empty()) return {};
   if (task.kind == TaskKind::adjustment) return phrase("an adjustment task has settings instead of answers");
+  if (task.kind == TaskKind::comparison) return phrase("in a comparison no answer is right or wrong");
   if (word == "dprime" && task.present) return {};
   if (judges(task)) return phrase("ratings and numbers are neither right nor wrong");
   const auto& procedures = protocol.procedures;
@@ -142,6 +143,12 @@ void read_analysis(TableReader& file, Reading& reading) {
   const auto& sessions = reading.protocol.sessions;
   const auto incomplete = reader.maybe_word("incomplete_sessions");
   if (const auto holm = reader.maybe_word("holm")) analysis.holm = *holm == "all" ? Holm::all : Holm::measure;
+  if (const auto pairs = reader.maybe_word("pairs")) {
+    analysis.pairs = *pairs == "thurstone" ? core::Function::normal : core::Function::logistic;
+    if (reading.protocol.task.kind != TaskKind::comparison || reading.protocol.task.intervals.size() != 2)
+      reader.problem("pairs", phrase("the task does not compare pairs"),
+                     phrase("%1 with two intervals", {plain("kind = \"comparison\"")}));
+  }
   if (incomplete) analysis.count_incomplete = *incomplete == "count";
   if (incomplete == "leave_out" && sessions && sessions->incomplete == Unfinished::count)
     reader.problem(

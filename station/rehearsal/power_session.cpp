@@ -79,6 +79,18 @@ void add_fits(const report::SessionData& data, const std::string& unit, SessionO
     if (judged.exponent)
       outcome.findings.push_back({source_of("numbers", judged.condition), "exponent", "",
                                   judged.exponent->value, judged.exponent->interval});
+  for (const auto& scale : report::scales_of(data, 0)) {
+    if (!scale.fit) continue;
+    const auto source = source_of("scale", scale.condition);
+    for (std::size_t i = 0; i < scale.stimuli.size(); ++i) {
+      const auto& place = scale.fit->values[i];
+      if (place.interval.low < place.interval.high)
+        outcome.findings.push_back(
+            {source, "place of " + core::number(scale.stimuli[i], 6), "", place.value, place.interval});
+    }
+    if (const auto& noise = scale.fit->noise)
+      outcome.findings.push_back({source, "noise", "", noise->value, noise->interval});
+  }
   if (report::judges(data.design)) return;
   if (data.design == report::Design::adjustment) {
     for (const auto& settings : analysis::settings(data.trials, data.conditions))

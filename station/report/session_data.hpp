@@ -25,6 +25,9 @@ using protocol::has_noise;
 /// True if the answers are ratings or numbers.
 inline bool judges(Design design) { return design == Design::ratings || design == Design::numbers; }
 
+/// True if stimuli are compared with each other, and the answers give a scale.
+inline bool scales(Design design) { return design == Design::pairs || design == Design::differences; }
+
 /// A procedure's own estimate from one block, as `turnpoint run` prints it at the end of a session.
 struct ProcedureEstimate {
   std::string block, procedure, parameter;

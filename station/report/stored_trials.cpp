@@ -81,6 +81,11 @@ analysis::TrialRecord record_of(const core::TrialRow& row, const core::BlockStar
       for (const auto& [name, comparison] : protocol.task.correct_answer)
         if (name == protocol::scene_of(protocol.task, scene) && protocol::holds(comparison, factors))
           record.right_scene = scene, record.chosen_scene = *row.given.correct ? scene : 1 - scene;
+  if (const auto* spec = protocol::find_procedure(protocol, row.procedure);
+      spec && protocol.task.kind == protocol::TaskKind::comparison && row.level) {
+    record.compared.push_back(*row.level);
+    for (const auto& name : spec->against) record.compared.push_back(std::get<double>(factors.at(name)));
+  }
   if (protocol.timing.signal) record.signal_s = protocol::evaluate(protocol.timing.signal->after_s, factors);
   record.instruction = protocol::condition_of(protocol, factors, block.instruction);
   if (protocol.analysis.difficulty)
@@ -197,6 +202,8 @@ LevelAnalysis analysis_of(const protocol::Protocol& protocol, const protocol::Me
   const auto words = protocol::words_of(meaning.level);
   auto name = meaning.level.empty() ? std::string("level") : words.name;
   if (meaning.size) name = "size of " + name;
+  if (scales(meaning.design))
+    name = "stimulus";  // there is one in each interval, each with a factor of its own
   part.level_unit = words.unit;
   part.level_label = axis_label(name, words.unit);
   part.prior = prior_of(protocol, meaning);

@@ -17,7 +17,8 @@ namespace {
 
 using analysis::TrialRecord;
 
-constexpr int kBandPoints = 61;
+/// Number of points of the band around a curve, and of simulated sessions with which a scale is checked.
+constexpr int kBandPoints = 61, kScaleSessions = 499;
 
 /// Counts the "yes" answers at each level. Trials without a signal are counted at kNoise, a level below all
 /// others.
@@ -255,6 +256,14 @@ std::vector<analysis::Judgements> judgements_of(const SessionData& data) {
                                                              : Judged::magnitudes);
 }
 
+std::vector<analysis::StimulusScale> scales_of(const SessionData& data, int sessions) {
+  if (!scales(data.design)) return {};
+  const auto model = data.design == Design::differences          ? analysis::ScaleModel::differences
+                     : data.function == core::Function::logistic ? analysis::ScaleModel::bradley_terry
+                                                                 : analysis::ScaleModel::thurstone;
+  return analysis::scales(data.trials, data.conditions, model, sessions);
+}
+
 bool has_confusions(const SessionData& data) {
   return !judges(data.design) && (data.choices.size() > 2 || data.design == Design::categories);
 }
@@ -341,6 +350,8 @@ std::optional<analysis::DependenceOptions> dependence_options(const SessionData&
       options.answers = Answers::settings;
       return options;
     case Design::categories:
+    case Design::pairs:
+    case Design::differences:
       return std::nullopt;
     case Design::forced_choice:
       options.answers = Answers::sides;
@@ -388,6 +399,10 @@ void add_levels(const SessionData& data, Summary& summary) {
     if (data.design == Design::ratings && shows(data, "dprime"))
       append(analysis::rating_rocs(data.trials, data.conditions, static_cast<int>(data.choices.size())),
              summary.rocs);
+    return;
+  }
+  if (scales(data.design)) {
+    append(scales_of(data, kScaleSessions), summary.scales);
     return;
   }
   if (has_confusions(data))

@@ -9,6 +9,7 @@
 #include "station/analysis/dependence.hpp"
 #include "station/analysis/judgements.hpp"
 #include "station/analysis/response_signal.hpp"
+#include "station/analysis/scaling.hpp"
 #include "station/analysis/settings.hpp"
 #include "station/analysis/signal_detection.hpp"
 #include "station/analysis/trade.hpp"
@@ -49,6 +50,8 @@ struct Summary {
   std::vector<analysis::Settings> settings;
   /// for ratings and numbers: one entry for each condition
   std::vector<analysis::Judgements> judgements;
+  /// for comparisons: one entry for each condition
+  std::vector<analysis::StimulusScale> scales;
   /// effects of the trial before, one entry for each condition; empty for three or more answers
   std::vector<analysis::Dependence> dependences;
   /// force and friction of the finger; empty if no force cells recorded data
@@ -67,6 +70,9 @@ bool has_confusions(const SessionData& data);
 
 /// Returns only the analysis of ratings or numbers; empty for other designs.
 std::vector<analysis::Judgements> judgements_of(const SessionData& data);
+
+/// Returns only the scales from comparisons, checked by so many simulated sessions; empty for other designs.
+std::vector<analysis::StimulusScale> scales_of(const SessionData& data, int sessions);
 
 /// False if the data give only a limit for the slope. The slope then lies on a bound of the
 /// maximum-likelihood fit, or the posterior does not determine it.

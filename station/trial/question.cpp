@@ -64,6 +64,29 @@ double median_step(std::vector<double> categories) {
   return categories[categories.size() / 2];
 }
 
+/// Turns a comparison into the question on which side of 0 a difference lies: that of the two stimuli, or of
+/// the sizes of two differences. The simulated observer feels the values of the factors themselves, so its
+/// scale is straight.
+simulation::Question compared(const TrialSpec& spec, const protocol::Protocol& protocol,
+                              const std::string& level, simulation::Question question) {
+  const auto* procedure = protocol::find_procedure(protocol, spec.procedure);
+  if (!procedure && !protocol.procedures.empty()) procedure = &protocol.procedures.front();
+  const auto value = [&](const std::string& factor) {
+    const auto found = spec.factors.find(factor);
+    const auto* number = found == spec.factors.end() ? nullptr : std::get_if<double>(&found->second);
+    return number ? *number : 0;
+  };
+  std::vector<double> at{value(level)};
+  if (procedure)
+    for (const auto& factor : procedure->against) at.push_back(value(factor));
+  question.decides = simulation::Decides::side, question.decibel = false, question.positive = 1;
+  if (at.size() == 2) question.level = at[1] - at[0];
+  if (at.size() == 3) question.level = std::fabs(at[2] - at[1]) - std::fabs(at[1] - at[0]);
+  if (at.size() == 4) question.level = std::fabs(at[3] - at[2]) - std::fabs(at[1] - at[0]);
+  if (procedure && procedure->values.size() > 1) question.default_threshold = median_step(procedure->values);
+  return question;
+}
+
 }  // namespace
 
 simulation::Question question_of(const TrialSpec& spec, const protocol::Protocol& protocol,
@@ -97,6 +120,7 @@ simulation::Question question_of(const TrialSpec& spec, const protocol::Protocol
                         task.modulus.value_or(std::sqrt(std::max(value->low, 1e-3) * value->high))};
     return question;
   }
+  if (task.kind == protocol::TaskKind::comparison) return compared(spec, protocol, level, question);
   const auto rule = protocol::answer_rule_of(protocol, level);
   question.positive = rule.positive, question.cut = rule.cut;
   // in 2ifc the answer is the interval that holds the scene
