@@ -214,7 +214,11 @@ void check_adjustment(const Reading& reading) {
 void check_comparisons(const Reading& reading) {
   const auto& protocol = reading.protocol;
   const bool comparing = protocol.task.kind == TaskKind::comparison;
+  std::set<std::string> used;
+  for (const auto& part : protocol.plan)
+    used.insert(block_of(part).procedures.begin(), block_of(part).procedures.end());
   for (const auto& spec : protocol.procedures) {
+    if (!used.contains(spec.name)) continue;
     if ((spec.kind == procedure::Kind::comparisons) != comparing)
       reading.findings.add(reading.places.of(key_of(spec, "kind")),
                            phrase("the procedure \"%1\" does not fit the kind of task", {plain(spec.name)}),
