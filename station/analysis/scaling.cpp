@@ -3,12 +3,14 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -31,12 +33,11 @@ bool in_pairs(ScaleModel model) { return model != ScaleModel::differences; }
 /// A trial as the model sees it. Differences are turned round so that the upper one counts as the answer.
 struct Oriented {
   std::vector<int> stimuli;
-  double order = 1;    ///< weight of the tendency to answer "second"
-  bool upper = false;  ///< the answer
+  double order = 1;  ///< weight of the tendency to answer "second"; negative if it was turned round
 };
 
-Oriented oriented(const Compared& trial) {
-  Oriented turned{trial.stimuli, 1, trial.second};
+Oriented oriented(const std::vector<int>& stimuli) {
+  Oriented turned{stimuli, 1};
   auto& s = turned.stimuli;
   if (s.size() == 2) return turned;
   if (s.size() == 3) {
@@ -47,7 +48,6 @@ Oriented oriented(const Compared& trial) {
     if (std::pair(s[0], s[1]) > std::pair(s[2], s[3]))
       std::swap(s[0], s[2]), std::swap(s[1], s[3]), turned.order = -1;
   }
-  if (turned.order < 0) turned.upper = !turned.upper;
   return turned;
 }
 
@@ -64,7 +64,8 @@ VectorXd weights_of(const std::vector<int>& s, int stimuli) {
   return weights;
 }
 
-void require(const std::vector<Compared>& trials, int stimuli, ScaleModel model) {
+template <class Trial>
+void require(const std::vector<Trial>& trials, int stimuli, ScaleModel model) {
   if (stimuli < (in_pairs(model) ? 2 : 3)) throw std::invalid_argument("scale: too few stimuli");
   for (const auto& trial : trials) {
     const auto n = trial.stimuli.size();
@@ -78,12 +79,14 @@ void require(const std::vector<Compared>& trials, int stimuli, ScaleModel model)
 /// The trials, with those of the same presentation together. The first stimulus has the value 0, so that the
 /// parameters are the values of the others and, last, the tendency to answer "second".
 struct Presentations {
-  MatrixXd rows;                  ///< one for each presentation
-  VectorXd upper, trials;         ///< numbers of answers
-  std::vector<std::size_t> cell;  ///< the presentation of each trial
-  std::vector<bool> answers;      ///< of each trial
-  bool order = false;             ///< whether the last parameter is the tendency
+  MatrixXd rows;                          ///< one for each presentation
+  VectorXd upper, trials;                 ///< numbers of answers
+  std::vector<std::vector<int>> stimuli;  ///< of each presentation
+  std::vector<std::size_t> cell;          ///< the presentation of each trial
+  std::vector<bool> answers;              ///< of each trial
+  bool order = false;                     ///< whether the last parameter is the tendency
   bool logistic = false;
+  double penalty = 1;  ///< weight of Jeffreys' prior
 };
 
 bool has_full_rank(const MatrixXd& rows) {
@@ -94,7 +97,7 @@ bool has_full_rank(const MatrixXd& rows) {
 }
 
 /// Empty if the trials do not determine the scale.
-std::optional<Presentations> presentations_of(const std::vector<Compared>& trials, int stimuli,
+std::optional<Presentations> presentations_of(const std::vector<ExpectedComparisons>& trials, int stimuli,
                                               ScaleModel model) {
   require(trials, stimuli, model);
   Presentations shown;
@@ -103,16 +106,17 @@ std::optional<Presentations> presentations_of(const std::vector<Compared>& trial
   std::vector<VectorXd> rows;
   std::vector<double> upper, count;
   for (const auto& trial : trials) {
-    const auto turned = oriented(trial);
+    const auto turned = oriented(trial.stimuli);
     const auto [found, is_new] = known.try_emplace({turned.stimuli, turned.order}, rows.size());
     if (is_new) {
       VectorXd row(stimuli);
       row << weights_of(turned.stimuli, stimuli).tail(stimuli - 1), turned.order;
       rows.push_back(std::move(row)), upper.push_back(0), count.push_back(0);
+      shown.stimuli.push_back(turned.stimuli);
     }
-    upper[found->second] += turned.upper ? 1 : 0;
-    ++count[found->second];
-    shown.cell.push_back(found->second), shown.answers.push_back(turned.upper);
+    const double more = turned.order < 0 ? trial.trials - trial.second : trial.second;
+    upper[found->second] += more, count[found->second] += trial.trials;
+    shown.cell.push_back(found->second), shown.answers.push_back(more > 0.5 * trial.trials);
   }
   const auto n = static_cast<Eigen::Index>(rows.size());
   shown.rows.resize(n, stimuli);
@@ -131,6 +135,13 @@ std::optional<Presentations> presentations_of(const std::vector<Compared>& trial
   shown.rows.conservativeResize(Eigen::NoChange, stimuli - 1);
   if (!has_full_rank(shown.rows)) return std::nullopt;
   return shown;
+}
+
+std::optional<Presentations> presentations_of(const std::vector<Compared>& trials, int stimuli,
+                                              ScaleModel model) {
+  std::vector<ExpectedComparisons> single;
+  for (const auto& trial : trials) single.push_back({trial.stimuli, 1, trial.second ? 1.0 : 0.0});
+  return presentations_of(single, stimuli, model);
 }
 
 /// The probability of an answer and what the fit needs of it.
@@ -208,10 +219,10 @@ Ascent ascent_at(const Presentations& shown, const VectorXd& at) {
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto& point = points[static_cast<std::size_t>(i)];
     scores[i] = shown.upper[i] * point.score - (shown.trials[i] - shown.upper[i]) * point.counter +
-                weights[i] * half.col(i).squaredNorm() * point.bend / 2;
+                shown.penalty * weights[i] * half.col(i).squaredNorm() * point.bend / 2;
   }
   ascent.gradient = shown.rows.transpose() * scores;
-  ascent.value = sum + MatrixXd(solver.matrixL()).diagonal().array().log().sum();
+  ascent.value = sum + shown.penalty * MatrixXd(solver.matrixL()).diagonal().array().log().sum();
   return ascent;
 }
 
@@ -321,9 +332,13 @@ Estimate interval_along(const Presentations& shown, const Summit& best, const Ma
   });
 }
 
+/// The size of a difference of 1 between the parameters of two pairs: Thurstone's unit is the standard
+/// deviation of one stimulus, not of a difference.
+double unit_of(const Presentations& shown) { return shown.logistic ? 1 : std::sqrt(2.0); }
+
 void add_pair_values(const Presentations& shown, const Summit& best, const MatrixXd& covariance, int stimuli,
                      ScaleFit& fit) {
-  const double unit = shown.logistic ? 1 : std::sqrt(2.0);
+  const double unit = unit_of(shown);
   for (int i = 0; i < stimuli; ++i) {
     VectorXd along = VectorXd::Zero(shown.rows.cols());
     along.head(stimuli - 1).setConstant(-1.0 / stimuli);
@@ -415,7 +430,75 @@ Presentations drawn(const Presentations& shown, const VectorXd& places, core::Dr
   return result;
 }
 
+/// The presentations of the trials whose answers the six-point property restricts.
+struct SixPoints {
+  int sets = 0;
+  VectorXd times;  ///< by presentation: number of sets to which it belongs
+};
+
+SixPoints six_points_of(const Presentations& shown, int stimuli) {
+  using Quadruple = std::array<int, 4>;
+  std::map<Quadruple, std::vector<Eigen::Index>> cells;
+  for (std::size_t i = 0; i < shown.stimuli.size(); ++i)
+    if (const auto& s = shown.stimuli[i]; s.size() == 4)
+      cells[{s[0], s[1], s[2], s[3]}].push_back(static_cast<Eigen::Index>(i));
+  SixPoints found{0, VectorXd::Zero(shown.rows.rows())};
+  const auto of = [&cells](int a, int b, int d, int e) {
+    return cells.find(std::pair(a, b) < std::pair(d, e) ? Quadruple{a, b, d, e} : Quadruple{d, e, a, b});
+  };
+  for (auto first = cells.cbegin(); first != cells.cend(); ++first) {
+    const auto [a, b, d, e] = first->first;
+    if (a >= d || b == a || e == d) continue;
+    for (int c = b + 1; c < stimuli; ++c)
+      for (int f = e + 1; f < stimuli; ++f) {
+        const auto second = of(b, c, e, f);
+        if (second == cells.end()) continue;
+        const auto both = of(a, c, d, f);
+        if (both == cells.end()) continue;
+        ++found.sets;
+        for (const auto& trial : {first->second, second->second, both->second})
+          for (const auto cell : trial) ++found.times[cell];
+      }
+  }
+  return found;
+}
+
+/// The log likelihood of the answers of all sets.
+double likelihood_of(const SixPoints& sets, const Presentations& shown, const VectorXd& at) {
+  const VectorXd places = shown.rows * at;
+  double sum = 0;
+  for (Eigen::Index i = 0; i < places.size(); ++i) {
+    const auto point = point_at(places[i], shown.logistic);
+    sum += sets.times[i] * (shown.upper[i] * point.log_p + (shown.trials[i] - shown.upper[i]) * point.log_q);
+  }
+  return sum;
+}
+
 }  // namespace
+
+std::optional<LimitingScale> limiting_scale(const std::vector<ExpectedComparisons>& trials, int stimuli,
+                                            ScaleModel model) {
+  auto shown = presentations_of(trials, stimuli, model);
+  if (!shown) return std::nullopt;
+  shown->penalty = 0;
+  const auto parameters = shown->rows.cols();
+  const auto best = summit(*shown, VectorXd::Zero(parameters));
+  if (!best) return std::nullopt;
+  LimitingScale scale;
+  scale.values.push_back(0);
+  for (Eigen::Index i = 0; i < stimuli - 1; ++i) scale.values.push_back(best->at[i]);
+  if (shown->order) scale.favours_second = best->at[parameters - 1];
+  const double whole = scale.values.back();
+  if (model == ScaleModel::differences) {
+    if (!(whole > 0)) return std::nullopt;
+    scale.noise = 1 / whole;
+    for (auto& value : scale.values) value /= whole;
+    return scale;
+  }
+  const double mean = std::accumulate(scale.values.begin(), scale.values.end(), 0.0) / stimuli;
+  for (auto& value : scale.values) value = (value - mean) * unit_of(*shown);
+  return scale;
+}
 
 std::optional<ScaleFit> fit_scale(const std::vector<Compared>& trials, int stimuli, ScaleModel model) {
   const auto shown = presentations_of(trials, stimuli, model);
@@ -449,23 +532,28 @@ std::optional<ScaleFit> fit_scale(const std::vector<Compared>& trials, int stimu
 ScaleCheck check_scale(const std::vector<Compared>& trials, int stimuli, ScaleModel model,
                        const ScaleFit& fit, int sessions) {
   ScaleCheck check;
-  check.sessions = sessions;
   const auto shown = presentations_of(trials, stimuli, model);
   const auto best = shown ? summit(*shown, VectorXd::Zero(shown->rows.cols())) : std::nullopt;
   if (!best) throw std::invalid_argument("scale: the trials are not those of the fit");
   const VectorXd places = shown->rows * best->at;
   check.runs = runs_of(by_place(*shown, best->at), shown->answers);
+  const auto sets = six_points_of(*shown, stimuli);
+  const double likelihood = likelihood_of(sets, *shown, best->at);
   core::Draws draws({1, core::Stream::bootstrap, 0, 0, 0});
-  int deviances = 1, runs = 1;  // the session itself counts as one of them
+  int deviances = 1, runs = 1, six_points = 1;  // the session itself counts as one of them
   for (int k = 0; k < sessions; ++k) {
     const auto other = drawn(*shown, places, draws);
     const auto found = summit(other, best->at);
     if (!found) continue;
+    ++check.sessions;
     deviances += deviance_of(other, found->at) >= fit.deviance ? 1 : 0;
     runs += runs_of(by_place(other, found->at), other.answers) <= check.runs ? 1 : 0;
+    if (sets.sets > 0) six_points += likelihood_of(sets, other, found->at) <= likelihood ? 1 : 0;
   }
-  check.deviance_p = static_cast<double>(deviances) / (sessions + 1);
-  check.runs_p = static_cast<double>(runs) / (sessions + 1);
+  check.six_points = sets.sets;
+  if (sets.sets > 0) check.six_points_p = static_cast<double>(six_points) / (check.sessions + 1);
+  check.deviance_p = static_cast<double>(deviances) / (check.sessions + 1);
+  check.runs_p = static_cast<double>(runs) / (check.sessions + 1);
   return check;
 }
 
@@ -517,11 +605,18 @@ std::vector<int> places_of(const std::vector<double>& values, const std::vector<
 }
 
 StimulusScale scale_of(const std::vector<const TrialRecord*>& trials, const std::string& condition,
-                       ScaleModel model, int sessions) {
+                       ScaleModel model, int sessions,
+                       const std::map<std::string, std::vector<double>>& designs) {
   StimulusScale scale;
   scale.condition = condition, scale.model = model;
-  for (const auto* trial : trials)
+  std::set<std::string> procedures;
+  for (const auto* trial : trials) {
     scale.stimuli.insert(scale.stimuli.end(), trial->compared.begin(), trial->compared.end());
+    procedures.insert(trial->procedure);
+  }
+  for (const auto& [procedure, values] : designs)
+    if (procedures.contains(procedure))
+      scale.stimuli.insert(scale.stimuli.end(), values.begin(), values.end());
   std::ranges::sort(scale.stimuli);
   scale.stimuli.erase(std::ranges::unique(scale.stimuli).begin(), scale.stimuli.end());
   scale.trials = static_cast<int>(trials.size());
@@ -554,20 +649,23 @@ StimulusScale scale_of(const std::vector<const TrialRecord*>& trials, const std:
   if (scale.check && scale.check->deviance_p < 0.05) say("poor-fit", "statement.scale_poor_fit");
   if (!in_pairs(model) && scale.check && scale.check->runs_p < 0.05)
     say("few-runs", "statement.scale_few_runs");
+  if (scale.check && scale.check->six_points_p && *scale.check->six_points_p < 0.05)
+    say("six-points", "statement.scale_six_points");
   return scale;
 }
 
 }  // namespace
 
 std::vector<StimulusScale> scales(const std::vector<TrialRecord>& trials,
-                                  const std::vector<std::string>& order, ScaleModel model, int sessions) {
+                                  const std::vector<std::string>& order, ScaleModel model, int sessions,
+                                  const std::map<std::string, std::vector<double>>& designs) {
   std::vector<StimulusScale> all;
   for (const auto& condition : conditions_of(trials, order)) {
     std::vector<const TrialRecord*> counting;
     for (const auto& trial : trials)
       if (counted(trial) && trial.response && !trial.compared.empty() && trial.instruction == condition)
         counting.push_back(&trial);
-    all.push_back(scale_of(counting, condition, model, sessions));
+    all.push_back(scale_of(counting, condition, model, sessions, designs));
   }
   return all;
 }

@@ -1,5 +1,5 @@
 #pragma once
-#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -53,6 +53,22 @@ struct ScaleFit {
 /// the first. Throws std::invalid_argument for wrong indexes or numbers of stimuli.
 std::optional<ScaleFit> fit_scale(const std::vector<Compared>& trials, int stimuli, ScaleModel model);
 
+/// Trials of one presentation, with the number of answers "second" that is expected of an observer.
+struct ExpectedComparisons {
+  std::vector<int> stimuli;
+  double trials = 1, second = 0;
+};
+
+/// The scale that unlimited trials with these expected answers would give.
+struct LimitingScale {
+  std::vector<double> values;
+  std::optional<double> noise, favours_second;
+};
+
+/// Fits the scale without a penalty. Empty if the trials do not determine it. Throws like fit_scale().
+std::optional<LimitingScale> limiting_scale(const std::vector<ExpectedComparisons>& trials, int stimuli,
+                                            ScaleModel model);
+
 /// Whether a model describes the answers, by simulated sessions that follow the fit.
 struct ScaleCheck {
   double deviance_p = 0;  ///< share of simulated sessions with at least this deviance
@@ -60,9 +76,17 @@ struct ScaleCheck {
   /// was expected. A scale of the wrong shape has few (Maloney & Yang 2003; Wood 2006).
   int runs = 0;
   double runs_p = 0;  ///< share of simulated sessions with at most so many runs
-  int sessions = 0;   ///< number of simulated sessions
+  /// For quadruples: number of sets of two times three stimuli a < b < c and d < e < f of which the three
+  /// trials ab de, bc ef and ac df were presented. Where ab is the larger one of the first two differences,
+  /// and bc of the second, so must be ac of the third (Maloney & Yang 2003, six-point property).
+  int six_points = 0;
+  /// Share of simulated sessions whose answers, in these sets, are at most as likely under their fit; empty
+  /// without sets
+  std::optional<double> six_points_p;
+  int sessions = 0;  ///< number of simulated sessions
 };
 
+/// Simulates sessions that follow the fit, and fits each of them.
 ScaleCheck check_scale(const std::vector<Compared>& trials, int stimuli, ScaleModel model,
                        const ScaleFit& fit, int sessions = 499);
 
@@ -94,8 +118,10 @@ struct StimulusScale {
 
 /// Analyses the answered experimental trials that compared stimuli (TrialRecord::compared), one entry for
 /// each condition, checked by so many simulated sessions (0: not checked). Conditions in `order` come first.
+/// `designs` has the stimuli of procedures: all of them belong to the scale of a condition in which the
+/// procedure has trials, so that a session that ended early has no scale of fewer stimuli.
 std::vector<StimulusScale> scales(const std::vector<TrialRecord>& trials,
-                                  const std::vector<std::string>& order, ScaleModel model,
-                                  int sessions = 499);
+                                  const std::vector<std::string>& order, ScaleModel model, int sessions = 499,
+                                  const std::map<std::string, std::vector<double>>& designs = {});
 
 }  // namespace turnpoint::analysis

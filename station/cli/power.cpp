@@ -105,6 +105,16 @@ Json lags_json(const std::map<double, rehearsal::GeneratingValues::Lag>& lags) {
   return json;
 }
 
+Json comparisons_json(const std::map<std::vector<double>, std::array<double, 2>>& comparisons) {
+  Json json = Json::array();
+  for (const auto& [stimuli, answers] : comparisons) {
+    Json compared = Json::array();
+    for (const double stimulus : stimuli) compared.push_back(exact(stimulus));
+    json.push_back({compared, exact(answers[0]), exact(answers[1])});
+  }
+  return json;
+}
+
 Json measures_json(const rehearsal::Measures& measures) {
   Json json = Json::array();
   for (const auto& one : measures)
@@ -130,7 +140,8 @@ Json to_json(const SessionOutcome& session) {
                         {"trials", sum.trials},
                         {"correct", exact(sum.correct)},
                         {"drifts", drifts_json(sum.drifts)},
-                        {"lags", lags_json(sum.lags)}};
+                        {"lags", lags_json(sum.lags)},
+                        {"comparisons", comparisons_json(sum.comparisons)}};
   return {{"trials", session.presented},
           {"scored", session.scored},
           {"right", session.right},
@@ -176,6 +187,11 @@ SessionOutcome session_of(const Json& json) {
       read.lags[number(one.at(0))] = {number(one.at(1)),
                                       {number(one.at(2)), number(one.at(4))},
                                       {number(one.at(3)), number(one.at(5))}};
+    for (const auto& one : sum.at("comparisons")) {
+      std::vector<double> stimuli;
+      for (const auto& stimulus : one.at(0)) stimuli.push_back(number(stimulus));
+      read.comparisons[stimuli] = {number(one.at(1)), number(one.at(2))};
+    }
   }
   if (const auto& p = json.at("model_p"); !p.is_null()) session.model_p = number(p);
   if (const auto& excluded = json.at("excluded"); !excluded.is_null()) {

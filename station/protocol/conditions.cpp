@@ -32,6 +32,19 @@ std::vector<protocol::Factors> combinations_of_by(const protocol::Protocol& prot
 
 }  // namespace
 
+std::vector<double> compared(const procedure::Spec& spec, const Factors& factors) {
+  std::vector<std::string> names{spec.level};
+  names.insert(names.end(), spec.against.begin(), spec.against.end());
+  std::vector<double> stimuli;
+  for (const auto& name : names) {
+    const auto found = factors.find(name);
+    const auto* value = found == factors.end() ? nullptr : std::get_if<double>(&found->second);
+    if (!value) return {};
+    stimuli.push_back(*value);
+  }
+  return stimuli;
+}
+
 FactorWords words_of(const std::string& factor) {
   FactorWords words{factor, ""};
   for (const auto* suffix : {"_dB", "_mm", "_um", "_Hz", "_kHz", "_s", "_ms"})

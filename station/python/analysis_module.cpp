@@ -444,6 +444,8 @@ void add_scale(py::module_& module) {
       .add("deviance_p", of_check(&ScaleCheck::deviance_p), "share of simulated sessions with a deviance as large")
       .add("runs", of_check(&ScaleCheck::runs), "runs of answers, in the order of what is expected")
       .add("runs_p", of_check(&ScaleCheck::runs_p), "share of simulated sessions with as few runs")
+      .add("six_points_p", [](const S& from) { return from.check ? from.check->six_points_p : std::nullopt; },
+           "quadruples: share of simulated sessions with answers as unlikely in the sets of the six-point property")
       .add("triples", of_triples(&Transitivity::triples), "pairs: number of triples")
       .add("circular", of_triples(&Transitivity::circular), "pairs: triples that violate weak transitivity")
       .add("moderate", of_triples(&Transitivity::moderate), "pairs: triples that violate moderate transitivity")

@@ -15,6 +15,7 @@
 #include "station/rehearsal/power_session.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/report/study.hpp"
+#include "station/report/summary.hpp"
 #include "station/trial/question.hpp"
 
 namespace turnpoint::rehearsal {
@@ -71,6 +72,12 @@ class Truths {
         add(source_of("numbers", condition), "exponent", options.observer.slope);
     GeneratingValues generating;
     for (const auto& outcome : outcomes) generating.add(outcome.generating);
+    const auto& meaning = protocol.meanings.front();
+    if (const auto model = report::scale_model(meaning.design, meaning.function))
+      for (const auto& condition : with_none(protocol::analysed_conditions(protocol)))
+        for (const auto& [parameter, value] :
+             generating.scale(condition, *model, protocol::words_of(meaning.level).unit))
+          add(source_of("scale", condition), parameter, value);
     if (outcomes.front().design == report::Design::categories)
       for (const auto& condition : with_none(protocol::analysed_conditions(protocol)))
         add(source_of("answers", condition), analysis::kCorrect, generating.share_correct(condition));
@@ -328,6 +335,9 @@ Measures true_measures(const SessionOutcome& outcome, const simulation::Observer
     if (value) truths.push_back({"", condition, measure, "", *value});
   };
   for (const auto& condition : conditions) {
+    if (const auto model = report::scale_model(settings.design, settings.function))
+      for (const auto& [measure, value] : generating.scale(condition, *model, settings.level_unit))
+        add(condition, measure.c_str(), value);
     add(condition, analysis::kCorrect, generating.share_correct(condition));
     add(condition, analysis::kBoundary, generating.boundary(condition, observer));
     add(condition, analysis::kDrift, generating.drift(condition));

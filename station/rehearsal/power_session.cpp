@@ -81,17 +81,16 @@ void add_fits(const report::SessionData& data, const std::string& unit, SessionO
                                   judged.exponent->value, judged.exponent->interval});
   for (const auto& scale : report::scales_of(data, 0)) {
     if (!scale.fit) continue;
-    const auto source = source_of("scale", scale.condition);
-    for (std::size_t i = 0; i < scale.stimuli.size(); ++i) {
-      const auto& place = scale.fit->values[i];
-      if (place.interval.low < place.interval.high)
-        outcome.findings.push_back(
-            {source, "place of " + core::number(scale.stimuli[i], 6), "", place.value, place.interval});
-    }
-    if (const auto& noise = scale.fit->noise)
-      outcome.findings.push_back({source, "noise", "", noise->value, noise->interval});
+    const auto add = [&](const std::string& parameter, const char* of, const analysis::Estimate& found) {
+      outcome.findings.push_back(
+          {source_of("scale", scale.condition), parameter, of, found.value, found.interval});
+    };
+    for (const auto& [stimulus, place] : report::places_of(scale))
+      add(report::place_name(stimulus, unit), report::scale_unit(scale.model), place);
+    if (const auto& noise = scale.fit->noise) add(report::kScaleNoise, "", *noise);
+    if (const auto& tendency = scale.fit->favours_second) add(report::kFavoursSecond, "", *tendency);
   }
-  if (report::judges(data.design)) return;
+  if (report::judges(data.design) || report::scales(data.design)) return;
   if (data.design == report::Design::adjustment) {
     for (const auto& settings : analysis::settings(data.trials, data.conditions))
       if (settings.mean)

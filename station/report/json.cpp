@@ -185,6 +185,8 @@ Json scale_json(const analysis::StimulusScale& scale) {
           {"deviance_p", check ? value(check->deviance_p) : Json(nullptr)},
           {"runs", check ? Json(check->runs) : Json(nullptr)},
           {"runs_p", check ? value(check->runs_p) : Json(nullptr)},
+          {"six_points", check && check->six_points > 0 ? Json(check->six_points) : Json(nullptr)},
+          {"six_points_p", check ? value(check->six_points_p) : Json(nullptr)},
           {"triples", triples ? Json(triples->triples) : Json(nullptr)},
           {"circular", triples ? Json(triples->circular) : Json(nullptr)},
           {"moderate_violations", triples ? Json(triples->moderate) : Json(nullptr)},

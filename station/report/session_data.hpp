@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -92,6 +93,8 @@ struct LevelAnalysis {
   /// for two sides in 2ifc: the two scenes, of which a trial's interval with one of them is chosen
   std::vector<std::string> scenes;
   double cut = 0;  ///< for two sides: the level at which the right answer changes
+  /// for comparisons: the stimuli of each procedure
+  std::map<std::string, std::vector<double>> stimuli;
   /// True if the threshold differs between the trials of one condition, because a procedure has a second
   /// dimension. No psychometric function is fitted then.
   bool thresholds_differ = false;

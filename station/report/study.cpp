@@ -183,6 +183,13 @@ void add_measures(const Summary& summary, StudyPerson& person) {
     measures.add(condition, "settings from below minus from above", data.level_unit,
                  settings.side_difference);
   }
+  for (const auto& scale : summary.scales) {
+    const auto unit = scale_unit(scale.model);
+    for (const auto& [stimulus, place] : places_of(scale))
+      measures.add(scale.condition, place_name(stimulus, data.level_unit), unit, std::optional(place));
+    if (scale.fit) measures.add(scale.condition, kScaleNoise, "", scale.fit->noise);
+    if (scale.fit) measures.add(scale.condition, kFavoursSecond, "", scale.fit->favours_second);
+  }
   for (const auto& judged : summary.judgements) {
     measures.add(judged.condition, "exponent of Stevens' law", "", judged.exponent);
     const std::string what = data.design == Design::ratings ? "mean rating" : "geometric mean";

@@ -256,12 +256,41 @@ std::vector<analysis::Judgements> judgements_of(const SessionData& data) {
                                                              : Judged::magnitudes);
 }
 
+std::optional<analysis::ScaleModel> scale_model(Design design, core::Function function) {
+  if (design == Design::differences) return analysis::ScaleModel::differences;
+  if (design != Design::pairs) return std::nullopt;
+  return function == core::Function::logistic ? analysis::ScaleModel::bradley_terry
+                                              : analysis::ScaleModel::thurstone;
+}
+
 std::vector<analysis::StimulusScale> scales_of(const SessionData& data, int sessions) {
-  if (!scales(data.design)) return {};
-  const auto model = data.design == Design::differences          ? analysis::ScaleModel::differences
-                     : data.function == core::Function::logistic ? analysis::ScaleModel::bradley_terry
-                                                                 : analysis::ScaleModel::thurstone;
-  return analysis::scales(data.trials, data.conditions, model, sessions);
+  const auto model = scale_model(data.design, data.function);
+  if (!model) return {};
+  return analysis::scales(data.trials, data.conditions, *model, sessions, data.stimuli);
+}
+
+std::vector<std::pair<double, analysis::Estimate>> places_of(const analysis::StimulusScale& scale) {
+  std::vector<std::pair<double, analysis::Estimate>> places;
+  const std::size_t ends = scale.model == analysis::ScaleModel::differences ? 1 : 0;
+  for (std::size_t i = ends; scale.fit && i + ends < scale.stimuli.size(); ++i)
+    places.emplace_back(scale.stimuli[i], scale.fit->values[i]);
+  return places;
+}
+
+std::string place_name(double stimulus, const std::string& level_unit) {
+  return "place of " + core::number(stimulus, 6) + (level_unit.empty() ? "" : " ") + level_unit;
+}
+
+const char* scale_unit(analysis::ScaleModel model) {
+  switch (model) {
+    case analysis::ScaleModel::bradley_terry:
+      return "log odds";
+    case analysis::ScaleModel::thurstone:
+      return "SD";
+    case analysis::ScaleModel::differences:
+      break;
+  }
+  return "";
 }
 
 bool has_confusions(const SessionData& data) {

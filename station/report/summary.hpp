@@ -74,6 +74,18 @@ std::vector<analysis::Judgements> judgements_of(const SessionData& data);
 /// Returns only the scales from comparisons, checked by so many simulated sessions; empty for other designs.
 std::vector<analysis::StimulusScale> scales_of(const SessionData& data, int sessions);
 
+/// How a comparison is scaled; empty for other designs.
+std::optional<analysis::ScaleModel> scale_model(Design design, core::Function function);
+
+/// The places of a scale that were estimated, with their stimuli: of differences those between the ends.
+std::vector<std::pair<double, analysis::Estimate>> places_of(const analysis::StimulusScale& scale);
+
+// How a study and a power study call the numbers of a scale.
+std::string place_name(double stimulus, const std::string& level_unit);
+const char* scale_unit(analysis::ScaleModel model);
+inline constexpr const char *kScaleNoise = "noise of a comparison",
+                            *kFavoursSecond = "tendency to answer second";
+
 /// False if the data give only a limit for the slope. The slope then lies on a bound of the
 /// maximum-likelihood fit, or the posterior does not determine it.
 bool slope_estimated(const NamedFit& named);

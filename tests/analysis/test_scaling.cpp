@@ -313,11 +313,73 @@ TEST_CASE("the check of a scale finds answers that follow no scale, and passes t
   CHECK(check_scale(circle, 3, ScaleModel::bradley_terry, *round, 99).deviance_p == Approx(0.01));
 }
 
+TEST_CASE("the limit of a scale is the scale of the observer whose answers are expected", "[analysis][scale]") {
+  struct Case {
+    ScaleModel model;
+    std::size_t size;
+    std::vector<double> scale;
+    double noise;
+  };
+  for (const auto& one : {Case{ScaleModel::bradley_terry, 2, {-2.5, 0, 1, 1.5}, 1},
+                          {ScaleModel::thurstone, 2, {-1, -0.5, 0, 1.5}, std::sqrt(2.0)},
+                          {ScaleModel::differences, 3, {0, 0.1, 0.4, 0.7, 1}, 0.2},
+                          {ScaleModel::differences, 4, {0, 0.4, 0.6, 0.9, 1}, 0.3}}) {
+    std::vector<ExpectedComparisons> expected;
+    for (const auto& s : all_of(static_cast<int>(one.scale.size()), one.size)) {
+      const double place = compared_by(one.scale, s) / one.noise + 0.3;
+      const double p =
+          one.model == ScaleModel::bradley_terry ? 1 / (1 + std::exp(-place)) : normal_cdf(place);
+      expected.push_back({s, 7, 7 * p});
+    }
+    const auto limit = limiting_scale(expected, static_cast<int>(one.scale.size()), one.model);
+    REQUIRE(limit);
+    for (std::size_t i = 0; i < one.scale.size(); ++i)
+      CHECK(limit->values[i] == Approx(one.scale[i]).margin(1e-6));
+    CHECK(*limit->favours_second == Approx(0.3).epsilon(1e-6));
+    CHECK(limit->noise.has_value() == (one.model == ScaleModel::differences));
+    if (limit->noise) CHECK(*limit->noise == Approx(one.noise).epsilon(1e-6));
+  }
+  CHECK_FALSE(limiting_scale({{{0, 1}, 1, 0.5}, {{2, 3}, 1, 0.5}}, 4, ScaleModel::thurstone));
+}
+
+TEST_CASE("the six-point test finds answers that contradict each other, and counts the sets of a design",
+          "[analysis][scale]") {
+  core::Draws draws({8, core::Stream::observer, 0, 0, 0});
+  const std::vector<double> scale{0, 0.1, 0.3, 0.5, 0.65, 0.9, 1};
+  const auto good = session(scale, 4, 2, ScaleModel::differences, 0.2, 0, draws);
+  const auto fit = fit_scale(good, 7, ScaleModel::differences);
+  REQUIRE(fit);
+  const auto passed = check_scale(good, 7, ScaleModel::differences, *fit, 99);
+  CHECK(passed.six_points == 7);  // one for each six of the seven stimuli
+  REQUIRE(passed.six_points_p);
+  CHECK(*passed.six_points_p > 0.05);
+  // Somebody who compares the differences of neighbours, but takes wider ones for smaller
+  std::vector<Compared> other;
+  for (const auto& trial : good) {
+    const auto& s = trial.stimuli;
+    const double sign = std::abs(s[1] - s[0]) + std::abs(s[3] - s[2]) > 2 ? -1 : 1;
+    const double place = sign * compared_by(scale, s) / 0.2 + (sign < 0 ? 1.5 * (s[3] > s[1] ? 1 : -1) : 0);
+    other.push_back({s, normal_cdf(place) > draws.uniform()});
+  }
+  const auto wrong = fit_scale(other, 7, ScaleModel::differences);
+  REQUIRE(wrong);
+  CHECK(*check_scale(other, 7, ScaleModel::differences, *wrong, 99).six_points_p <= 0.05);
+  // Triads, pairs and five stimuli have no such trials.
+  const auto triads = session(scale, 3, 1, ScaleModel::differences, 0.2, 0, draws);
+  const auto of_triads = fit_scale(triads, 7, ScaleModel::differences);
+  REQUIRE(of_triads);
+  CHECK_FALSE(check_scale(triads, 7, ScaleModel::differences, *of_triads, 9).six_points_p);
+}
+
 TEST_CASE("under the model, p values of the check are spread evenly", "[analysis][scale]") {
   core::Draws draws({5, core::Stream::observer, 0, 0, 0});
   const int sessions = sessions_wanted(100);
-  int deviance = 0, runs = 0;
+  int deviance = 0, runs = 0, six_points = 0;
   for (int k = 0; k < sessions; ++k) {
+    const auto quadruples = session({0, 0.1, 0.3, 0.5, 0.7, 1}, 4, 2, ScaleModel::differences, 0.3, 0, draws);
+    if (const auto of_four = fit_scale(quadruples, 6, ScaleModel::differences))
+      six_points +=
+          *check_scale(quadruples, 6, ScaleModel::differences, *of_four, 99).six_points_p <= 0.1 ? 1 : 0;
     const auto trials = session({0, 0.1, 0.3, 0.6, 1}, 3, 4, ScaleModel::differences, 0.3, 0, draws);
     const auto fit = fit_scale(trials, 5, ScaleModel::differences);
     if (!fit) continue;
@@ -328,6 +390,7 @@ TEST_CASE("under the model, p values of the check are spread evenly", "[analysis
   CHECK(deviance <= 0.19 * sessions);
   CHECK(deviance >= 0.02 * sessions);
   CHECK(runs <= 0.19 * sessions);
+  CHECK(six_points <= 0.19 * sessions);
 }
 
 TEST_CASE("transitivity counts the triples that contradict every scale", "[analysis][scale]") {
@@ -387,4 +450,6 @@ TEST_CASE("scales have one entry for each condition, and practice does not count
   REQUIRE_FALSE(all[0].statements.empty());
   CHECK(all[0].statements[0].code == "always-or-never");
   CHECK(all[0].transitivity->circular == 0);
+  // A session that ended before one stimulus of its procedure came has no scale of the others.
+  CHECK_FALSE(scales(trials, {"b"}, ScaleModel::bradley_terry, 0, {{"", {10, 40}}})[0].fit);
 }
