@@ -636,12 +636,15 @@ StimulusScale scale_of(const std::vector<const TrialRecord*>& trials, const std:
     }
     scale.transitivity = transitivity(compared, n);
   }
+  const auto seconds = std::ranges::count_if(compared, &Compared::second);
+  if (compared.size() > 5 && (seconds == 0 || seconds == std::ssize(compared)))
+    say("one-answer", "statement.scale_one_answer");
   if (n >= (in_pairs(model) ? 2 : 3)) scale.fit = fit_scale(compared, n, model);
   if (!scale.fit)
     return say("no-scale", in_pairs(model) ? "statement.no_scale_pairs" : "statement.no_scale_differences"),
            scale;
   if (sessions > 0) scale.check = check_scale(compared, n, model, *scale.fit, sessions);
-  for (std::size_t i = 0; i < scale.chosen.size(); ++i)
+  for (std::size_t i = 0; scale.fit && i < scale.chosen.size(); ++i)
     if (scale.chosen[i] == 0 || scale.chosen[i] == scale.presented[i]) {
       say("always-or-never", "statement.scale_always_or_never");
       break;

@@ -68,7 +68,8 @@ void check_fineness(AdviceList& advice, const procedure::Spec& spec) {
 // Reports levels that are all so large that everybody feels them: no threshold can be found then. A procedure
 // that ends at a criterion (stop.right) is for training and looks for no threshold.
 void check_coarseness(AdviceList& advice, const procedure::Spec& spec) {
-  if (spec.stop.right) return;
+  // a stimulus of a comparison need not be hard to tell from the plain surface
+  if (spec.stop.right || spec.kind == procedure::Kind::comparisons) return;
   auto levels = spec.values;
   levels.insert(levels.end(), spec.stimuli.values.begin(), spec.stimuli.values.end());
   if (spec.min) levels.push_back(*spec.min);

@@ -204,9 +204,9 @@ void add_scales(const Summary& summary, Document& document) {
         facts.rows.push_back({"Runs of answers", Text(std::to_string(scale.check->runs)) + ", " +
                                                      share_of(scale.check->runs_p, scale.check->sessions)});
       if (const auto& p = scale.check->six_points_p)
-        facts.rows.push_back(
-            {"Answers that the six-point property restricts",
-             std::to_string(scale.check->six_points) + " sets, " + share_of(*p, scale.check->sessions)});
+        facts.rows.push_back({"Answers that the six-point property restricts",
+                              Text(std::to_string(scale.check->six_points) + " sets, ") +
+                                  share_of(*p, scale.check->sessions)});
     }
     if (const auto& triples = scale.transitivity; triples && triples->triples > 0) {
       facts.rows.push_back({"Circular triples", count(std::to_string(triples->circular) + " / " +

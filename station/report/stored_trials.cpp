@@ -200,10 +200,10 @@ LevelAnalysis analysis_of(const protocol::Protocol& protocol, const protocol::Me
   const auto words = protocol::words_of(meaning.level);
   auto name = meaning.level.empty() ? std::string("level") : words.name;
   if (meaning.size) name = "size of " + name;
-  if (scales(meaning.design))
-    name = "stimulus";  // there is one in each interval, each with a factor of its own
   part.level_unit = words.unit;
-  part.level_label = axis_label(name, words.unit);
+  // in a comparison there is one in each interval, each with a factor of its own
+  part.level_label = scales(meaning.design) ? in_unit(core::phrase("figure.stimulus"), core::plain(words.unit))
+                                            : axis_label(name, words.unit);
   if (scales(meaning.design))
     for (const auto& procedure : meaning.procedures)
       if (const auto* spec = protocol::find_procedure(protocol, procedure))

@@ -313,7 +313,8 @@ TEST_CASE("the check of a scale finds answers that follow no scale, and passes t
   CHECK(check_scale(circle, 3, ScaleModel::bradley_terry, *round, 99).deviance_p == Approx(0.01));
 }
 
-TEST_CASE("the limit of a scale is the scale of the observer whose answers are expected", "[analysis][scale]") {
+TEST_CASE("the limit of a scale is the scale of the observer whose answers are expected",
+          "[analysis][scale]") {
   struct Case {
     ScaleModel model;
     std::size_t size;
@@ -450,6 +451,12 @@ TEST_CASE("scales have one entry for each condition, and practice does not count
   REQUIRE_FALSE(all[0].statements.empty());
   CHECK(all[0].statements[0].code == "always-or-never");
   CHECK(all[0].transitivity->circular == 0);
+  auto same = trials;
+  for (auto& trial : same) trial.response = 1;
+  const auto one_answer = scales(same, {"b"}, ScaleModel::thurstone, 0)[0];
+  REQUIRE(one_answer.fit);
+  CHECK(one_answer.statements.at(0).code == "one-answer");
+  for (const auto& value : one_answer.fit->values) CHECK(std::fabs(value.value) < 1e-6);
   // A session that ended before one stimulus of its procedure came has no scale of the others.
   CHECK_FALSE(scales(trials, {"b"}, ScaleModel::bradley_terry, 0, {{"", {10, 40}}})[0].fit);
 }
