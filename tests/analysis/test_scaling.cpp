@@ -211,6 +211,8 @@ TEST_CASE("the intervals of scales hold the true values as often as they say", "
     int repeats;
     std::vector<double> scale;
     double noise;
+    /// measured in 1000 sessions, where the intervals hold more than the 93 to 97 % that are wanted
+    std::optional<double> measured = {};
   };
   const Case cases[] = {
       {"Bradley-Terry, 5 stimuli, 2 repeats", ScaleModel::bradley_terry, 2, 2, {-1.6, -0.9, 0, 0.7, 1.8}, 1},
@@ -226,12 +228,16 @@ TEST_CASE("the intervals of scales hold the true values as often as they say", "
        2,
        {-1.2, -0.6, 0, 0.5, 1.3},
        std::sqrt(2.0)},
-      {"Thurstone, 6 stimuli far apart, 3 repeats",
+      // Most pairs are never confused here. Intervals of Wald (96.1 %) and of a bootstrap (96.3 %) would do,
+      // but hold the truth in less than 30 % where stimuli are even further apart
+      // (station/analysis/README.md).
+      {"Thurstone, 6 stimuli far apart, 3 repeats: 97.4 % measured instead of 93 to 97 %",
        ScaleModel::thurstone,
        2,
        3,
        {-4, -2, 0, 1, 2, 3},
-       std::sqrt(2.0)},
+       std::sqrt(2.0),
+       0.974},
       {"triads, 7 stimuli, 3 repeats",
        ScaleModel::differences,
        3,
@@ -278,9 +284,10 @@ TEST_CASE("the intervals of scales hold the true values as often as they say", "
                 << 100.0 * noise / fitted << " %\n";
     CHECK(fitted >= 0.98 * sessions);
     CHECK(held >= (sessions < 500 ? 0.91 : 0.93) * all);
-    // far apart, most pairs are never confused, and the intervals are a little too wide
-    const double most = one.model == ScaleModel::thurstone && one.scale.back() > 2 ? 0.98 : 0.97;
-    CHECK(held <= (sessions < 500 ? 0.99 : most) * all);
+    if (one.measured && sessions == 1000)
+      CHECK(static_cast<double>(held) / all == Approx(*one.measured).margin(0.005));
+    else if (!one.measured)
+      CHECK(held <= (sessions < 500 ? 0.99 : 0.97) * all);
     CHECK(tendency >= (sessions < 500 ? 0.86 : 0.93) * fitted);
     if (one.size > 2) CHECK(noise >= (sessions < 500 ? 0.86 : 0.93) * fitted);
   }
