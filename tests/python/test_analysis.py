@@ -231,6 +231,27 @@ class Report(unittest.TestCase):
             self.assertAlmostEqual(one.p, there["p"], places=12, msg=one.measure)
 
 
+    def test_scales_are_those_of_the_report(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for protocol, factors in (("friction-pairs", ["first_dB", "second_dB"]),
+                                      ("friction-triads", ["first_dB", "second_dB", "third_dB"])):
+                database = str(Path(folder, protocol + ".sqlite"))
+                subprocess.run([TURNPOINT, "run", f"protocols/{protocol}.toml", "--rig", "deploy/rigs/simulated.toml",
+                                "--participant", "P01", "--seed", "4", "--db", database, "--headless", "--observer", "sim:threshold=3"],
+                               check=True, stdout=subprocess.DEVNULL)
+                report = json.loads(subprocess.run([TURNPOINT, "report", "--db", database, "--participant", "P01", "--json"],
+                                                   check=True, capture_output=True, text=True).stdout)
+                trials = turnpoint.read(database).trials
+                trials = trials[trials.outcome == "answered"]
+                found = analysis.scale(trials[factors].astype(float), trials.response == "second")[0]
+                there = report["scales"][0]
+                self.assertEqual(found.stimuli, [one["stimulus"] for one in there["stimuli"]])
+                for value, one in zip(found.values, there["stimuli"], strict=True):
+                    self.assertEqual((value.value, value.low, value.high), (one["value"]["value"], *one["value"]["interval"].values()))
+                for name in ("deviance", "deviance_p", "runs", "runs_p", "six_points_p", "triples", "consistence"):
+                    self.assertEqual(getattr(found, name), there[name], name)
+
+
 class Others(unittest.TestCase):
     def test_detection_and_ratings(self):
         signal = [1] * 50 + [0] * 50
