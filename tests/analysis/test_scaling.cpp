@@ -361,13 +361,12 @@ TEST_CASE("the six-point test finds answers that contradict each other, and coun
   CHECK(passed.six_points == 7);  // one for each six of the seven stimuli
   REQUIRE(passed.six_points_p);
   CHECK(*passed.six_points_p > 0.05);
-  // Somebody who compares the differences of neighbours, but takes wider ones for smaller
+  // Somebody who takes the wider of two differences for the smaller one if both go past another stimulus
   std::vector<Compared> other;
   for (const auto& trial : good) {
     const auto& s = trial.stimuli;
-    const double sign = std::abs(s[1] - s[0]) + std::abs(s[3] - s[2]) > 2 ? -1 : 1;
-    const double place = sign * compared_by(scale, s) / 0.2 + (sign < 0 ? 1.5 * (s[3] > s[1] ? 1 : -1) : 0);
-    other.push_back({s, normal_cdf(place) > draws.uniform()});
+    const bool wide = std::abs(s[1] - s[0]) > 1 && std::abs(s[3] - s[2]) > 1;
+    other.push_back({s, normal_cdf((wide ? -1 : 1) * compared_by(scale, s) / 0.1) > draws.uniform()});
   }
   const auto wrong = fit_scale(other, 7, ScaleModel::differences);
   REQUIRE(wrong);
