@@ -271,7 +271,7 @@ std::optional<Summit> summit(const Presentations& shown, const VectorXd& from,
     VectorXd step = free * information.llt().solve(gradient);
     const double gain = here.gradient.dot(step) / 2;
     if (!std::isfinite(gain)) return std::nullopt;
-    if (gain < 1e-13) return Summit{at, here.value};
+    if (gain < 1e-13 * (1 + std::fabs(here.value))) return Summit{at, here.value};  // the rest is rounding
     auto there = ascent_at(shown, at + step);
     for (int halved = 0; halved < 40 && !(there.value >= here.value); ++halved) {
       step /= 2;

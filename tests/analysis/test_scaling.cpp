@@ -183,6 +183,25 @@ TEST_CASE("a scale that the trials do not determine has no fit", "[analysis][sca
   CHECK_THROWS_AS(fit_scale({{{0, 1, 2}, true}}, 4, ScaleModel::thurstone), std::invalid_argument);
 }
 
+TEST_CASE("many trials and many stimuli have a scale, although rounding errors add up", "[analysis][scale]") {
+  core::Draws draws({6, core::Stream::observer, 0, 0, 0});
+  std::vector<double> scale;
+  for (int i = 0; i < 13; ++i) scale.push_back(i / 12.0);
+  for (const std::size_t size : {3, 4}) {
+    const auto fit = fit_scale(session(scale, size, 1, ScaleModel::differences, 0.2, 0.1, draws), 13,
+                               ScaleModel::differences);
+    REQUIRE(fit);
+    for (std::size_t i = 0; i < scale.size(); ++i)
+      CHECK(fit->values[i].value == Approx(scale[i]).margin(0.15));
+    CHECK(fit->noise->value == Approx(0.2).margin(0.05));
+  }
+  std::vector<Compared> pairs;
+  for (int k = 0; k < 12; ++k)
+    for (const auto& trial : session(scale, 2, 4, ScaleModel::bradley_terry, 0.1, 0, draws))
+      pairs.push_back(trial);
+  CHECK(fit_scale(pairs, 13, ScaleModel::bradley_terry));
+}
+
 TEST_CASE("answers that are always those of the scale give finite values", "[analysis][scale]") {
   for (const auto& [size, model] : {std::pair{std::size_t{2}, ScaleModel::bradley_terry},
                                     {std::size_t{2}, ScaleModel::thurstone},
