@@ -271,14 +271,15 @@ std::optional<Summit> summit(const Presentations& shown, const VectorXd& from,
     VectorXd step = free * information.llt().solve(gradient);
     const double gain = here.gradient.dot(step) / 2;
     if (!std::isfinite(gain)) return std::nullopt;
-    if (gain < 1e-13 * (1 + std::fabs(here.value))) return Summit{at, here.value};  // the rest is rounding
+    if (gain < 1e-13) return Summit{at, here.value};
     auto there = ascent_at(shown, at + step);
     for (int halved = 0; halved < 40 && !(there.value >= here.value); ++halved) {
       step /= 2;
       there = ascent_at(shown, at + step);
     }
-    if (!(there.value >= here.value))  // if the gain is tiny, only rounding errors are left
-      return gain < 1e-7 ? std::optional(Summit{at, here.value}) : std::nullopt;
+    if (!(there.value > here.value) && gain < 1e-7)  // only rounding errors are left
+      return Summit{at, here.value};
+    if (!(there.value >= here.value)) return std::nullopt;
     at += step, here = std::move(there);
   }
   return std::nullopt;
