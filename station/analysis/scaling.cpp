@@ -30,7 +30,8 @@ constexpr double kProfileDrop = kZ95 * kZ95 / 2;
 
 bool in_pairs(ScaleModel model) { return model != ScaleModel::differences; }
 
-/// A trial as the model sees it. Differences are turned round so that the upper one counts as the answer.
+/// A trial as the model sees it: a pair, or two differences, each in ascending order, of which the upper one
+/// counts as the answer. A triad compares the difference of its first two stimuli with that of its last two.
 struct Oriented {
   std::vector<int> stimuli;
   double order = 1;  ///< weight of the tendency to answer "second"; negative if it was turned round
@@ -40,14 +41,11 @@ Oriented oriented(const std::vector<int>& stimuli) {
   Oriented turned{stimuli, 1};
   auto& s = turned.stimuli;
   if (s.size() == 2) return turned;
-  if (s.size() == 3) {
-    if (s[0] > s[2]) std::swap(s[0], s[2]), turned.order = -1;
-  } else {
-    if (s[0] > s[1]) std::swap(s[0], s[1]);
-    if (s[2] > s[3]) std::swap(s[2], s[3]);
-    if (std::pair(s[0], s[1]) > std::pair(s[2], s[3]))
-      std::swap(s[0], s[2]), std::swap(s[1], s[3]), turned.order = -1;
-  }
+  if (s.size() == 3) s.insert(s.begin() + 1, s[1]);
+  if (s[0] > s[1]) std::swap(s[0], s[1]);
+  if (s[2] > s[3]) std::swap(s[2], s[3]);
+  if (std::pair(s[0], s[1]) > std::pair(s[2], s[3]))
+    std::swap(s[0], s[2]), std::swap(s[1], s[3]), turned.order = -1;
   return turned;
 }
 
@@ -56,8 +54,6 @@ VectorXd weights_of(const std::vector<int>& s, int stimuli) {
   VectorXd weights = VectorXd::Zero(stimuli);
   if (s.size() == 2) {
     weights[s[1]] += 1, weights[s[0]] -= 1;
-  } else if (s.size() == 3) {
-    weights[s[2]] += 1, weights[s[1]] -= 2, weights[s[0]] += 1;
   } else {
     weights[s[3]] += 1, weights[s[2]] -= 1, weights[s[1]] -= 1, weights[s[0]] += 1;
   }
@@ -79,12 +75,12 @@ void require(const std::vector<Trial>& trials, int stimuli, ScaleModel model) {
 /// The trials, with those of the same presentation together. The first stimulus has the value 0, so that the
 /// parameters are the values of the others and, last, the tendency to answer "second".
 struct Presentations {
-  MatrixXd rows;                          ///< one for each presentation
-  VectorXd upper, trials;                 ///< numbers of answers
-  std::vector<std::vector<int>> stimuli;  ///< of each presentation
-  std::vector<std::size_t> cell;          ///< the presentation of each trial
-  std::vector<bool> answers;              ///< of each trial
-  bool order = false;                     ///< whether the last parameter is the tendency
+  MatrixXd rows;                             ///< one for each presentation
+  VectorXd upper, trials;                    ///< numbers of answers
+  std::vector<std::vector<int>> quadruples;  ///< of each presentation; empty for pairs and triads
+  std::vector<std::size_t> cell;             ///< the presentation of each trial
+  std::vector<bool> answers;                 ///< of each trial
+  bool order = false;                        ///< whether the last parameter is the tendency
   bool logistic = false;
   double penalty = 1;  ///< weight of Jeffreys' prior
 };
@@ -112,7 +108,7 @@ std::optional<Presentations> presentations_of(const std::vector<ExpectedComparis
       VectorXd row(stimuli);
       row << weights_of(turned.stimuli, stimuli).tail(stimuli - 1), turned.order;
       rows.push_back(std::move(row)), upper.push_back(0), count.push_back(0);
-      shown.stimuli.push_back(turned.stimuli);
+      shown.quadruples.push_back(trial.stimuli.size() == 4 ? turned.stimuli : std::vector<int>{});
     }
     const double more = turned.order < 0 ? trial.trials - trial.second : trial.second;
     upper[found->second] += more, count[found->second] += trial.trials;
@@ -440,8 +436,8 @@ struct SixPoints {
 SixPoints six_points_of(const Presentations& shown, int stimuli) {
   using Quadruple = std::array<int, 4>;
   std::map<Quadruple, std::vector<Eigen::Index>> cells;
-  for (std::size_t i = 0; i < shown.stimuli.size(); ++i)
-    if (const auto& s = shown.stimuli[i]; s.size() == 4)
+  for (std::size_t i = 0; i < shown.quadruples.size(); ++i)
+    if (const auto& s = shown.quadruples[i]; !s.empty())
       cells[{s[0], s[1], s[2], s[3]}].push_back(static_cast<Eigen::Index>(i));
   SixPoints found{0, VectorXd::Zero(shown.rows.rows())};
   const auto of = [&cells](int a, int b, int d, int e) {

@@ -13,7 +13,7 @@ using core::phrase, core::plain;
 
 namespace {
 
-/// All choices of so many of `n` stimuli, each in ascending order of their places.
+/// All choices of so many of `n` stimuli, each in ascending order.
 std::vector<std::vector<std::size_t>> choices_of(std::size_t n, std::size_t so_many) {
   std::vector<std::vector<std::size_t>> all;
   std::vector<std::size_t> at(so_many);
@@ -43,6 +43,7 @@ class Comparisons : public Procedure {
  public:
   Comparisons(const Spec& spec, const Context& context, const core::DrawKey& key)
       : spec_(spec), context_(context), key_(key) {
+    std::ranges::sort(spec_.values);
     core::Draws draws({key.seed, core::Stream::level_order, key.block, key.attempt, 0});
     const auto chosen = choices_of(spec.values.size(), 1 + spec.against.size());
     std::vector<std::size_t> first_form(chosen.size());
@@ -100,7 +101,8 @@ class Comparisons : public Procedure {
   Spec spec_;
   Context context_;
   core::DrawKey key_;
-  std::vector<std::vector<std::size_t>> queue_;  ///< places of the stimuli of each trial in Spec::values
+  std::vector<std::vector<std::size_t>>
+      queue_;  ///< places of each trial's stimuli among all, in ascending order
   std::size_t position_ = 0;
   int recorded_ = 0, requeued_ = 0, total_ = 0;
 };

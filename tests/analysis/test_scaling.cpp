@@ -1,5 +1,6 @@
 #include "station/analysis/scaling.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -165,6 +166,26 @@ TEST_CASE("scales of differences are those of R's brglm2",
   const auto other = fit_scale(turned, 6, ScaleModel::differences);
   REQUIRE(other);
   CHECK(other->values[3].value == Approx(fit->values[3].value));
+}
+
+TEST_CASE("stimuli of triads and quadruples may come in any order", "[analysis][scale]") {
+  const std::vector<double> scale{0, 0.15, 0.4, 0.7, 1};
+  for (const std::size_t size : {3, 4}) {
+    core::Draws draws({11, core::Stream::observer, 0, 0, static_cast<int>(size)});
+    std::vector<Compared> trials;
+    for (auto s : all_of(5, size)) {
+      std::ranges::sort(s);
+      do {
+        for (int k = 0; k < 20; ++k)
+          trials.push_back({s, draws.uniform() < normal_cdf(compared_by(scale, s) / 0.15)});
+      } while (std::ranges::next_permutation(s).found);
+    }
+    const auto fit = fit_scale(trials, 5, ScaleModel::differences);
+    REQUIRE(fit);
+    CHECK(fit->noise->value == Approx(0.15).margin(0.03));
+    for (std::size_t i = 0; i < scale.size(); ++i)
+      CHECK(fit->values[i].value == Approx(scale[i]).margin(0.04));
+  }
 }
 
 TEST_CASE("a scale that the trials do not determine has no fit", "[analysis][scale]") {

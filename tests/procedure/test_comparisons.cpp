@@ -71,6 +71,12 @@ TEST_CASE("triads come forth and back equally often, with the middle stimulus in
   CHECK(forth == 5);
 }
 
+TEST_CASE("the order in which the values are listed does not matter", "[procedure][comparisons]") {
+  for (const std::size_t together : {2, 3, 4})
+    CHECK(presented(compared(together, {4, 1, 6, 3, 2, 5}, 2)) ==
+          presented(compared(together, {1, 2, 3, 4, 5, 6}, 2)));
+}
+
 TEST_CASE("quadruples have two pairs that do not overlap, in four forms", "[procedure][comparisons]") {
   const auto all = presented(compared(4, {1, 2, 3, 4, 5, 6}, 4));
   REQUIRE(all.size() == 4 * 15);

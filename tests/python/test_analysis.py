@@ -3,6 +3,7 @@
 TURNPOINT_RTDISTS_PEOPLE=17 TURNPOINT_RTDISTS_STARTS=5 compares the fits of all people of speed_acc."""
 import csv
 import inspect
+import itertools
 import json
 import math
 import os
@@ -295,6 +296,12 @@ class Others(unittest.TestCase):
         found = analysis.scale(triads, felt > 0, condition=["x"] * len(triads))[0]
         self.assertTrue(found.noise.low < 0.2 < found.noise.high)
         self.assertLess(max(abs(v.value - s) for v, s in zip(found.values, scale)), 0.1)
+        # the middle stimulus of a triad need not lie between the others
+        any_order = np.array([t for t in itertools.permutations(range(5), 3)] * 20)
+        felt_so = np.abs(np.diff(scale[any_order])) @ [-1, 1] + 0.2 * rng.standard_normal(len(any_order))
+        mixed = analysis.scale(any_order, felt_so > 0)[0]
+        self.assertTrue(mixed.noise.low < 0.2 < mixed.noise.high)
+        self.assertLess(max(abs(v.value - s) for v, s in zip(mixed.values, scale)), 0.1)
         self.assertIsNone(analysis.scale([[1, 2], [3, 4]], [1, 0])[0].values)
         with self.assertRaisesRegex(ValueError, "model"):
             analysis.scale(pairs, second, model="differences")
