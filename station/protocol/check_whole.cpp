@@ -5,6 +5,7 @@
 #include "station/procedure/description.hpp"
 #include "station/protocol/advice_list.hpp"
 #include "station/protocol/answers.hpp"
+#include "station/protocol/conditions.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/protocol/sources.hpp"
@@ -210,6 +211,21 @@ void check_adjustment(const Reading& reading) {
   }
 }
 
+// Each interval of a comparison must present the factor that its procedure sets for it, and no other of them.
+void check_intervals(const procedure::Spec& spec, const Reading& reading) {
+  const auto& intervals = reading.protocol.task.intervals;
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    const auto& factor = i == 0 ? spec.level : spec.against[i - 1];
+    if (presented(reading.protocol, spec, intervals[i]) != factor)
+      reading.findings.add(
+          reading.places.of(key_of(spec, i == 0 ? "level" : "against")),
+          phrase("interval %1 does not present \"%2\", or also presents another factor of \"%3\"",
+                 {plain(i + 1), plain(factor), plain(spec.name)}),
+          phrase(
+              "name the factors in the order of \"intervals\", each with a scene that depends on it alone"));
+  }
+}
+
 // A comparison needs procedures that set a stimulus for each of its intervals, and only they can ask for one.
 void check_comparisons(const Reading& reading) {
   const auto& protocol = reading.protocol;
@@ -230,6 +246,8 @@ void check_comparisons(const Reading& reading) {
           phrase("the procedure \"%1\" sets %2 stimuli, but a trial has %3 intervals",
                  {plain(spec.name), plain(spec.against.size() + 1), plain(protocol.task.intervals.size())}),
           phrase("name one factor for each interval: the first in \"level\""));
+    else if (comparing)
+      check_intervals(spec, reading);
   }
 }
 

@@ -65,6 +65,19 @@ double median_step(std::vector<double> categories) {
   return categories[categories.size() / 2];
 }
 
+/// The stimuli of the intervals of a comparison: the values of the factors on which their scenes depend.
+std::vector<double> stimuli_of(const TrialSpec& spec, const protocol::Protocol& protocol,
+                               const procedure::Spec& procedure) {
+  std::vector<double> stimuli;
+  for (const auto& scenes : spec.intervals) {
+    const auto found = spec.factors.find(protocol::presented(protocol, procedure, scenes));
+    const auto* value = found == spec.factors.end() ? nullptr : std::get_if<double>(&found->second);
+    if (!value) return {};
+    stimuli.push_back(*value);
+  }
+  return stimuli;
+}
+
 /// Turns a comparison into the question on which side of 0 a difference lies: that of the two stimuli, or of
 /// the sizes of two differences.
 simulation::Question compared(const TrialSpec& spec, const protocol::Protocol& protocol,
@@ -72,7 +85,7 @@ simulation::Question compared(const TrialSpec& spec, const protocol::Protocol& p
   const auto* procedure = protocol::find_procedure(protocol, spec.procedure);
   if (!procedure && !protocol.procedures.empty()) procedure = &protocol.procedures.front();
   std::vector<double> at;
-  if (procedure) at = protocol::compared(*procedure, spec.factors);
+  if (procedure) at = stimuli_of(spec, protocol, *procedure);
   question.decides = simulation::Decides::side, question.decibel = false, question.positive = 1;
   if (at.size() == 2) question.level = at[1] - at[0];
   if (at.size() == 3) question.level = std::fabs(at[2] - at[1]) - std::fabs(at[1] - at[0]);
