@@ -231,8 +231,15 @@ void check_comparisons(const Reading& reading) {
   const auto& protocol = reading.protocol;
   const bool comparing = protocol.task.kind == TaskKind::comparison;
   std::set<std::string> used;
-  for (const auto& part : protocol.plan)
-    used.insert(block_of(part).procedures.begin(), block_of(part).procedures.end());
+  for (const auto& part : protocol.plan) {
+    const auto& block = block_of(part);
+    used.insert(block.procedures.begin(), block.procedures.end());
+    if (comparing && block.kind == BlockKind::trials && !block.practice && !block.level.empty())
+      reading.findings.add(
+          reading.places.of(key_of(part, "level")),
+          phrase("block \"%1\" has fixed levels, which give no scale", {plain(block.name)}),
+          phrase("name a procedure of %1 in \"procedures\"", {plain("kind = \"comparisons\"")}));
+  }
   for (const auto& spec : protocol.procedures) {
     if (!used.contains(spec.name)) continue;
     if ((spec.kind == procedure::Kind::comparisons) != comparing)
