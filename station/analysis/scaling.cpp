@@ -15,6 +15,7 @@
 #include <tuple>
 #include <utility>
 
+#include "physics/nnls.hpp"
 #include "station/analysis/proportion.hpp"
 #include "station/core/draws.hpp"
 
@@ -374,6 +375,47 @@ bool add_difference_values(const Presentations& shown, const Summit& best, const
   return true;
 }
 
+/// Whether the answers set no limit to some distance: there is a direction of the parameters in which the
+/// probability of no trial's answer falls, and that of some rises (Albert & Anderson 1984, Biometrika
+/// 71:1-10). The sum of the trials' directions, made as short as possible by adding more of them, is such a
+/// direction, unless it becomes 0. Only trials that have to be added are: those that the direction found so
+/// far contradicts.
+bool is_separated(const Presentations& shown) {
+  std::vector<VectorXd> upwards;  // for each trial, the direction in which its answer becomes more probable
+  VectorXd sum = VectorXd::Zero(shown.rows.cols());
+  for (Eigen::Index i = 0; i < shown.rows.rows(); ++i) {
+    const VectorXd row = shown.rows.row(i).transpose().normalized();
+    const bool one_answer = shown.upper[i] == 0 || shown.upper[i] == shown.trials[i];
+    if (shown.upper[i] > 0) upwards.push_back(row);
+    if (shown.upper[i] < shown.trials[i]) upwards.push_back(-row);
+    if (one_answer) sum += upwards.back();
+  }
+  constexpr double none = 1e-6, rounding = 1e-9;
+  VectorXd direction = sum;
+  std::vector<double> columns;
+  std::set<std::size_t> added;
+  while (direction.norm() > none * sum.norm()) {
+    std::vector<std::pair<double, std::size_t>> against;
+    for (std::size_t i = 0; i < upwards.size(); ++i)
+      if (const double along = upwards[i].dot(direction);
+          along < -rounding * direction.norm() && !added.contains(i))
+        against.emplace_back(along, i);
+    if (against.empty()) return true;
+    std::ranges::sort(against);
+    if (std::ssize(against) > 2 * sum.size()) against.resize(static_cast<std::size_t>(2 * sum.size()));
+    for (const auto& [along, i] : against) {
+      added.insert(i);
+      columns.insert(columns.end(), upwards[i].begin(), upwards[i].end());
+    }
+    const VectorXd wanted = -sum;
+    const auto rows = static_cast<std::size_t>(sum.size());
+    const auto found = physics::nnls(columns, rows, {wanted.data(), rows}, rounding);
+    direction = sum + Eigen::Map<const MatrixXd>(columns.data(), sum.size(), std::ssize(found.x)) *
+                          Eigen::Map<const VectorXd>(found.x.data(), std::ssize(found.x));
+  }
+  return false;
+}
+
 struct Likelihoods {
   double model = 0, saturated = 0;
 };
@@ -518,6 +560,7 @@ std::optional<ScaleFit> fit_scale(const std::vector<Compared>& trials, int stimu
   fit.log_likelihood = likelihoods_at(*shown, best->at).model;
   fit.deviance = deviance_of(*shown, best->at);
   fit.degrees = static_cast<int>(shown->rows.rows() - parameters);
+  fit.separated = is_separated(*shown);
   const VectorXd places = shown->rows * best->at;
   for (std::size_t i = 0; i < trials.size(); ++i) {
     const double p = point_at(places[static_cast<Eigen::Index>(shown->cell[i])], shown->logistic).p;
@@ -641,11 +684,7 @@ StimulusScale scale_of(const std::vector<const TrialRecord*>& trials, const std:
     return say("no-scale", in_pairs(model) ? "statement.no_scale_pairs" : "statement.no_scale_differences"),
            scale;
   if (sessions > 0) scale.check = check_scale(compared, n, model, *scale.fit, sessions);
-  for (std::size_t i = 0; scale.fit && i < scale.chosen.size(); ++i)
-    if (scale.chosen[i] == 0 || scale.chosen[i] == scale.presented[i]) {
-      say("always-or-never", "statement.scale_always_or_never");
-      break;
-    }
+  if (scale.fit->separated) say("separated", "statement.scale_separated");
   if (scale.check && scale.check->deviance_p < 0.05) say("poor-fit", "statement.scale_poor_fit");
   if (!in_pairs(model) && scale.check && scale.check->runs_p < 0.05)
     say("few-runs", "statement.scale_few_runs");

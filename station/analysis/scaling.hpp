@@ -43,14 +43,20 @@ struct ScaleFit {
   /// presentation
   double deviance = 0;
   int degrees = 0;  ///< number of different presentations minus number of parameters
+  /// True if the answers set no limit to some distance, because no answers contradict each other there: a
+  /// stimulus that was always chosen, two groups of stimuli that were never confused, a scale of differences
+  /// without an inconsistent answer. Places and the ends of intervals are then finite by the prior alone, and
+  /// can miss the truth far more often than they say.
+  bool separated = false;
   /// fitted probability of the answer "second" of each trial
   std::vector<double> probabilities;
 };
 
 /// Fits a scale of `stimuli` stimuli by maximum likelihood with Jeffreys' prior as a penalty (Firth 1993;
-/// Kosmidis & Firth 2021), so that a stimulus that was always or never chosen has a finite value. Empty if
-/// the comparisons do not connect all stimuli or, for differences, if the last stimulus is not reliably above
-/// the first. Throws std::invalid_argument for wrong indexes or numbers of stimuli.
+/// Kosmidis & Firth 2021), so that all values are finite, if need be by the prior alone
+/// (ScaleFit::separated). Empty if the comparisons do not connect all stimuli or, for differences, if the
+/// last stimulus is not reliably above the first. Throws std::invalid_argument for wrong indexes or numbers
+/// of stimuli.
 std::optional<ScaleFit> fit_scale(const std::vector<Compared>& trials, int stimuli, ScaleModel model);
 
 /// Trials of one presentation, with the number of answers "second" that is expected of an observer.

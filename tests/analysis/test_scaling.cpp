@@ -243,6 +243,35 @@ TEST_CASE("answers that are always those of the scale give finite values", "[ana
   }
 }
 
+TEST_CASE("a scale says if the answers set no limit to some of its distances", "[analysis][scale]") {
+  const auto separated = [](const std::vector<Compared>& trials, int stimuli, ScaleModel model) {
+    const auto fit = fit_scale(trials, stimuli, model);
+    REQUIRE(fit);
+    return fit->separated;
+  };
+  // two clusters: within each the answers contradict each other, between them never
+  std::vector<Compared> clusters;
+  for (int a = 0; a < 6; ++a)
+    for (int b = 0; b < 6; ++b)
+      if (a != b) add(clusters, {a, b}, a / 3 != b / 3 ? (b > a ? 4 : 0) : b > a ? 3 : 1, 4);
+  for (const auto model : {ScaleModel::bradley_terry, ScaleModel::thurstone})
+    CHECK(separated(clusters, 6, model));
+  add(clusters, {2, 3}, 0, 1);  // one contradiction connects them
+  for (const auto model : {ScaleModel::bradley_terry, ScaleModel::thurstone})
+    CHECK_FALSE(separated(clusters, 6, model));
+  // a stimulus that was always chosen
+  CHECK(separated(five_stimuli(), 5, ScaleModel::bradley_terry));
+  core::Draws draws({12, core::Stream::observer, 0, 0, 0});
+  const std::vector<double> scale{0, 0.3, 0.37, 0.55, 0.9, 1};
+  for (const std::size_t size : {3, 4}) {
+    std::vector<Compared> sure;
+    for (const auto& s : all_of(6, size)) sure.push_back({s, compared_by(scale, s) > 0});
+    CHECK(separated(sure, 6, ScaleModel::differences));
+    CHECK_FALSE(separated(session(scale, size, 8, ScaleModel::differences, 0.4, 0.1, draws), 6,
+                          ScaleModel::differences));
+  }
+}
+
 TEST_CASE("the intervals of scales hold the true values as often as they say", "[analysis][scale]") {
   struct Case {
     const char* name;
@@ -495,7 +524,7 @@ TEST_CASE("scales have one entry for each condition, and practice does not count
   CHECK(all[0].fit->values[4].value ==
         Approx(fit_scale(five_stimuli(), 5, ScaleModel::bradley_terry)->values[4].value));
   REQUIRE_FALSE(all[0].statements.empty());
-  CHECK(all[0].statements[0].code == "always-or-never");
+  CHECK(all[0].statements[0].code == "separated");
   CHECK(all[0].transitivity->circular == 0);
   auto same = trials;
   for (auto& trial : same) trial.response = 1;
