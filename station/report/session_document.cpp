@@ -225,7 +225,8 @@ void add_scales(const Summary& summary, Document& document) {
               "a choice; Thurstone: it is a d\u2032. 95 % intervals: profile likelihood with Jeffreys\u2019 "
               "prior."
             : "The scale runs from 0 at the first stimulus to 1 at the last. 95 % intervals: profile "
-              "likelihood with Jeffreys\u2019 prior. Few runs mean that the scale has the wrong shape.");
+              "likelihood with Jeffreys\u2019 prior. Few runs mean that the scale has the wrong shape, or "
+              "that some answers were given without attention.");
 }
 
 // --- answers by stimulus, and sensitivity
