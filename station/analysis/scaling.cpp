@@ -348,7 +348,7 @@ void add_pair_values(const Presentations& shown, const Summit& best, const Matri
 }
 
 /// The values relative to that of the last stimulus. A ratio is held at r where the value minus r times the
-/// last one is 0. False if the last one is not above 0, or if an interval has no end.
+/// last one is 0. False if the last one is not reliably above 0.
 bool add_difference_values(const Presentations& shown, const Summit& best, const MatrixXd& covariance,
                            int stimuli, ScaleFit& fit) {
   const auto last = static_cast<Eigen::Index>(stimuli) - 2;
@@ -367,9 +367,7 @@ bool add_difference_values(const Presentations& shown, const Summit& best, const
     };
     const VectorXd along = restricted(ratio).along;
     const double sd = std::sqrt(along.dot(covariance * along)) / range.value;
-    const auto value = profile_interval(shown, best, ratio, sd, restricted);
-    if (!std::isfinite(value.interval.low) || !std::isfinite(value.interval.high)) return false;
-    fit.values.push_back(value);
+    fit.values.push_back(profile_interval(shown, best, ratio, sd, restricted));
   }
   fit.values.push_back({1, {1, 1, 0.95}});
   return true;
@@ -644,6 +642,17 @@ std::vector<int> places_of(const std::vector<double>& values, const std::vector<
   return places;
 }
 
+/// Why trials have no scale: a code and a text.
+std::pair<const char*, const char*> no_scale_reason(const std::vector<Compared>& trials, int stimuli,
+                                                    ScaleModel model) {
+  const bool enough = stimuli >= (in_pairs(model) ? 2 : 3);
+  const auto shown = enough ? presentations_of(trials, stimuli, model) : std::nullopt;
+  if (!shown || in_pairs(model)) return {"no-scale", "statement.no_scale"};
+  const double upper = shown->upper.sum() / shown->trials.sum();
+  if (std::max(upper, 1 - upper) > 0.9) return {"one-sided", "statement.no_scale_one_sided"};
+  return {"no-range", "statement.no_scale_range"};
+}
+
 StimulusScale scale_of(const std::vector<const TrialRecord*>& trials, const std::string& condition,
                        ScaleModel model, int sessions,
                        const std::map<std::string, std::vector<double>>& designs) {
@@ -680,9 +689,7 @@ StimulusScale scale_of(const std::vector<const TrialRecord*>& trials, const std:
   if (compared.size() > 5 && (seconds == 0 || seconds == std::ssize(compared)))
     say("one-answer", "statement.scale_one_answer");
   if (n >= (in_pairs(model) ? 2 : 3)) scale.fit = fit_scale(compared, n, model);
-  if (!scale.fit)
-    return say("no-scale", in_pairs(model) ? "statement.no_scale_pairs" : "statement.no_scale_differences"),
-           scale;
+  if (!scale.fit) return std::apply(say, no_scale_reason(compared, n, model)), scale;
   if (sessions > 0) scale.check = check_scale(compared, n, model, *scale.fit, sessions);
   if (scale.fit->separated) say("separated", "statement.scale_separated");
   if (scale.check && scale.check->deviance_p < 0.05) say("poor-fit", "statement.scale_poor_fit");

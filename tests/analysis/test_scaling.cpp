@@ -272,6 +272,31 @@ TEST_CASE("a scale says if the answers set no limit to some of its distances", "
   }
 }
 
+TEST_CASE("why there is no scale of differences is said", "[analysis][scale]") {
+  const auto first = [](const std::vector<Compared>& compared, const std::vector<double>& stimuli) {
+    std::vector<TrialRecord> trials;
+    for (const auto& one : compared) {
+      TrialRecord record;
+      for (const int s : one.stimuli) record.compared.push_back(stimuli[static_cast<std::size_t>(s)]);
+      record.response = one.second ? 1 : 0;
+      trials.push_back(record);
+    }
+    const auto scale = scales(trials, {}, ScaleModel::differences, 0)[0];
+    CHECK_FALSE(scale.fit);
+    return scale.statements.empty() ? "" : scale.statements[0].code;
+  };
+  core::Draws draws({13, core::Stream::observer, 0, 0, 0});
+  // Each step is as large as all below it, so that of two differences the upper one is always the larger.
+  const std::vector<double> doubling{0, 1 / 15.0, 3 / 15.0, 7 / 15.0, 1};
+  CHECK(first(session(doubling, 4, 12, ScaleModel::differences, 0.02, 0, draws), {1, 2, 3, 4, 5}) ==
+        "one-sided");
+  CHECK(first(session({0, 0, 0, 0, 0}, 3, 6, ScaleModel::differences, 1, 0, draws), {1, 2, 3, 4, 5}) ==
+        "no-range");
+  std::vector<Compared> apart;
+  add(apart, {0, 1, 2}, 5, 10), add(apart, {3, 4, 5}, 5, 10);
+  CHECK(first(apart, {1, 2, 3, 4, 5, 6}) == "no-scale");
+}
+
 TEST_CASE("the intervals of scales hold the true values as often as they say", "[analysis][scale]") {
   struct Case {
     const char* name;

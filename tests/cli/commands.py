@@ -783,7 +783,7 @@ class Report(Folder):
             self.assertEqual(is_like(document["scales"], SHAPES["report scales"]), "")
             guessed = observer == "sim:lapse=1"
             self.assertEqual([one["value"] is None for one in document["scales"][0]["stimuli"]], [guessed] * len(document["scales"][0]["stimuli"]))
-            self.assertEqual([one["code"] for one in document["scales"][0]["statements"]], ["no-scale"] if guessed else [])
+            self.assertEqual([one["code"] for one in document["scales"][0]["statements"]], ["no-range"] if guessed else [])
 
     def test_an_estimator_is_found_by_a_relative_path(self):
         self.add_sessions()
