@@ -239,6 +239,9 @@ void check_comparisons(const Reading& reading) {
           reading.places.of(key_of(part, "level")),
           phrase("block \"%1\" has fixed levels, which give no scale", {plain(block.name)}),
           phrase("name a procedure of %1 in \"procedures\"", {plain("kind = \"comparisons\"")}));
+    if (comparing && block.catch_trials)
+      reading.findings.add(reading.places.of(key_of(part, "catch")),
+                           phrase("in a comparison no answer is right or wrong"), phrase("leave it out"));
   }
   for (const auto& spec : protocol.procedures) {
     if (!used.contains(spec.name)) continue;
