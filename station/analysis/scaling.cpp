@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,6 +25,8 @@ namespace turnpoint::analysis {
 namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
+/// Most entries of a trial's row are 0.
+using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 /// Half the 95 % point of chi squared with one degree of freedom.
@@ -76,7 +79,7 @@ void require(const std::vector<Trial>& trials, int stimuli, ScaleModel model) {
 /// The trials, with those of the same presentation together. The first stimulus has the value 0, so that the
 /// parameters are the values of the others and, last, the tendency to answer "second".
 struct Presentations {
-  MatrixXd rows;                             ///< one for each presentation
+  Rows rows;                                 ///< one for each presentation
   VectorXd upper, trials;                    ///< numbers of answers
   std::vector<std::vector<int>> quadruples;  ///< of each presentation; empty for pairs and triads
   std::vector<std::size_t> cell;             ///< the presentation of each trial
@@ -116,8 +119,8 @@ std::optional<Presentations> presentations_of(const std::vector<ExpectedComparis
     shown.cell.push_back(found->second), shown.answers.push_back(more > 0.5 * trial.trials);
   }
   const auto n = static_cast<Eigen::Index>(rows.size());
-  shown.rows.resize(n, stimuli);
-  for (Eigen::Index i = 0; i < n; ++i) shown.rows.row(i) = rows[static_cast<std::size_t>(i)];
+  MatrixXd all(n, stimuli);
+  for (Eigen::Index i = 0; i < n; ++i) all.row(i) = rows[static_cast<std::size_t>(i)];
   shown.upper = Eigen::Map<const VectorXd>(upper.data(), n);
   shown.trials = Eigen::Map<const VectorXd>(count.data(), n);
   // A tendency can only be told from the scale if pairs, or differences, were presented in both orders.
@@ -127,10 +130,10 @@ std::optional<Presentations> presentations_of(const std::vector<ExpectedComparis
     ++(order < 0 || (s.size() == 2 && s[0] > s[1]) ? back : forth);
   }
   const bool both_orders = forth > 0 && back > 0;
-  shown.order = both_orders && has_full_rank(shown.rows);
-  if (shown.order) return shown;
-  shown.rows.conservativeResize(Eigen::NoChange, stimuli - 1);
-  if (!has_full_rank(shown.rows)) return std::nullopt;
+  shown.order = both_orders && has_full_rank(all);
+  if (!shown.order) all.conservativeResize(Eigen::NoChange, stimuli - 1);
+  if (!shown.order && !has_full_rank(all)) return std::nullopt;
+  shown.rows = all.sparseView();
   return shown;
 }
 
@@ -208,15 +211,23 @@ Ascent ascent_at(const Presentations& shown, const VectorXd& at) {
     weights[i] = shown.trials[i] * point.weight;
     sum += shown.upper[i] * point.log_p + (shown.trials[i] - shown.upper[i]) * point.log_q;
   }
-  ascent.information = shown.rows.transpose() * weights.asDiagonal() * shown.rows;
+  const auto parameters = at.size();
+  ascent.information = MatrixXd::Zero(parameters, parameters);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Rows::InnerIterator a(shown.rows, i); a; ++a)
+      for (Rows::InnerIterator b(shown.rows, i); b; ++b)
+        ascent.information(a.col(), b.col()) += weights[i] * a.value() * b.value();
   const Eigen::LLT<MatrixXd> solver(ascent.information);
   if (solver.info() != Eigen::Success) return ascent;
-  const MatrixXd half = solver.matrixL().solve(shown.rows.transpose());
-  VectorXd scores(n);
+  const MatrixXd half = solver.matrixL().solve(MatrixXd::Identity(parameters, parameters));
+  VectorXd scores(n), leverage(parameters);
   for (Eigen::Index i = 0; i < n; ++i) {
+    leverage.setZero();
+    for (Rows::InnerIterator entry(shown.rows, i); entry; ++entry)
+      leverage += entry.value() * half.col(entry.col());
     const auto& point = points[static_cast<std::size_t>(i)];
     scores[i] = shown.upper[i] * point.score - (shown.trials[i] - shown.upper[i]) * point.counter +
-                shown.penalty * weights[i] * half.col(i).squaredNorm() * point.bend / 2;
+                shown.penalty * weights[i] * leverage.squaredNorm() * point.bend / 2;
   }
   ascent.gradient = shown.rows.transpose() * scores;
   ascent.value = sum + shown.penalty * MatrixXd(solver.matrixL()).diagonal().array().log().sum();
@@ -382,7 +393,7 @@ bool is_separated(const Presentations& shown) {
   std::vector<VectorXd> upwards;  // for each trial, the direction in which its answer becomes more probable
   VectorXd sum = VectorXd::Zero(shown.rows.cols());
   for (Eigen::Index i = 0; i < shown.rows.rows(); ++i) {
-    const VectorXd row = shown.rows.row(i).transpose().normalized();
+    const VectorXd row = VectorXd(shown.rows.row(i)).normalized();
     const bool one_answer = shown.upper[i] == 0 || shown.upper[i] == shown.trials[i];
     if (shown.upper[i] > 0) upwards.push_back(row);
     if (shown.upper[i] < shown.trials[i]) upwards.push_back(-row);
@@ -454,17 +465,15 @@ std::vector<std::size_t> by_place(const Presentations& shown, const VectorXd& at
   return order;
 }
 
-/// The same presentations with answers drawn from the model.
-Presentations drawn(const Presentations& shown, const VectorXd& places, core::Draws& draws) {
-  Presentations result = shown;
-  result.upper.setZero();
+/// Replaces the answers by some drawn with these probabilities of the presentations.
+void draw_answers(const VectorXd& probabilities, core::Draws& draws, Presentations& shown) {
+  shown.upper.setZero();
   for (std::size_t i = 0; i < shown.cell.size(); ++i) {
     const auto cell = static_cast<Eigen::Index>(shown.cell[i]);
-    const bool upper = draws.uniform() < point_at(places[cell], shown.logistic).p;
-    result.answers[i] = upper;
-    result.upper[cell] += upper ? 1 : 0;
+    const bool upper = draws.uniform() < probabilities[cell];
+    shown.answers[i] = upper;
+    shown.upper[cell] += upper ? 1 : 0;
   }
-  return result;
 }
 
 /// The presentations of the trials whose answers the six-point property restricts.
@@ -574,13 +583,16 @@ ScaleCheck check_scale(const std::vector<Compared>& trials, int stimuli, ScaleMo
   const auto best = shown ? summit(*shown, VectorXd::Zero(shown->rows.cols())) : std::nullopt;
   if (!best) throw std::invalid_argument("scale: the trials are not those of the fit");
   const VectorXd places = shown->rows * best->at;
+  const VectorXd probabilities =
+      places.unaryExpr([&](double place) { return point_at(place, shown->logistic).p; });
   check.runs = runs_of(by_place(*shown, best->at), shown->answers);
   const auto sets = six_points_of(*shown, stimuli);
   const double likelihood = likelihood_of(sets, *shown, best->at);
   core::Draws draws({1, core::Stream::bootstrap, 0, 0, 0});
+  auto other = *shown;
   int deviances = 1, runs = 1, six_points = 1;  // the session itself counts as one of them
   for (int k = 0; k < sessions; ++k) {
-    const auto other = drawn(*shown, places, draws);
+    draw_answers(probabilities, draws, other);
     const auto found = summit(other, best->at);
     if (!found) continue;
     ++check.sessions;

@@ -454,7 +454,7 @@ void add_scale(py::module_& module) {
            "pairs: Kendall's coefficient, 1 without circular triples")
       .add("statements", spoken<S>, "remarks, as in the report");
   module.def("scale", [](const std::vector<Numbers>& stimuli, const Flags& second, const Texts& condition,
-                         const Texts& order, const std::string& model) {
+                         const Texts& order, const std::string& model, int sessions) {
     std::vector<TrialRecord> trials;
     for (std::size_t i = 0; i < stimuli.size(); ++i) {
       TrialRecord trial;
@@ -464,7 +464,7 @@ void add_scale(py::module_& module) {
     const auto by = model == "thurstone"   ? ScaleModel::thurstone
                     : model == "differences" ? ScaleModel::differences
                                              : ScaleModel::bradley_terry;
-    return released([&] { return scales(trials, order, by); });
+    return released([&] { return scales(trials, order, by, sessions); });
   });
 }
 

@@ -249,7 +249,7 @@ StudyPerson study_person(const SessionData& data, const protocol::Exclusion& rul
   person.person = data.participant;
   person.incomplete = incomplete;
   count_trials(data, person);
-  auto summary = summarise(data);
+  auto summary = summarise(data, 0);
   add_measures(summary, person);
   for (auto& named : summary.fits) {
     named.intervals.band_level.clear(), named.intervals.band_low.clear(), named.intervals.band_high.clear();

@@ -17,8 +17,7 @@ namespace {
 
 using analysis::TrialRecord;
 
-/// Number of points of the band around a curve, and of simulated sessions with which a scale is checked.
-constexpr int kBandPoints = 61, kScaleSessions = 499;
+constexpr int kBandPoints = 61;
 
 /// Counts the "yes" answers at each level. Trials without a signal are counted at kNoise, a level below all
 /// others.
@@ -417,7 +416,7 @@ std::vector<analysis::Dependence> dependences_of(const SessionData& data) {
 }
 
 /// Adds what the answers at the levels of one analysis say, except for the psychometric functions.
-void add_levels(const SessionData& data, Summary& summary) {
+void add_levels(const SessionData& data, int scale_sessions, Summary& summary) {
   append(dependences_of(data), summary.dependences);
   if (data.design == Design::adjustment) {
     append(analysis::settings(data.trials, data.conditions), summary.settings);
@@ -431,7 +430,7 @@ void add_levels(const SessionData& data, Summary& summary) {
     return;
   }
   if (scales(data.design)) {
-    append(scales_of(data, kScaleSessions), summary.scales);
+    append(scales_of(data, scale_sessions), summary.scales);
     return;
   }
   if (has_confusions(data))
@@ -450,7 +449,7 @@ void add_levels(const SessionData& data, Summary& summary) {
 
 }  // namespace
 
-Summary summarise(const SessionData& data) {
+Summary summarise(const SessionData& data, int scale_sessions) {
   Summary summary;
   summary.data = data;
   summary.outcomes = analysis::count_outcomes(data.trials);
@@ -460,7 +459,7 @@ Summary summarise(const SessionData& data) {
   summary.fatigue = analysis::fatigue(data.trials);
   summary.finger = analysis::finger(data.finger, data.conditions);
   const auto count = std::max<std::size_t>(1, data.parts.size());
-  for (std::size_t part = 0; part < count; ++part) add_levels(part_of(data, part), summary);
+  for (std::size_t part = 0; part < count; ++part) add_levels(part_of(data, part), scale_sessions, summary);
   if (data.design == Design::adjustment || judges(data.design)) return summary;
   if (data.choices.size() <= 2) summary.bias = analysis::choice_bias(data.trials);
   auto how = trade_options(data);

@@ -71,6 +71,9 @@ bool has_confusions(const SessionData& data);
 /// Returns only the analysis of ratings or numbers; empty for other designs.
 std::vector<analysis::Judgements> judgements_of(const SessionData& data);
 
+/// Number of simulated sessions with which a report checks a scale. A study does not check scales.
+inline constexpr int kScaleSessions = 499;
+
 /// Returns only the scales from comparisons, checked by so many simulated sessions; empty for other designs.
 std::vector<analysis::StimulusScale> scales_of(const SessionData& data, int sessions);
 
@@ -108,7 +111,7 @@ std::vector<analysis::CurveDifference> curve_differences_of(
 
 /// Analyses one session and computes the parts that the protocol chooses. The result depends only on `data`,
 /// seed included. Takes about 0.3 s with 1000 replicates.
-Summary summarise(const SessionData& data);
+Summary summarise(const SessionData& data, int scale_sessions = kScaleSessions);
 
 /// Returns the content of the report as one JSON document. Missing values are null.
 std::string to_json(const Summary& summary);

@@ -303,6 +303,9 @@ class Others(unittest.TestCase):
         self.assertTrue(mixed.noise.low < 0.2 < mixed.noise.high)
         self.assertLess(max(abs(v.value - s) for v, s in zip(mixed.values, scale)), 0.1)
         self.assertIsNone(analysis.scale([[1, 2], [3, 4]], [1, 0])[0].values)
+        self.assertIsNone(analysis.scale(triads, felt > 0, sessions=0)[0].deviance_p)
+        with self.assertRaisesRegex(ValueError, "sessions"):
+            analysis.scale(triads, felt > 0, sessions=-1)
         with self.assertRaisesRegex(ValueError, "model"):
             analysis.scale(pairs, second, model="differences")
         with self.assertRaisesRegex(ValueError, "two, three or four"):

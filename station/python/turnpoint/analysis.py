@@ -199,7 +199,7 @@ def compare_curves(curves) -> list[CurveDifference]:
     return _analysis.compare_curves(list(curves))
 
 
-def scale(stimuli, second, *, condition=None, order=(), model=None) -> list[Scale]:
+def scale(stimuli, second, *, condition=None, order=(), model=None, sessions=499) -> list[Scale]:
     """Scales stimuli by comparisons, one scale per condition.
 
     stimuli: a row per trial with the values of two, three or four stimuli in order of presentation.
@@ -210,7 +210,8 @@ def scale(stimuli, second, *, condition=None, order=(), model=None) -> list[Scal
     deviations of what one stimulus is felt as); for three or four "differences" (maximum-likelihood difference scaling, Maloney
     & Yang 2003, J. Vis. 3:573-585; from 0 at the lowest to 1 at the highest). Jeffreys' prior keeps values of stimuli finite
     that were always or never chosen (Kosmidis & Firth 2021, Biometrika 108:71-82). Values that the answers do not determine
-    are None, and a statement says why."""
+    are None, and a statement says why.
+    sessions: number of simulated sessions with which the scale is checked; 0 for none, which takes much less time."""
     stimuli = np.asarray(stimuli, dtype=float)
     if stimuli.ndim != 2 or stimuli.shape[1] not in (2, 3, 4) or len(stimuli) == 0:
         raise ValueError("stimuli: a row per trial with two, three or four values is needed")
@@ -221,7 +222,7 @@ def scale(stimuli, second, *, condition=None, order=(), model=None) -> list[Scal
     _one_of("model", model, allowed)
     first = stimuli[:, 0]
     return _analysis.scale(stimuli.tolist(), _flags("second", second, first), _texts("condition", condition, first),
-                           [str(name) for name in order], model)
+                           [str(name) for name in order], model, _sessions(sessions))
 
 
 def holm(p, *, family=None) -> np.ndarray:
@@ -238,6 +239,12 @@ def holm(p, *, family=None) -> np.ndarray:
 def _one_of(name, value, allowed):
     if value not in allowed:
         raise ValueError(f"{name}: {value!r} is not one of " + ", ".join(map(repr, allowed)))
+
+
+def _sessions(sessions):
+    if int(sessions) != sessions or sessions < 0:
+        raise ValueError(f"sessions: {sessions} is not a whole number of 0 or more")
+    return int(sessions)
 
 
 def _share(name, value, zero=False):
