@@ -341,20 +341,22 @@ Estimate interval_along(const Presentations& shown, const Summit& best, const Ma
   });
 }
 
-/// The size of a difference of 1 between the parameters of two pairs: Thurstone's unit is the standard
-/// deviation of one stimulus, not of a difference.
-double unit_of(const Presentations& shown) { return shown.logistic ? 1 : std::sqrt(2.0); }
+/// What a parameter of 1 is in the unit of the scale: Thurstone's unit is the standard deviation of one
+/// stimulus, not of a difference.
+double unit_of(ScaleModel model) { return model == ScaleModel::thurstone ? std::sqrt(2.0) : 1; }
+
+Estimate in_unit(Estimate estimate, double unit) {
+  for (auto* number : {&estimate.value, &estimate.interval.low, &estimate.interval.high}) *number *= unit;
+  return estimate;
+}
 
 void add_pair_values(const Presentations& shown, const Summit& best, const MatrixXd& covariance, int stimuli,
-                     ScaleFit& fit) {
-  const double unit = unit_of(shown);
+                     double unit, ScaleFit& fit) {
   for (int i = 0; i < stimuli; ++i) {
     VectorXd along = VectorXd::Zero(shown.rows.cols());
     along.head(stimuli - 1).setConstant(-1.0 / stimuli);
     if (i > 0) along[i - 1] += 1;
-    auto value = interval_along(shown, best, covariance, along);
-    for (auto* number : {&value.value, &value.interval.low, &value.interval.high}) *number *= unit;
-    fit.values.push_back(value);
+    fit.values.push_back(in_unit(interval_along(shown, best, covariance, along), unit));
   }
 }
 
@@ -533,7 +535,8 @@ std::optional<LimitingScale> limiting_scale(const std::vector<ExpectedComparison
   LimitingScale scale;
   scale.values.push_back(0);
   for (Eigen::Index i = 0; i < stimuli - 1; ++i) scale.values.push_back(best->at[i]);
-  if (shown->order) scale.favours_second = best->at[parameters - 1];
+  const double unit = unit_of(model);
+  if (shown->order) scale.favours_second = unit * best->at[parameters - 1];
   const double whole = scale.values.back();
   if (model == ScaleModel::differences) {
     if (!(whole > 0)) return std::nullopt;
@@ -542,7 +545,7 @@ std::optional<LimitingScale> limiting_scale(const std::vector<ExpectedComparison
     return scale;
   }
   const double mean = std::accumulate(scale.values.begin(), scale.values.end(), 0.0) / stimuli;
-  for (auto& value : scale.values) value = (value - mean) * unit_of(*shown);
+  for (auto& value : scale.values) value = (value - mean) * unit;
   return scale;
 }
 
@@ -556,13 +559,13 @@ std::optional<ScaleFit> fit_scale(const std::vector<Compared>& trials, int stimu
       ascent_at(*shown, best->at).information.llt().solve(MatrixXd::Identity(parameters, parameters));
   ScaleFit fit;
   if (in_pairs(model))
-    add_pair_values(*shown, *best, covariance, stimuli, fit);
+    add_pair_values(*shown, *best, covariance, stimuli, unit_of(model), fit);
   else if (!add_difference_values(*shown, *best, covariance, stimuli, fit))
     return std::nullopt;
   if (shown->order) {
     VectorXd along = VectorXd::Zero(parameters);
     along[parameters - 1] = 1;
-    fit.favours_second = interval_along(*shown, *best, covariance, along);
+    fit.favours_second = in_unit(interval_along(*shown, *best, covariance, along), unit_of(model));
   }
   fit.log_likelihood = likelihoods_at(*shown, best->at).model;
   fit.deviance = deviance_of(*shown, best->at);

@@ -35,8 +35,8 @@ struct ScaleFit {
   /// for differences: standard deviation of the noise with which two differences are compared, in units of
   /// the scale
   std::optional<Estimate> noise;
-  /// how much the place of presentation favours the answer "second", in log odds (Bradley and Terry) or
-  /// standard deviations (else); empty if the order of presentation does not tell
+  /// how much the place of presentation favours the answer "second": in the unit of the values or, for
+  /// differences, in standard deviations of the noise; empty if the order of presentation does not tell
   std::optional<Estimate> favours_second;
   double log_likelihood = 0;  ///< of the trials, without the penalty
   /// twice the log likelihood that a model without restrictions has more, over trials of the same

@@ -437,7 +437,8 @@ void add_scale(py::module_& module) {
       .add("noise", [](const S& from) { return from.fit ? from.fit->noise : std::nullopt; },
            "differences: standard deviation of the noise of a comparison; otherwise None")
       .add("favours_second", [](const S& from) { return from.fit ? from.fit->favours_second : std::nullopt; },
-           "how much the order favours the answer \"second\"; None if not every order came")
+           "how much the order favours the answer \"second\", in the unit of the values, or (differences) standard deviations of "
+           "the noise; None if not every order came")
       .add("log_likelihood", of_fit(&ScaleFit::log_likelihood), "of the answers")
       .add("deviance", of_fit(&ScaleFit::deviance), "from one proportion per presentation")
       .add("degrees", of_fit(&ScaleFit::degrees), "degrees of freedom of the deviance")

@@ -88,7 +88,8 @@ void add_fits(const report::SessionData& data, const std::string& unit, SessionO
     for (const auto& [stimulus, place] : report::places_of(scale))
       add(report::place_name(stimulus, unit), report::scale_unit(scale.model), place);
     if (const auto& noise = scale.fit->noise) add(report::kScaleNoise, "", *noise);
-    if (const auto& tendency = scale.fit->favours_second) add(report::kFavoursSecond, "", *tendency);
+    if (const auto& tendency = scale.fit->favours_second)
+      add(report::kFavoursSecond, report::tendency_unit(scale.model), *tendency);
   }
   if (report::judges(data.design) || report::scales(data.design)) return;
   if (data.design == report::Design::adjustment) {

@@ -179,6 +179,7 @@ Json scale_json(const analysis::StimulusScale& scale) {
           {"stimuli", stimuli},
           {"noise", fit ? value(fit->noise) : Json(nullptr)},
           {"favours_second", fit ? value(fit->favours_second) : Json(nullptr)},
+          {"favours_second_unit", tendency_unit(scale.model)},
           {"log_likelihood", fit ? value(fit->log_likelihood) : Json(nullptr)},
           {"deviance", fit ? value(fit->deviance) : Json(nullptr)},
           {"degrees_of_freedom", fit ? Json(fit->degrees) : Json(nullptr)},

@@ -195,7 +195,9 @@ void add_scales(const Summary& summary, Document& document) {
     if (fit && fit->noise)
       facts.rows.push_back({"Noise of a comparison (1: the whole scale)", estimated(fit->noise)});
     if (fit && fit->favours_second)
-      facts.rows.push_back({"Tendency to answer \u201csecond\u201d", estimated(fit->favours_second)});
+      facts.rows.push_back(
+          {std::string("Tendency to answer \u201csecond\u201d (") + tendency_unit(scale.model) + ")",
+           estimated(fit->favours_second)});
     if (fit && scale.check) {
       facts.rows.push_back({"Deviance (degrees of freedom)",
                             Text(Number{fit->deviance}) + " (" + std::to_string(fit->degrees) + "), " +

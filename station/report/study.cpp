@@ -188,7 +188,8 @@ void add_measures(const Summary& summary, StudyPerson& person) {
     for (const auto& [stimulus, place] : places_of(scale))
       measures.add(scale.condition, place_name(stimulus, data.level_unit), unit, std::optional(place));
     if (scale.fit) measures.add(scale.condition, kScaleNoise, "", scale.fit->noise);
-    if (scale.fit) measures.add(scale.condition, kFavoursSecond, "", scale.fit->favours_second);
+    if (scale.fit)
+      measures.add(scale.condition, kFavoursSecond, tendency_unit(scale.model), scale.fit->favours_second);
   }
   for (const auto& judged : summary.judgements) {
     measures.add(judged.condition, "exponent of Stevens' law", "", judged.exponent);

@@ -292,6 +292,10 @@ const char* scale_unit(analysis::ScaleModel model) {
   return "";
 }
 
+const char* tendency_unit(analysis::ScaleModel model) {
+  return model == analysis::ScaleModel::differences ? "SD of the noise" : scale_unit(model);
+}
+
 bool has_confusions(const SessionData& data) {
   return !judges(data.design) && (data.choices.size() > 2 || data.design == Design::categories);
 }

@@ -86,6 +86,7 @@ std::vector<std::pair<double, analysis::Estimate>> places_of(const analysis::Sti
 // How a study and a power study call the numbers of a scale.
 std::string place_name(double stimulus, const std::string& level_unit);
 const char* scale_unit(analysis::ScaleModel model);
+const char* tendency_unit(analysis::ScaleModel model);
 inline constexpr const char *kScaleNoise = "noise of a comparison",
                             *kFavoursSecond = "tendency to answer second";
 
