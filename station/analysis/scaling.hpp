@@ -123,7 +123,8 @@ struct StimulusScale {
 };
 
 /// Analyses the answered experimental trials that compared stimuli (TrialRecord::compared), one entry for
-/// each condition, checked by so many simulated sessions (0: not checked). Conditions in `order` come first.
+/// each condition, checked by so many simulated sessions (0: not checked, as are scales without a degree of
+/// freedom). Conditions in `order` come first.
 /// `designs` has the stimuli of procedures: all of them belong to the scale of a condition in which the
 /// procedure has trials, so that a session that ended early has no scale of fewer stimuli.
 std::vector<StimulusScale> scales(const std::vector<TrialRecord>& trials,

@@ -298,6 +298,20 @@ TEST_CASE("why there is no scale of differences is said", "[analysis][scale]") {
   CHECK(first(apart, {1, 2, 3, 4, 5, 6}) == "no-scale");
 }
 
+TEST_CASE("a scale with as many parameters as presentations is not checked", "[analysis][scale]") {
+  std::vector<TrialRecord> trials;
+  for (int k = 0; k < 20; ++k) {
+    TrialRecord record;
+    record.compared = k % 2 == 0 ? std::vector<double>{1, 2} : std::vector<double>{2, 1};
+    record.response = k < 12 ? 1 : 0;
+    trials.push_back(record);
+  }
+  const auto scale = scales(trials, {}, ScaleModel::bradley_terry, 19)[0];
+  REQUIRE(scale.fit);
+  CHECK(scale.fit->degrees == 0);
+  CHECK_FALSE(scale.check);
+}
+
 TEST_CASE("the intervals of scales hold the true values as often as they say", "[analysis][scale]") {
   struct Case {
     const char* name;
