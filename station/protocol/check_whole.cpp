@@ -80,6 +80,14 @@ void check_present(const std::vector<Source>& sources, const Reading& reading) {
                          phrase("levels with a signal and levels without one, such as 0"));
 }
 
+/// What to do about a key that judges answers where none is right.
+core::Phrase instead_of_judging(const Task& task) {
+  if (task.kind == TaskKind::adjustment) return phrase("use another kind of task");
+  if (task.kind == TaskKind::comparison)
+    return phrase("leave it out: in a comparison no answer is right or wrong");
+  return phrase("set \"correct\" in [task]");
+}
+
 // Points and goals need answers that are right or wrong.
 void check_goals(const Reading& reading) {
   const auto& protocol = reading.protocol;
@@ -89,8 +97,7 @@ void check_goals(const Reading& reading) {
   const auto report = [&](const std::string& key) {
     reading.findings.add(reading.places.of(key),
                          phrase("\"%1\" judges answers, but no answer is correct", {plain(key)}),
-                         task.kind == TaskKind::adjustment ? phrase("use another kind of task")
-                                                           : phrase("set \"correct\" in [task]"));
+                         instead_of_judging(task));
   };
   if (protocol.payoff) report("payoff");
   for (const auto& [name, instruction] : protocol.instructions)
@@ -127,7 +134,7 @@ void check_scored(core::TableReader& file, const Reading& reading) {
         reading.findings.add(
             reading.places.of(key_of(part, key)),
             phrase("block \"%1\" judges answers, but no answer is correct", {plain(block.name)}),
-            phrase("set \"correct\" in [task]"));
+            instead_of_judging(task));
   }
 }
 

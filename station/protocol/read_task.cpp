@@ -283,6 +283,9 @@ void read_confidence(TableReader& reader, Task& task, const Reading& reading) {
 void read_unsure(TableReader& reader, Task& task, const Reading& reading) {
   const auto* text = reader.take("unsure");
   if (!text) return;
+  if (task.kind == TaskKind::comparison)
+    return reader.problem("unsure", phrase("in a comparison no answer is right or wrong"),
+                          phrase("leave it out"));
   task.unsure = localised_from(*text, "unsure", reading);
   for (const auto& choice : task.choices)
     if (choice.id == kUnsure)
