@@ -111,8 +111,7 @@ void check_scored(core::TableReader& file, const Reading& reading) {
   const auto& task = protocol.task;
   const auto* table = file.take("task");
   const bool stated = table && table->find("correct");
-  const bool unscored = task.kind == TaskKind::single_interval || task.kind == TaskKind::comparison;
-  if (!table || !unscored || stated) return;
+  if (!table || task.kind == TaskKind::adjustment || scored(task) || stated) return;
   for (const auto& spec : protocol.procedures) {
     if (procedure::follows_answers(spec) && judges(task))
       reading.findings.add(

@@ -37,8 +37,7 @@ Design design_of(const Protocol& protocol, const AnswerRule& rule) {
     case AnswerKind::right_answer:
       break;
   }
-  const bool unscored = task.kind == TaskKind::single_interval && task.correct_answer.empty();
-  return unscored && task.choices.size() > 2 ? Design::categories : Design::forced_choice;
+  return !scored(task) && task.choices.size() > 2 ? Design::categories : Design::forced_choice;
 }
 
 /// The factors that a procedure fixes to values of its own, as far as the conditions of the report do not

@@ -93,8 +93,7 @@ core::Phrase without_effect(const std::string& word, const Protocol& protocol) {
       return phrase("the threshold depends on \"%1\", so one curve does not describe all trials",
                     {plain(spec.second->level)});
   if (word == "psychometric") return {};
-  if (task.kind == TaskKind::single_interval && task.correct_answer.empty())
-    return phrase("without \"correct\" in [task], no answer is right or wrong");
+  if (!scored(task)) return phrase("without \"correct\" in [task], no answer is right or wrong");
   if (word == "response-signal" && !protocol.timing.signal)
     return phrase("[timing] has no \"response_signal\"");
   if (word == "dprime" && (task.kind == TaskKind::oddity || task.kind == TaskKind::same_different))
