@@ -22,8 +22,8 @@ struct Proposal {
   std::vector<double> against = {};  ///< for comparisons: values of the factors Spec::against
 };
 
-/// A proposal that may come next: its first place in the rest of the list, counted from that of next(), and
-/// how often it comes in the present repeat of the list and in all of its rest.
+/// A proposal that may come next: its first place in the rest of the list, counted from that of next(), and how
+/// often it comes in the present repeat of the list and in all of its rest.
 struct Candidate {
   Proposal proposal;
   std::size_t place = 0;
@@ -57,8 +57,8 @@ enum class Ended {
 /// `count` is the number of steps or trials.
 std::optional<core::Phrase> end_in_words(Ended ended, const std::string& procedure, int count);
 
-/// How pages and reports call an estimated parameter, such as "threshold". A parameter of a separate program
-/// keeps the name that the program gives it.
+/// How pages and reports call an estimated parameter, such as "threshold". A parameter of a separate program keeps the
+/// name that the program gives it.
 core::Phrase parameter_name(const std::string& parameter);
 
 struct Estimate {
@@ -100,9 +100,9 @@ class Procedure {
   virtual bool ready() const { return true; }
   /// returns the next level to present; empty when the procedure is done
   virtual std::optional<Proposal> next() const = 0;
-  /// The different proposals that choose() may make the next one, in their order: those of the rest of a
-  /// shuffled list, or of its present repeat, whose values may change their balanced factors with those of
-  /// later repeats. Only that of next() if there is no choice. Empty when the procedure is done.
+  /// The different proposals that choose() may make the next one, in their order: those of the rest of a shuffled
+  /// list, or of its present repeat, whose values may change their balanced factors with those of later repeats.
+  /// Only that of next() if there is no choice. Empty when the procedure is done.
   virtual std::vector<Candidate> candidates() const;
   /// the proposal at this place
   virtual Proposal choice(std::size_t) const { return next().value(); }

@@ -51,8 +51,8 @@ int Director::State::too_long(const TrialSpec& spec) const {
   }));
 }
 
-/// True if trials with these values, which come this many times, can follow `spec` in some order, with runs
-/// that are by `spare` shorter than allowed: no value may be left more often than the others can separate.
+/// True if trials with these values, which come this many times, can follow `spec` in some order, with runs that are
+/// by `spare` shorter than allowed: no value may be left more often than the others can separate.
 bool Director::State::can_follow(const std::map<std::string, int>& left, const std::string& key,
                                  const TrialSpec& spec, int spare) const {
   const auto& run = runs.at(key);
@@ -68,8 +68,8 @@ bool Director::State::can_follow(const std::map<std::string, int>& left, const s
   });
 }
 
-/// True if the rest of the orders of intervals, and of the lists of the procedures that may come next, can
-/// still be presented without too long runs if `spec` comes next.
+/// True if the rest of the orders of intervals, and of the lists of the procedures that may come next, can still
+/// be presented without too long runs if `spec` comes next.
 bool Director::State::leaves_order(const TrialSpec& spec, int spare) {
   const auto orders = orders_of(protocol.task);
   return std::ranges::all_of(runs, [&](const auto& rule) {
@@ -84,8 +84,8 @@ bool Director::State::leaves_order(const TrialSpec& spec, int spare) {
   });
 }
 
-/// Counts the values in the lists of the procedures that may come next: those of their present repeats, and
-/// all. Only procedures whose lists set the factor with this key count.
+/// Counts the values in the lists of the procedures that may come next: those of their present repeats, and all. Only
+/// procedures whose lists set the factor with this key count.
 const Director::State::Left& Director::State::lists_left(const TrialSpec& spec, const std::string& key) {
   const bool mixed = now()->interleave != protocol::Interleave::none;
   const auto [found, is_new] = left_of_lists.try_emplace({mixed ? no_procedure : current_procedure, key});
@@ -135,8 +135,8 @@ bool Director::State::draws_factors(const TrialSpec& spec) const {
            now()->fixed.count(name) || std::ranges::find(from.balance, name) != from.balance.end();
   };
   return std::ranges::any_of(protocol.factors, [&](const auto& factor) {
-    return (decides || runs.count(factor.name)) && !sets(factor.name) &&
-           factor.draw != protocol::FactorDraw::without_repetition && spec.factors.count(factor.name);
+    return (decides || runs.count(factor.name)) && !sets(factor.name) && factor.draw != protocol::FactorDraw::without_repetition &&
+           spec.factors.count(factor.name);
   });
 }
 
@@ -169,9 +169,9 @@ std::optional<TrialSpec> Director::State::with_short_runs(const TrialSpec& first
   int fewest = static_cast<int>(runs.size()) + 1;
   TrialSpec best;
   std::pair<int, Deviation> best_way;
-  // First look for a trial after which runs that are shorter than allowed by one could still be kept, because
-  // some trials may come again; then for one after which the allowed runs can be kept, and then for one that
-  // only fits here. A catch trial can be put off instead.
+  // First look for a trial after which runs that are shorter than allowed by one could still be kept, because some
+  // trials may come again; then for one after which the allowed runs can be kept, and then for one that only fits
+  // here. A catch trial can be put off instead.
   for (const int spare : {1, 0, -1}) {
     if (spare < 0 && first_procedure == no_procedure) return std::nullopt;
     if (spare < 0 && fewest > 0) break;
