@@ -277,7 +277,7 @@ std::vector<std::pair<double, analysis::Estimate>> places_of(const analysis::Sti
 }
 
 std::string place_name(double stimulus, const std::string& level_unit) {
-  return "place of " + core::number(stimulus, 6) + (level_unit.empty() ? "" : " ") + level_unit;
+  return kPlaceOf + core::number(stimulus, 6) + (level_unit.empty() ? "" : " ") + level_unit;
 }
 
 const char* scale_unit(analysis::ScaleModel model) {
@@ -293,7 +293,7 @@ const char* scale_unit(analysis::ScaleModel model) {
 }
 
 const char* tendency_unit(analysis::ScaleModel model) {
-  return model == analysis::ScaleModel::differences ? "SD of the noise" : scale_unit(model);
+  return model == analysis::ScaleModel::differences ? kNoiseUnit : scale_unit(model);
 }
 
 bool has_confusions(const SessionData& data) {

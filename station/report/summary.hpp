@@ -87,8 +87,8 @@ std::vector<std::pair<double, analysis::Estimate>> places_of(const analysis::Sti
 std::string place_name(double stimulus, const std::string& level_unit);
 const char* scale_unit(analysis::ScaleModel model);
 const char* tendency_unit(analysis::ScaleModel model);
-inline constexpr const char *kScaleNoise = "noise of a comparison",
-                            *kFavoursSecond = "tendency to answer second";
+inline constexpr const char *kPlaceOf = "place of ", *kScaleNoise = "noise of a comparison",
+                            *kFavoursSecond = "tendency to answer second", *kNoiseUnit = "SD of the noise";
 
 /// False if the data give only a limit for the slope. The slope then lies on a bound of the
 /// maximum-likelihood fit, or the posterior does not determine it.
