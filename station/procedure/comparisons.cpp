@@ -107,6 +107,16 @@ class Comparisons : public Procedure {
   int recorded_ = 0, requeued_ = 0, total_ = 0;
 };
 
+/// A scale of so many stimuli takes seconds to compute, and grows with the third power of their number.
+constexpr std::size_t kMostStimuli = 50, kMostTrials = 10000;
+
+/// The largest number of stimuli that leaves a procedure within both limits; 0 if none does.
+std::size_t most_stimuli(Spec spec) {
+  spec.values.resize(kMostStimuli);
+  while (list_trials(spec) > kMostTrials) spec.values.pop_back();
+  return list_trials(spec) > 0 ? spec.values.size() : 0;
+}
+
 void validate_comparisons(const Spec& spec, std::vector<Problem>& problems) {
   const auto together = 1 + spec.against.size();
   const auto needed = together == 2 ? 2 : together + 1;
@@ -116,10 +126,14 @@ void validate_comparisons(const Spec& spec, std::vector<Problem>& problems) {
     problems.push_back({"values", phrase("a value appears twice"), phrase("list each stimulus once")});
   if (spec.repeats < 1)
     problems.push_back({"repeats", phrase("below 1"), phrase("write a whole number of 1 or more")});
-  constexpr std::size_t most = 10000;
-  if (problems.empty() && list_trials(spec) > most)
-    problems.push_back({"values", phrase("%1 trials", {plain(list_trials(spec))}),
-                        phrase("at most %1 trials: use fewer values", {plain(most)})});
+  if (!problems.empty()) return;
+  const auto most = most_stimuli(spec);
+  if (most < needed)
+    problems.push_back({"repeats", phrase("too many trials: %1", {plain(list_trials(spec))}),
+                        phrase("at most %1 trials: use fewer repeats", {plain(kMostTrials)})});
+  else if (spec.values.size() > most)
+    problems.push_back({"values", phrase("too many stimuli: %1", {plain(spec.values.size())}),
+                        phrase("at most %1 with this number of repeats", {plain(most)})});
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "station/procedure/procedure.hpp"
@@ -108,7 +109,17 @@ TEST_CASE("comparisons need enough different stimuli, and not too many", "[proce
   CHECK(key(compared(4, {1, 2, 3, 4, 5}, 1)) == "");
   CHECK(key(compared(2, {1, 2, 2}, 1)) == "values");
   CHECK(key(compared(2, {1, 2, 3}, 0)) == "repeats");
-  std::vector<double> many;
-  for (int i = 0; i < 40; ++i) many.push_back(i);
-  CHECK(key(compared(4, many, 1)) == "values");
+  std::vector<double> many(50);
+  std::iota(many.begin(), many.end(), 0);
+  const auto most = [&](std::size_t together, int repeats) {
+    const auto problems = validate(compared(together, many, repeats));
+    return problems.empty() ? std::string() : core::say(problems.front().allowed, "en");
+  };
+  CHECK(most(2, 4) == "");  // 9800 trials
+  CHECK(most(2, 5) == "at most 45 with this number of repeats");
+  CHECK(most(3, 1) == "at most 40 with this number of repeats");
+  CHECK(most(4, 1) == "at most 23 with this number of repeats");
+  many.push_back(50);
+  CHECK(most(2, 1) == "at most 50 with this number of repeats");
+  CHECK(key(compared(3, {1, 2, 3, 4}, 10000)) == "repeats");
 }
