@@ -707,7 +707,7 @@ StimulusScale scale_of(const std::vector<const TrialRecord*>& trials, const std:
   if (!scale.fit) return std::apply(say, no_scale_reason(compared, n, model)), scale;
   if (sessions > 0 && scale.fit->degrees > 0)
     scale.check = check_scale(compared, n, model, *scale.fit, sessions);
-  if (scale.fit->separated) say("separated", "statement.scale_separated");
+  if (scale.fit->separated) say(kSeparated, "statement.scale_separated");
   if (scale.check && scale.check->deviance_p < 0.05) say("poor-fit", "statement.scale_poor_fit");
   if (!in_pairs(model) && scale.check && scale.check->runs_p < 0.05)
     say("few-runs", "statement.scale_few_runs");

@@ -109,6 +109,9 @@ struct Transitivity {
 
 Transitivity transitivity(const std::vector<Compared>& trials, int stimuli);
 
+/// Code of the remark that ScaleFit::separated is true.
+inline constexpr const char* kSeparated = "separated";
+
 /// The scale of one condition.
 struct StimulusScale {
   std::string condition;

@@ -149,6 +149,7 @@ Json to_json(const SessionOutcome& session) {
           {"findings", findings},
           {"conditions", conditions},
           {"model_p", session.model_p ? exact(*session.model_p) : Json(nullptr)},
+          {"separated", session.separated ? Json(*session.separated) : Json(nullptr)},
           {"excluded", session.person ? Json(session.person->excluded) : Json(nullptr)},
           {"measures", session.person ? measures_json(session.person->measures) : Json(nullptr)},
           {"truths", measures_json(session.truths)}};
@@ -194,6 +195,8 @@ SessionOutcome session_of(const Json& json) {
     }
   }
   if (const auto& p = json.at("model_p"); !p.is_null()) session.model_p = number(p);
+  if (const auto& separated = json.at("separated"); !separated.is_null())
+    session.separated = separated.get<bool>();
   if (const auto& excluded = json.at("excluded"); !excluded.is_null()) {
     auto& person = session.person.emplace();
     person.excluded = excluded;
@@ -420,6 +423,7 @@ Json to_json(const Found& found, const std::vector<std::string>& files) {
           {"minutes", json_number(power.minutes)},
           {"accuracy", json_number(power.accuracy)},
           {"misfits", share_json(power.misfits, "of")},
+          {"separated", share_json(power.separated, "of")},
           {"people", power.people},
           {"recoveries", recoveries},
           {"rewards", rewards_json(found.rewards)},
@@ -440,6 +444,11 @@ void print(std::ostream& out, const rehearsal::Power& power) {
   if (power.misfits)
     fmt::print(out, "The check of the diffusion model finds a misfit in {} % of {} sessions\n",
                number(100 * power.misfits->value, 3), power.misfits->trials);
+  if (power.separated)
+    fmt::print(out,
+               "In {} % of {} sessions the answers set no limit to some distances on the scale; the prior then "
+               "decides about places and intervals, and coverage can be far from 95 %\n",
+               number(100 * power.separated->value, 3), power.separated->trials);
   const auto named = [](const rehearsal::Recovery& r) {
     return core::say(report::in_unit(core::plain(r.parameter), core::plain(r.unit)), "en");
   };

@@ -375,10 +375,13 @@ Power power_of(const protocol::Protocol& protocol, const PowerOptions& asked,
     scored += outcome.scored, right += outcome.right;
   }
   if (scored > 0) power.accuracy = static_cast<double>(right) / scored;
-  int checked = 0, misfits = 0;
-  for (const auto& outcome : outcomes)
+  int checked = 0, misfits = 0, compared = 0, separated = 0;
+  for (const auto& outcome : outcomes) {
     if (outcome.model_p) ++checked, misfits += *outcome.model_p < 0.05;
+    if (outcome.separated) ++compared, separated += *outcome.separated;
+  }
   if (checked > 0) power.misfits = proportion_of(misfits, checked);
+  if (compared > 0) power.separated = proportion_of(separated, compared);
   power.people = options.people;
   power.recoveries = options.people > 0 ? recover_studies(report::by_group(protocol), options, outcomes)
                                         : recover_sessions(protocol, options, outcomes);

@@ -406,6 +406,24 @@ TEST_CASE("the truth of a scale is that of the simulated observer, bent or not, 
   CHECK(*mean.truth < -3);
 }
 
+TEST_CASE("a power study says in how many sessions the prior decides about a scale", "[power]") {
+  // an observer for whom neighbours are far apart is never inconsistent
+  const auto sharp = rehearsal::power(shipped("friction-pairs"), options("sim:threshold=1,lapse=0", 12));
+  REQUIRE(sharp.separated);
+  CHECK(sharp.separated->trials == 12);
+  CHECK(sharp.separated->value == 1);
+  CHECK(find(sharp, "scale", "place of -24 dB").coverage->value < 0.5);
+  const auto blunt = rehearsal::power(shipped("friction-pairs"), options("sim:threshold=8,lapse=0", 12));
+  REQUIRE(blunt.separated);
+  CHECK(blunt.separated->value == 0);
+  auto study = options("sim:threshold=1,lapse=0", 12);
+  study.people = 6;
+  const auto people = rehearsal::power(shipped("friction-pairs"), study);
+  REQUIRE(people.separated);
+  CHECK(people.separated->value == 1);
+  CHECK(!rehearsal::power(shipped("boundary-constant"), options("sim", 2)).separated);
+}
+
 TEST_CASE(
     "d' of ABX and of three intervals is found as in the report, and its intervals contain the true value",
     "[power]") {
