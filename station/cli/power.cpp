@@ -446,8 +446,8 @@ void print(std::ostream& out, const rehearsal::Power& power) {
                number(100 * power.misfits->value, 3), power.misfits->trials);
   if (power.separated)
     fmt::print(out,
-               "In {} % of {} sessions the answers set no limit to some distances on the scale; the prior then "
-               "decides about places and intervals, and coverage can be far from 95 %\n",
+               "In {} % of {} sessions the answers set no limit to some distances on the scale. The prior then "
+               "decides places and intervals, and coverage can be far from 95 %\n",
                number(100 * power.separated->value, 3), power.separated->trials);
   const auto named = [](const rehearsal::Recovery& r) {
     return core::say(report::in_unit(core::plain(r.parameter), core::plain(r.unit)), "en");

@@ -202,8 +202,9 @@ LevelAnalysis analysis_of(const protocol::Protocol& protocol, const protocol::Me
   if (meaning.size) name = "size of " + name;
   part.level_unit = words.unit;
   // in a comparison there is one in each interval, each with a factor of its own
-  part.level_label = scales(meaning.design) ? in_unit(core::phrase("figure.stimulus"), core::plain(words.unit))
-                                            : axis_label(name, words.unit);
+  part.level_label = scales(meaning.design)
+                         ? in_unit(core::phrase("figure.stimulus"), core::plain(words.unit))
+                         : axis_label(name, words.unit);
   if (scales(meaning.design))
     for (const auto& procedure : meaning.procedures)
       if (const auto* spec = protocol::find_procedure(protocol, procedure))
