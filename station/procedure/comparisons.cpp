@@ -47,7 +47,7 @@ class Comparisons : public Procedure {
     core::Draws draws({key.seed, core::Stream::level_order, key.block, key.attempt, 0});
     const auto chosen = choices_of(spec.values.size(), 1 + spec.against.size());
     std::vector<std::size_t> first_form(chosen.size());
-    for (std::size_t i = 0; i < chosen.size(); ++i) first_form[i] = i;
+    std::iota(first_form.begin(), first_form.end(), std::size_t{0});
     draws.shuffle(first_form);
     for (std::size_t repeat = 0; repeat < static_cast<std::size_t>(spec.repeats); ++repeat) {
       std::vector<std::vector<std::size_t>> part;
