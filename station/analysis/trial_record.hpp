@@ -53,6 +53,9 @@ struct TrialRecord {
   /// For two intervals of which the level decides which one is right: the number of the chosen and of the
   /// right scene; empty if no interval was right, or without an answer.
   std::optional<int> chosen_scene, right_scene;
+  /// the stimuli of a comparison in order of presentation, as levels; empty if the task compares none. The
+  /// answer is then 0 for the first stimulus or difference, 1 for the second
+  std::vector<double> compared = {};
   std::size_t part = 0;   ///< number of the analysis to which the trial belongs; 0 if there is only one
   int segment_index = 1;  ///< number of the program run, from 1; a session that was resumed has several
 };

@@ -105,6 +105,16 @@ Json lags_json(const std::map<double, rehearsal::GeneratingValues::Lag>& lags) {
   return json;
 }
 
+Json comparisons_json(const std::map<std::vector<double>, std::array<double, 2>>& comparisons) {
+  Json json = Json::array();
+  for (const auto& [stimuli, answers] : comparisons) {
+    Json compared = Json::array();
+    for (const double stimulus : stimuli) compared.push_back(exact(stimulus));
+    json.push_back({compared, exact(answers[0]), exact(answers[1])});
+  }
+  return json;
+}
+
 Json measures_json(const rehearsal::Measures& measures) {
   Json json = Json::array();
   for (const auto& one : measures)
@@ -130,7 +140,8 @@ Json to_json(const SessionOutcome& session) {
                         {"trials", sum.trials},
                         {"correct", exact(sum.correct)},
                         {"drifts", drifts_json(sum.drifts)},
-                        {"lags", lags_json(sum.lags)}};
+                        {"lags", lags_json(sum.lags)},
+                        {"comparisons", comparisons_json(sum.comparisons)}};
   return {{"trials", session.presented},
           {"scored", session.scored},
           {"right", session.right},
@@ -138,6 +149,7 @@ Json to_json(const SessionOutcome& session) {
           {"findings", findings},
           {"conditions", conditions},
           {"model_p", session.model_p ? exact(*session.model_p) : Json(nullptr)},
+          {"separated", session.separated ? Json(*session.separated) : Json(nullptr)},
           {"excluded", session.person ? Json(session.person->excluded) : Json(nullptr)},
           {"measures", session.person ? measures_json(session.person->measures) : Json(nullptr)},
           {"truths", measures_json(session.truths)}};
@@ -176,8 +188,15 @@ SessionOutcome session_of(const Json& json) {
       read.lags[number(one.at(0))] = {number(one.at(1)),
                                       {number(one.at(2)), number(one.at(4))},
                                       {number(one.at(3)), number(one.at(5))}};
+    for (const auto& one : sum.at("comparisons")) {
+      std::vector<double> stimuli;
+      for (const auto& stimulus : one.at(0)) stimuli.push_back(number(stimulus));
+      read.comparisons[stimuli] = {number(one.at(1)), number(one.at(2))};
+    }
   }
   if (const auto& p = json.at("model_p"); !p.is_null()) session.model_p = number(p);
+  if (const auto& separated = json.at("separated"); !separated.is_null())
+    session.separated = separated.get<bool>();
   if (const auto& excluded = json.at("excluded"); !excluded.is_null()) {
     auto& person = session.person.emplace();
     person.excluded = excluded;
@@ -404,6 +423,7 @@ Json to_json(const Found& found, const std::vector<std::string>& files) {
           {"minutes", json_number(power.minutes)},
           {"accuracy", json_number(power.accuracy)},
           {"misfits", share_json(power.misfits, "of")},
+          {"separated", share_json(power.separated, "of")},
           {"people", power.people},
           {"recoveries", recoveries},
           {"rewards", rewards_json(found.rewards)},
@@ -424,6 +444,11 @@ void print(std::ostream& out, const rehearsal::Power& power) {
   if (power.misfits)
     fmt::print(out, "The check of the diffusion model finds a misfit in {} % of {} sessions\n",
                number(100 * power.misfits->value, 3), power.misfits->trials);
+  if (power.separated)
+    fmt::print(out,
+               "In {} % of {} sessions the answers set no limit to some distances on the scale. The prior then "
+               "decides places and intervals, and coverage can be far from 95 %\n",
+               number(100 * power.separated->value, 3), power.separated->trials);
   const auto named = [](const rehearsal::Recovery& r) {
     return core::say(report::in_unit(core::plain(r.parameter), core::plain(r.unit)), "en");
   };

@@ -23,13 +23,14 @@ extern const Description adjustment;
 extern const Description accelerated_stochastic_approximation;
 extern const Description limits;
 extern const Description program;
+extern const Description comparisons;
 
 namespace {
 
 constexpr std::array kDescriptions{
     &constant_stimuli, &up_down, &weighted_up_down, &quest_plus, &psi,
     &psi_marginal,     &zest,    &best_pest,        &adjustment, &accelerated_stochastic_approximation,
-    &limits,           &program,
+    &limits,           &program, &comparisons,
 };
 
 }  // namespace

@@ -19,6 +19,7 @@ struct Proposal {
   std::optional<double> second = {};  ///< value of the second dimension, if the procedure has one
   /// pairs of a factor and the index of its level
   std::vector<std::pair<std::string, std::size_t>> balanced = {};
+  std::vector<double> against = {};  ///< for comparisons: values of the factors Spec::against
 };
 
 /// A proposal that may come next: its first place in the rest of the list, counted from that of next(), and how

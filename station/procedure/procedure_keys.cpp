@@ -171,7 +171,21 @@ Keys all() {
       string("tracks", "id of the answer that it follows instead of correctness")
           .only_with("kind", answering),
       numbers("values", any_level, "the levels").required().only_with("kind", {"constant-stimuli"}),
+      numbers("values", any_level, "the stimuli that are compared with each other")
+          .required()
+          .only_with("kind", {"comparisons"}),
+      strings("against",
+              "the factors of the other intervals, in order: one for all pairs of the values (in both "
+              "orders), two "
+              "for all triads, three for all quadruples")
+          .holding(1, 3)
+          .required()
+          .only_with("kind", {"comparisons"}),
       integer("repeats", 1, 10000, "how often each level is presented").required().only_with("kind", listed),
+      integer("repeats", 1, 10000,
+              "how often each pair is presented in each order, or each triad or quadruple")
+          .required()
+          .only_with("kind", {"comparisons"}),
       strings("balance",
               "factors whose levels are combined equally often with each level (and with each other)")
           .holding(0)

@@ -27,7 +27,8 @@ enum class Kind {
   adjustment,
   accelerated_stochastic_approximation,
   limits,
-  program
+  program,
+  comparisons
 };
 using core::Function;
 enum class Scale { linear, log10, dB };
@@ -132,6 +133,10 @@ struct Spec {
   /// ones); the others are those of `balance`, with the places of their levels
   OrderRules rules;
 
+  /// for comparisons, which also use `values` and `repeats`: the factors of the other stimuli of a trial, in
+  /// order of presentation; one for pairs, two for triads, three for quadruples
+  std::vector<std::string> against;
+
   // The following members are for procedures that move one level up and down. `start` is the first level; the
   // level stays between `min` and `max`.
   std::optional<double> start, min, max;
@@ -208,6 +213,14 @@ std::vector<std::string> kind_names();
 
 /// Returns the number of trials in a list.
 inline std::size_t list_trials(const Spec& spec) {
+  if (spec.kind == Kind::comparisons) {
+    const auto n = spec.values.size();
+    const auto repeats = static_cast<std::size_t>(spec.repeats);
+    if (n < 1 + spec.against.size()) return 0;
+    return repeats * (spec.against.size() == 1   ? n * (n - 1)
+                      : spec.against.size() == 2 ? n * (n - 1) * (n - 2) / 6
+                                                 : n * (n - 1) * (n - 2) * (n - 3) / 24);
+  }
   const auto trials = spec.values.size() * static_cast<std::size_t>(spec.repeats);
   return spec.rules.equally.empty() ? trials : trials + spec.rules.back;
 }

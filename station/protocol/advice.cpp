@@ -68,7 +68,8 @@ void check_fineness(AdviceList& advice, const procedure::Spec& spec) {
 // Reports levels that are all so large that everybody feels them: no threshold can be found then. A procedure
 // that ends at a criterion (stop.right) is for training and looks for no threshold.
 void check_coarseness(AdviceList& advice, const procedure::Spec& spec) {
-  if (spec.stop.right) return;
+  // a stimulus of a comparison need not be hard to tell from the plain surface
+  if (spec.stop.right || spec.kind == procedure::Kind::comparisons) return;
   auto levels = spec.values;
   levels.insert(levels.end(), spec.stimuli.values.begin(), spec.stimuli.values.end());
   if (spec.min) levels.push_back(*spec.min);
@@ -103,6 +104,31 @@ void check_unequal_steps(AdviceList& advice, const procedure::Spec& spec) {
                     {plain(spec.name), plain(number(100 * target, 3))}),
              phrase("with equal steps it would converge at %1 %",
                     {plain(number(100 * std::pow(0.5, 1.0 / spec.n_down), 4))}));
+}
+
+// Reports stimuli of triads or quadruples of which one difference is always the larger one, if friction feels
+// like its amplitude: answers that never disagree about it determine no scale.
+void check_differences(AdviceList& advice, const procedure::Spec& spec) {
+  if (spec.kind != procedure::Kind::comparisons || spec.against.size() < 2) return;
+  auto felt = spec.values;
+  std::ranges::sort(felt);
+  if (spec.level.ends_with("_dB"))
+    for (auto& level : felt) level = std::pow(10.0, level / 20);
+  const std::size_t between = spec.against.size() == 2 ? 0 : 1;  // a triad shares its middle stimulus
+  bool upper = true, lower = true;
+  for (std::size_t a = 0; a < felt.size(); ++a)
+    for (std::size_t b = a + 1; b < felt.size(); ++b)
+      for (std::size_t c = b + between; c < (between == 0 ? b + 1 : felt.size()); ++c)
+        for (std::size_t d = c + 1; d < felt.size(); ++d) {
+          const double more = (felt[d] - felt[c]) - (felt[b] - felt[a]);
+          upper = upper && more > 0, lower = lower && more < 0;
+        }
+  if (upper || lower)
+    advice.add(key_of(spec, "values"),
+               phrase("\"%1\": if friction feels like its amplitude, one difference of each comparison is "
+                      "always the larger one, and there is no scale",
+                      {plain(spec.name)}),
+               phrase("choose values closer to equal steps of feeling"));
 }
 
 void check_unused(AdviceList& advice) {
@@ -148,6 +174,7 @@ void advise_on_levels(AdviceList& advice) {
     check_fineness(advice, spec);
     check_coarseness(advice, spec);
     check_unequal_steps(advice, spec);
+    check_differences(advice, spec);
   }
   check_unused(advice);
 }

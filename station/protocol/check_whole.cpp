@@ -5,6 +5,7 @@
 #include "station/procedure/description.hpp"
 #include "station/protocol/advice_list.hpp"
 #include "station/protocol/answers.hpp"
+#include "station/protocol/conditions.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/protocol/sources.hpp"
@@ -79,6 +80,14 @@ void check_present(const std::vector<Source>& sources, const Reading& reading) {
                          phrase("levels with a signal and levels without one, such as 0"));
 }
 
+/// What to do about a key that judges answers where none is right.
+core::Phrase instead_of_judging(const Task& task) {
+  if (task.kind == TaskKind::adjustment) return phrase("use another kind of task");
+  if (task.kind == TaskKind::comparison)
+    return phrase("leave it out: in a comparison no answer is right or wrong");
+  return phrase("set \"correct\" in [task]");
+}
+
 // Points and goals need answers that are right or wrong.
 void check_goals(const Reading& reading) {
   const auto& protocol = reading.protocol;
@@ -88,8 +97,7 @@ void check_goals(const Reading& reading) {
   const auto report = [&](const std::string& key) {
     reading.findings.add(reading.places.of(key),
                          phrase("\"%1\" judges answers, but no answer is correct", {plain(key)}),
-                         task.kind == TaskKind::adjustment ? phrase("use another kind of task")
-                                                           : phrase("set \"correct\" in [task]"));
+                         instead_of_judging(task));
   };
   if (protocol.payoff) report("payoff");
   for (const auto& [name, instruction] : protocol.instructions)
@@ -103,7 +111,7 @@ void check_scored(core::TableReader& file, const Reading& reading) {
   const auto& task = protocol.task;
   const auto* table = file.take("task");
   const bool stated = table && table->find("correct");
-  if (!table || task.kind != TaskKind::single_interval || stated) return;
+  if (!table || task.kind == TaskKind::adjustment || scored(task) || stated) return;
   for (const auto& spec : protocol.procedures) {
     if (procedure::follows_answers(spec) && judges(task))
       reading.findings.add(
@@ -125,7 +133,7 @@ void check_scored(core::TableReader& file, const Reading& reading) {
         reading.findings.add(
             reading.places.of(key_of(part, key)),
             phrase("block \"%1\" judges answers, but no answer is correct", {plain(block.name)}),
-            phrase("set \"correct\" in [task]"));
+            instead_of_judging(task));
   }
 }
 
@@ -206,6 +214,56 @@ void check_adjustment(const Reading& reading) {
             phrase("the procedure \"%1\" sets \"%2\"", {plain(name), plain(spec->level)}),
             phrase("it must set the factor that the slider moves: \"%1\"", {plain(protocol.task.adjusts)}));
     }
+  }
+}
+
+// Each interval of a comparison must present the factor that its procedure sets for it, and no other of them.
+void check_intervals(const procedure::Spec& spec, const Reading& reading) {
+  const auto& intervals = reading.protocol.task.intervals;
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    const auto& factor = i == 0 ? spec.level : spec.against[i - 1];
+    if (presented(reading.protocol, spec, intervals[i]) != factor)
+      reading.findings.add(
+          reading.places.of(key_of(spec, i == 0 ? "level" : "against")),
+          phrase("interval %1 does not present \"%2\", or also presents another factor of \"%3\"",
+                 {plain(i + 1), plain(factor), plain(spec.name)}),
+          phrase(
+              "name the factors in the order of \"intervals\", each with a scene that depends on it alone"));
+  }
+}
+
+// A comparison needs procedures that set a stimulus for each of its intervals, and only they can ask for one.
+void check_comparisons(const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  const bool comparing = protocol.task.kind == TaskKind::comparison;
+  std::set<std::string> used;
+  for (const auto& part : protocol.plan) {
+    const auto& block = block_of(part);
+    used.insert(block.procedures.begin(), block.procedures.end());
+    if (comparing && block.kind == BlockKind::trials && !block.practice && !block.level.empty())
+      reading.findings.add(
+          reading.places.of(key_of(part, "level")),
+          phrase("block \"%1\" has fixed levels, which give no scale", {plain(block.name)}),
+          phrase("name a procedure of %1 in \"procedures\"", {plain("kind = \"comparisons\"")}));
+    if (comparing && block.catch_trials)
+      reading.findings.add(reading.places.of(key_of(part, "catch")),
+                           phrase("in a comparison no answer is right or wrong"), phrase("leave it out"));
+  }
+  for (const auto& spec : protocol.procedures) {
+    if (!used.contains(spec.name)) continue;
+    if ((spec.kind == procedure::Kind::comparisons) != comparing)
+      reading.findings.add(reading.places.of(key_of(spec, "kind")),
+                           phrase("the procedure \"%1\" does not fit the kind of task", {plain(spec.name)}),
+                           comparing ? plain("kind = \"comparisons\"")
+                                     : phrase("use %1 in [task]", {plain("kind = \"comparison\"")}));
+    else if (comparing && spec.against.size() + 1 != protocol.task.intervals.size())
+      reading.findings.add(
+          reading.places.of(key_of(spec, "against")),
+          phrase("the procedure \"%1\" sets %2 stimuli, but a trial has %3 intervals",
+                 {plain(spec.name), plain(spec.against.size() + 1), plain(protocol.task.intervals.size())}),
+          phrase("name one factor for each interval: the first in \"level\""));
+    else if (comparing)
+      check_intervals(spec, reading);
   }
 }
 
@@ -293,6 +351,7 @@ void check_whole(core::TableReader& file, Reading& reading) {
   check_limits(reading);
   check_detection(reading);
   check_adjustment(reading);
+  check_comparisons(reading);
   const auto sources = sources_of(reading.protocol);
   const auto needed = factors_used(reading.protocol);
   for (const auto& name : needed) check_values(sources, name, reading);

@@ -15,6 +15,8 @@ namespace {
 std::vector<FactorValue> values_of(const Factor& factor, const Source& source) {
   if (factor.name == source.level) return {source.levels.begin(), source.levels.end()};
   if (factor.name == source.second) return {source.seconds.begin(), source.seconds.end()};
+  if (source.spec && std::ranges::find(source.spec->against, factor.name) != source.spec->against.end())
+    return {source.levels.begin(), source.levels.end()};
   if (source.spec)
     if (const auto with = source.spec->with.find(factor.name); with != source.spec->with.end())
       return {with->second};

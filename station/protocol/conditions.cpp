@@ -1,8 +1,10 @@
 #include "station/protocol/conditions.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "station/core/number.hpp"
+#include "station/protocol/combinations.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/protocol/visits.hpp"
 
@@ -31,6 +33,30 @@ std::vector<protocol::Factors> combinations_of_by(const protocol::Protocol& prot
 }
 
 }  // namespace
+
+std::string presented(const Protocol& protocol, const procedure::Spec& spec,
+                      const std::vector<std::string>& scenes) {
+  std::set<std::string> found;
+  for (const auto& scene : scenes)
+    if (const auto known = protocol.scenes.find(scene); known != protocol.scenes.end())
+      for (const auto& name : factors_of(known->second))
+        if (name == spec.level || std::ranges::find(spec.against, name) != spec.against.end())
+          found.insert(name);
+  return found.size() == 1 ? *found.begin() : "";
+}
+
+std::vector<double> compared(const procedure::Spec& spec, const Factors& factors) {
+  std::vector<std::string> names{spec.level};
+  names.insert(names.end(), spec.against.begin(), spec.against.end());
+  std::vector<double> stimuli;
+  for (const auto& name : names) {
+    const auto found = factors.find(name);
+    const auto* value = found == factors.end() ? nullptr : std::get_if<double>(&found->second);
+    if (!value) return {};
+    stimuli.push_back(*value);
+  }
+  return stimuli;
+}
 
 FactorWords words_of(const std::string& factor) {
   FactorWords words{factor, ""};

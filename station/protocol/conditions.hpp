@@ -21,6 +21,15 @@ std::vector<std::string> conditions(const protocol::Protocol& protocol);
 /// protocol has no groups or `by` names none: then every participant has all conditions.
 std::map<std::string, std::string> groups_of_conditions(const protocol::Protocol& protocol);
 
+/// The stimuli of a trial of a comparison, in order of presentation: the values of the factors that its
+/// procedure sets. Empty if one of them has no value.
+std::vector<double> compared(const procedure::Spec& spec, const Factors& factors);
+
+/// The factor that an interval with these scenes presents, of those that the procedure of a comparison sets.
+/// Empty if the scenes depend on none of them, or on several.
+std::string presented(const Protocol& protocol, const procedure::Spec& spec,
+                      const std::vector<std::string>& scenes);
+
 /// A factor's name in words and its unit: `mark_mm` gives "mark" and "mm", `_um` gives the unit \u00b5m. The
 /// unit is "" if the name has none.
 struct FactorWords {

@@ -22,6 +22,8 @@ bool decibel(const Meaning& meaning) { return meaning.level.ends_with("_dB"); }
 Design design_of(const Protocol& protocol, const AnswerRule& rule) {
   const auto& task = protocol.task;
   if (task.kind == TaskKind::adjustment) return Design::adjustment;
+  if (task.kind == TaskKind::comparison)
+    return task.intervals.size() == 2 ? Design::pairs : Design::differences;
   if (task.value && task.value->typed) return Design::numbers;
   if (judges(task)) return Design::ratings;
   if (task.kind == TaskKind::same_different) return Design::same_different;
@@ -35,8 +37,7 @@ Design design_of(const Protocol& protocol, const AnswerRule& rule) {
     case AnswerKind::right_answer:
       break;
   }
-  const bool unscored = task.kind == TaskKind::single_interval && task.correct_answer.empty();
-  return unscored && task.choices.size() > 2 ? Design::categories : Design::forced_choice;
+  return !scored(task) && task.choices.size() > 2 ? Design::categories : Design::forced_choice;
 }
 
 /// The factors that a procedure fixes to values of its own, as far as the conditions of the report do not
@@ -64,6 +65,7 @@ void include(const Source& source, const Protocol& protocol, Meaning& meaning) {
   const auto* spec = source.spec;
   if (!spec) return;
   const auto& by = protocol.analysis.by;
+  for (const auto& name : spec->against) add(name, meaning.against);
   if (spec->second && std::find(by.begin(), by.end(), spec->second->level) == by.end())
     meaning.along = spec->second->level;
   // a procedure without limits can go anywhere within the range of its factor
@@ -106,6 +108,7 @@ void decide(const Protocol& protocol, Meaning& meaning) {
     high = std::max(std::fabs(low), std::fabs(high)), low = nearest;
   }
   choose_function(protocol, meaning);
+  if (meaning.design == Design::pairs) meaning.function = protocol.analysis.pairs;
 }
 
 /// Gives the analyses different names: the factor's name or, if analyses have the same factor, what their
@@ -152,6 +155,7 @@ std::string choice_of(const Protocol& protocol, int index) {
 }  // namespace
 
 bool scored(const Task& task) {
+  if (task.kind == TaskKind::comparison) return false;
   return task.kind != TaskKind::single_interval || !task.correct_answer.empty();
 }
 
@@ -245,6 +249,16 @@ std::string in_words(const Meaning& meaning, const Protocol& protocol) {
                  ? "confusions of " + std::to_string(meaning.alternatives) + " answers at each " + level
                  : "how often each of " + std::to_string(meaning.alternatives) +
                        " answers is given at each " + level;
+    case Design::pairs:
+    case Design::differences:
+      words = "places on a scale of the values of " + level;
+      for (std::size_t i = 0; i < meaning.against.size(); ++i)
+        words += (i + 1 < meaning.against.size() ? ", " : " and ") + code(meaning.against[i]);
+      if (meaning.design == Design::pairs)
+        return words + ", from all pairs (" +
+               (meaning.function == core::Function::logistic ? "Bradley and Terry)" : "Thurstone, case V)");
+      return words + ", from all " + (meaning.against.size() == 2 ? "triads" : "quadruples") +
+             " (maximum-likelihood difference scaling)";
     case Design::two_sided:
       words = "PSE and spread of " + level;
       if (meaning.scored)

@@ -40,10 +40,12 @@ enum class Design {
   yes_no,  ///< "yes" becomes more frequent as |level| rises; trials at level 0 have no signal
   /// like yes_no: "different" counts as "yes", and pairs of identical stimuli have no signal
   same_different,
-  categories,  ///< the level decides which of several answers is right, or no answer is right
-  ratings,     ///< ratings on points or on a line; the report has their mean at each level
-  numbers,     ///< magnitude estimation: geometric means, and the exponent of Stevens' law
-  adjustment,  ///< the participant sets a slider; no psychometric function is fitted
+  categories,   ///< the level decides which of several answers is right, or no answer is right
+  ratings,      ///< ratings on points or on a line; the report has their mean at each level
+  numbers,      ///< magnitude estimation: geometric means, and the exponent of Stevens' law
+  pairs,        ///< comparisons of two stimuli: a scale of Bradley and Terry, or of Thurstone
+  differences,  ///< comparisons of differences of three or four stimuli: difference scaling
+  adjustment,   ///< the participant sets a slider; no psychometric function is fitted
 };
 
 /// True if some trials have no signal, so that "yes" is a false alarm in them.
@@ -59,6 +61,7 @@ struct Meaning {
   std::vector<std::string> blocks;  ///< blocks with its trials, without practice, in the order of the plan
   std::vector<std::string> procedures;  ///< procedures that present its levels; empty for fixed levels
   std::string level;                    ///< the factor
+  std::vector<std::string> against;     ///< for comparisons: the factors of the other stimuli
   AnswerRule rule;
   Design design = Design::forced_choice;
   bool scored = true;  ///< false if no answer is right or wrong

@@ -32,6 +32,9 @@ enum class TaskKind {
   oddity,
   abx,              ///< standard and target in either order, then one of them again: which was it?
   match_to_sample,  ///< the same, but the one to be matched comes first
+  /// two to four intervals in a fixed order: which of two is more, or which of two differences is larger? No
+  /// answer is right
+  comparison,
   adjustment
 };
 enum class Device { touch, buttons, either };
@@ -339,6 +342,8 @@ struct Analysis {
   /// (the participant began the same session again later) never counts.
   bool count_incomplete = false;
   Holm holm = Holm::none;
+  /// how pairs are scaled: logistic for Bradley and Terry, normal for Thurstone
+  core::Function pairs = core::Function::logistic;
   double exclude_below_s = 0;
   std::optional<double> exclude_mad;
 };

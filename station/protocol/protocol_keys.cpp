@@ -180,7 +180,7 @@ Key scene() {
 
 Keys task() {
   const Words several_scenes{"3ifc", "4ifc", "same-different", "oddity", "abx", "match-to-sample"};
-  const Words intervals{"single-interval", "2ifc", "adjustment"};
+  const Words intervals{"single-interval", "2ifc", "comparison", "adjustment"};
   Keys number_keys = typed();
   number_keys.list.push_back(
       string("standard",
@@ -196,12 +196,12 @@ Keys task() {
   Keys keys{
       word("kind",
            {"single-interval", "2ifc", "3ifc", "4ifc", "same-different", "oddity", "abx", "match-to-sample",
-            "adjustment"},
+            "comparison", "adjustment"},
            "what a trial is")
           .required(),
       list("intervals", {string("", ""), strings("", "").holding(1, 2)},
            "the scene of each interval; two scenes for a change after a foreperiod")
-          .holding(1, 2)
+          .holding(1, 4)
           .required()
           .only_with("kind", intervals),
       string("standard", "the scene that most intervals present")
@@ -570,6 +570,11 @@ const Keys& all() {
                  {"psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime", "response-signal", "trace"},
                  "parts of the report")
                .without_it("all that apply"),
+           word("pairs", {"bradley-terry", "thurstone"},
+                "how comparisons of pairs are scaled: in log odds, or in standard deviations of what one "
+                "stimulus is "
+                "felt as (case V)")
+               .by_default("\"bradley-terry\""),
            word("incomplete_sessions", {"leave_out", "count"},
                 "whether a report of a study counts sessions that were not completed")
                .without_it("as [sessions] says"),

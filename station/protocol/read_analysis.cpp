@@ -73,6 +73,7 @@ core::Phrase without_effect(const std::string& word, const Protocol& protocol) {
   // do not add a second message: the reader of [task] has reported a task without choices
   if (word == "trace" || task.choices.empty()) return {};
   if (task.kind == TaskKind::adjustment) return phrase("an adjustment task has settings instead of answers");
+  if (task.kind == TaskKind::comparison) return phrase("in a comparison no answer is right or wrong");
   if (word == "dprime" && task.present) return {};
   if (judges(task)) return phrase("ratings and numbers are neither right nor wrong");
   const auto& procedures = protocol.procedures;
@@ -92,8 +93,7 @@ core::Phrase without_effect(const std::string& word, const Protocol& protocol) {
       return phrase("the threshold depends on \"%1\", so one curve does not describe all trials",
                     {plain(spec.second->level)});
   if (word == "psychometric") return {};
-  if (task.kind == TaskKind::single_interval && task.correct_answer.empty())
-    return phrase("without \"correct\" in [task], no answer is right or wrong");
+  if (!scored(task)) return phrase("without \"correct\" in [task], no answer is right or wrong");
   if (word == "response-signal" && !protocol.timing.signal)
     return phrase("[timing] has no \"response_signal\"");
   if (word == "dprime" && (task.kind == TaskKind::oddity || task.kind == TaskKind::same_different))
@@ -142,6 +142,12 @@ void read_analysis(TableReader& file, Reading& reading) {
   const auto& sessions = reading.protocol.sessions;
   const auto incomplete = reader.maybe_word("incomplete_sessions");
   if (const auto holm = reader.maybe_word("holm")) analysis.holm = *holm == "all" ? Holm::all : Holm::measure;
+  if (const auto pairs = reader.maybe_word("pairs")) {
+    analysis.pairs = *pairs == "thurstone" ? core::Function::normal : core::Function::logistic;
+    if (reading.protocol.task.kind != TaskKind::comparison || reading.protocol.task.intervals.size() != 2)
+      reader.problem("pairs", phrase("the task does not compare pairs"),
+                     phrase("%1 with two intervals", {plain("kind = \"comparison\"")}));
+  }
   if (incomplete) analysis.count_incomplete = *incomplete == "count";
   if (incomplete == "leave_out" && sessions && sessions->incomplete == Unfinished::count)
     reader.problem(

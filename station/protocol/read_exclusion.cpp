@@ -13,6 +13,7 @@ namespace {
 void check_rules(TableReader& reader, const Reading& reading) {
   const auto& protocol = reading.protocol;
   const auto& rules = *protocol.exclusion;
+  const auto& task = protocol.task;
   bool catches = false;
   for (const auto& part : protocol.plan)
     catches = catches ||
@@ -20,13 +21,12 @@ void check_rules(TableReader& reader, const Reading& reading) {
                   .catch_trials.has_value();
   if (rules.catch_accuracy_below && !catches)
     reader.problem("catch_accuracy_below", phrase("no block has catch trials"),
-                   phrase("add \"catch\" to a block, or leave this rule out"));
-  const auto& task = protocol.task;
+                   task.kind == TaskKind::comparison
+                       ? phrase("leave this rule out")
+                       : phrase("add \"catch\" to a block, or leave this rule out"));
   // Do not report a task without choices again: the reader of [task] has reported that mistake.
-  const bool unscored =
-      judges(task) || task.kind == TaskKind::adjustment ||
-      (task.kind == TaskKind::single_interval && !task.choices.empty() && task.correct_answer.empty());
-  if (rules.accuracy_below && unscored)
+  const bool broken = task.kind == TaskKind::single_interval && !judges(task) && task.choices.empty();
+  if (rules.accuracy_below && !broken && (task.kind == TaskKind::adjustment || !scored(task)))
     reader.problem("accuracy_below", phrase("no answer of this task is right or wrong"),
                    phrase("leave this rule out"));
 }

@@ -234,6 +234,22 @@ void check_spec(const Value& table, const Spec& spec, core::Findings& findings) 
   }
 }
 
+/// Checks the factors of the stimuli with which the level is compared.
+void check_against(TableReader& reader, const Spec& spec, const Reading& reading) {
+  std::set<std::string> seen{spec.level};
+  for (const auto& name : spec.against) {
+    const auto* factor = find_factor(reading.protocol.factors, name);
+    if (!factor)
+      reader.problem("against", phrase("unknown factor \"%1\"", {plain(name)}),
+                     core::suggestion(name, names(reading.protocol.factors)));
+    else if (!seen.insert(name).second)
+      reader.problem("against", phrase("\"%1\" is set twice", {plain(name)}),
+                     phrase("name another factor for each interval"));
+    else if (!is_broken(*factor))
+      check_levels(reader, spec, *factor);
+  }
+}
+
 /// Checks the factor of the second dimension and its values.
 void check_second(const Value& table, const Spec& spec, const Reading& reading, core::Findings& findings) {
   const auto* second = table.find("second");
@@ -361,6 +377,7 @@ Spec read_procedure(const Value& table, const Reading& reading, core::Findings& 
   if (procedure::follows_answers(spec)) procedure::read_runs(reader, spec);
   check_max_run(reader, spec, reading);
   check_second(table, spec, reading, findings);
+  check_against(reader, spec, reading);
   check_tracks(reader, spec, reading);
   check_balance(reader, spec, reading);
   if (findings.problems.empty()) read_order_rules(reader, spec, reading);

@@ -31,11 +31,13 @@ constexpr TaskForm task_forms[] = {{"single-interval", TaskKind::single_interval
                                    {"oddity", TaskKind::oddity, 3, 3},
                                    {"abx", TaskKind::abx, 2, 2},
                                    {"match-to-sample", TaskKind::match_to_sample, 2, 2},
+                                   {"comparison", TaskKind::comparison, 2, 2},
                                    {"adjustment", TaskKind::adjustment, 1, 1}};
 
 /// True if the task presents a `standard` and a `target`.
 bool compares(TaskKind kind) {
-  return kind != TaskKind::single_interval && kind != TaskKind::two_interval && kind != TaskKind::adjustment;
+  return kind != TaskKind::single_interval && kind != TaskKind::two_interval &&
+         kind != TaskKind::comparison && kind != TaskKind::adjustment;
 }
 
 void check_scene(const std::string& name, const core::Place& place, const Reading& reading) {
@@ -82,6 +84,13 @@ void read_intervals(TableReader& reader, Task& task, const Reading& reading) {
     return reader.problem("intervals", phrase("\"%1\" is %2", {plain("intervals"), describe(*list)}),
                           phrase("write a list of scene names: %1", {plain("[\"edge\"]")}));
   for (const auto& item : list->items) task.intervals.push_back(read_interval(item, reading));
+  const auto given = task.intervals.size();
+  if (task.kind == TaskKind::comparison) {
+    if (given < 2 || given > 4)
+      reader.problem("intervals", phrase("\"%1\" has %2", {plain("intervals"), plain(given)}),
+                     phrase("two for pairs, three for triads, four for quadruples"));
+    return;
+  }
   const std::size_t needed = task.kind == TaskKind::two_interval ? 2 : 1;
   if (task.intervals.size() != needed)
     reader.problem("intervals", phrase("\"%1\" has %2", {plain("intervals"), plain(task.intervals.size())}),
@@ -274,6 +283,9 @@ void read_confidence(TableReader& reader, Task& task, const Reading& reading) {
 void read_unsure(TableReader& reader, Task& task, const Reading& reading) {
   const auto* text = reader.take("unsure");
   if (!text) return;
+  if (task.kind == TaskKind::comparison)
+    return reader.problem("unsure", phrase("in a comparison no answer is right or wrong"),
+                          phrase("leave it out"));
   task.unsure = localised_from(*text, "unsure", reading);
   for (const auto& choice : task.choices)
     if (choice.id == kUnsure)
@@ -403,6 +415,7 @@ void read_correct(TableReader& reader, Task& task, const Reading& reading) {
     case TaskKind::same_different:
     case TaskKind::abx:
     case TaskKind::match_to_sample:
+    case TaskKind::comparison:
       return;
   }
 }

@@ -45,6 +45,7 @@ void add_block(const Protocol& protocol, const Block& block, const std::string& 
     if (spec) sets.insert(spec->balance.begin(), spec->balance.end());
     if (spec)
       for (const auto& [name, value] : spec->with) sets.insert(name);
+    if (spec) sets.insert(spec->against.begin(), spec->against.end());
     Source source;
     source.block = &block, source.what = what, source.level = level, source.spec = spec;
     source.levels = std::move(levels);

@@ -13,6 +13,7 @@
 #include "station/analysis/group.hpp"
 #include "station/analysis/psychometric_posterior.hpp"
 #include "station/analysis/response_signal.hpp"
+#include "station/analysis/scaling.hpp"
 #include "station/analysis/trade.hpp"
 
 // The fits of station/analysis for arrays. turnpoint/analysis.py checks the arrays, gives them equal lengths and
@@ -416,6 +417,67 @@ void add_psychometric(py::module_& module) {
   });
 }
 
+void add_scale(py::module_& module) {
+  using S = StimulusScale;
+  const auto of_fit = [](auto which) {
+    return [which](const S& from) { return from.fit ? std::optional((*from.fit).*which) : std::nullopt; };
+  };
+  const auto of_check = [](auto which) {
+    return [which](const S& from) { return from.check ? std::optional((*from.check).*which) : std::nullopt; };
+  };
+  const auto of_triples = [](auto which) {
+    return [which](const S& from) {
+      return from.transitivity ? std::optional((*from.transitivity).*which) : std::nullopt;
+    };
+  };
+  Shown<S>(module, "Scale", "The scale of one condition; see scale().")
+      .add("condition", &S::condition, "its name")
+      .add("stimuli", &S::stimuli, "values of the stimuli, ascending")
+      .add("values", of_fit(&ScaleFit::values), "place of each stimulus on the scale")
+      .add(
+          "noise", [](const S& from) { return from.fit ? from.fit->noise : std::nullopt; },
+          "differences: standard deviation of the noise of a comparison; otherwise None")
+      .add(
+          "favours_second", [](const S& from) { return from.fit ? from.fit->favours_second : std::nullopt; },
+          "how much the order favours the answer \"second\", in the unit of the values, or (differences) "
+          "standard deviations of "
+          "the noise; None if not every order came")
+      .add("log_likelihood", of_fit(&ScaleFit::log_likelihood), "of the answers")
+      .add("deviance", of_fit(&ScaleFit::deviance), "from one proportion per presentation")
+      .add("degrees", of_fit(&ScaleFit::degrees), "degrees of freedom of the deviance")
+      .add("deviance_p", of_check(&ScaleCheck::deviance_p),
+           "share of simulated sessions with a deviance as large")
+      .add("runs", of_check(&ScaleCheck::runs), "runs of answers, in the order of what is expected")
+      .add("runs_p", of_check(&ScaleCheck::runs_p), "share of simulated sessions with as few runs")
+      .add(
+          "six_points_p", [](const S& from) { return from.check ? from.check->six_points_p : std::nullopt; },
+          "quadruples: share of simulated sessions with answers as unlikely in the sets of the six-point "
+          "property")
+      .add("triples", of_triples(&Transitivity::triples), "pairs: number of triples")
+      .add("circular", of_triples(&Transitivity::circular), "pairs: triples that violate weak transitivity")
+      .add("moderate", of_triples(&Transitivity::moderate),
+           "pairs: triples that violate moderate transitivity")
+      .add("strong", of_triples(&Transitivity::strong), "pairs: triples that violate strong transitivity")
+      .add(
+          "consistence",
+          [](const S& from) { return from.transitivity ? from.transitivity->consistence : std::nullopt; },
+          "pairs: Kendall's coefficient, 1 without circular triples")
+      .add("statements", spoken<S>, "remarks, as in the report");
+  module.def("scale", [](const std::vector<Numbers>& stimuli, const Flags& second, const Texts& condition,
+                         const Texts& order, const std::string& model, int sessions) {
+    std::vector<TrialRecord> trials;
+    for (std::size_t i = 0; i < stimuli.size(); ++i) {
+      TrialRecord trial;
+      trial.compared = stimuli[i], trial.response = second[i] ? 1 : 0, trial.instruction = condition[i];
+      trials.push_back(trial);
+    }
+    const auto by = model == "thurstone"     ? ScaleModel::thurstone
+                    : model == "differences" ? ScaleModel::differences
+                                             : ScaleModel::bradley_terry;
+    return released([&] { return scales(trials, order, by, sessions); });
+  });
+}
+
 }  // namespace
 
 }  // namespace turnpoint::python
@@ -426,4 +488,5 @@ PYBIND11_MODULE(_analysis, module) {
   turnpoint::python::add_speed_accuracy(module);
   turnpoint::python::add_detection(module);
   turnpoint::python::add_psychometric(module);
+  turnpoint::python::add_scale(module);
 }

@@ -87,6 +87,10 @@ CueGuard cue_guard(const Protocol& protocol, const rig::Rig& rig, const protocol
     guard.nothing_to_tell = "in an adjustment no setting is right or wrong";
     return guard;
   }
+  if (protocol.task.kind == TaskKind::comparison) {
+    guard.nothing_to_tell = "in a comparison no answer is right or wrong";
+    return guard;
+  }
   if (protocol::judges(protocol.task)) {
     guard.nothing_to_tell = "no rating and no number is right or wrong";
     return guard;

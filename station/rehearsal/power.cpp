@@ -15,6 +15,7 @@
 #include "station/rehearsal/power_session.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/report/study.hpp"
+#include "station/report/summary.hpp"
 #include "station/trial/question.hpp"
 
 namespace turnpoint::rehearsal {
@@ -71,6 +72,12 @@ class Truths {
         add(source_of("numbers", condition), "exponent", options.observer.slope);
     GeneratingValues generating;
     for (const auto& outcome : outcomes) generating.add(outcome.generating);
+    const auto& meaning = protocol.meanings.front();
+    if (const auto model = report::scale_model(meaning.design, meaning.function))
+      for (const auto& condition : with_none(protocol::analysed_conditions(protocol)))
+        for (const auto& [parameter, value] :
+             generating.scale(condition, *model, protocol::words_of(meaning.level).unit))
+          add(source_of("scale", condition), parameter, value);
     if (outcomes.front().design == report::Design::categories)
       for (const auto& condition : with_none(protocol::analysed_conditions(protocol)))
         add(source_of("answers", condition), analysis::kCorrect, generating.share_correct(condition));
@@ -328,6 +335,9 @@ Measures true_measures(const SessionOutcome& outcome, const simulation::Observer
     if (value) truths.push_back({"", condition, measure, "", *value});
   };
   for (const auto& condition : conditions) {
+    if (const auto model = report::scale_model(settings.design, settings.function))
+      for (const auto& [measure, value] : generating.scale(condition, *model, settings.level_unit))
+        add(condition, measure.c_str(), value);
     add(condition, analysis::kCorrect, generating.share_correct(condition));
     add(condition, analysis::kBoundary, generating.boundary(condition, observer));
     add(condition, analysis::kDrift, generating.drift(condition));
@@ -365,10 +375,13 @@ Power power_of(const protocol::Protocol& protocol, const PowerOptions& asked,
     scored += outcome.scored, right += outcome.right;
   }
   if (scored > 0) power.accuracy = static_cast<double>(right) / scored;
-  int checked = 0, misfits = 0;
-  for (const auto& outcome : outcomes)
+  int checked = 0, misfits = 0, compared = 0, separated = 0;
+  for (const auto& outcome : outcomes) {
     if (outcome.model_p) ++checked, misfits += *outcome.model_p < 0.05;
+    if (outcome.separated) ++compared, separated += *outcome.separated;
+  }
   if (checked > 0) power.misfits = proportion_of(misfits, checked);
+  if (compared > 0) power.separated = proportion_of(separated, compared);
   power.people = options.people;
   power.recoveries = options.people > 0 ? recover_studies(report::by_group(protocol), options, outcomes)
                                         : recover_sessions(protocol, options, outcomes);

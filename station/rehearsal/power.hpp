@@ -83,6 +83,9 @@ struct Power {
   /// proportion of the sessions with intervals in which the check of the diffusion model finds a misfit (p
   /// below 0.05): false alarms, if the observer is a diffusion without variability
   std::optional<analysis::Proportion> misfits;
+  /// for comparisons: proportion of the sessions with a scale of which the prior decides some places, because
+  /// the answers set them no limit (analysis::ScaleFit::separated)
+  std::optional<analysis::Proportion> separated;
   int people = 0;  ///< PowerOptions::people; Recovery::sessions are then studies
   std::vector<Recovery> recoveries;
 };

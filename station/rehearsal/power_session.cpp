@@ -79,7 +79,20 @@ void add_fits(const report::SessionData& data, const std::string& unit, SessionO
     if (judged.exponent)
       outcome.findings.push_back({source_of("numbers", judged.condition), "exponent", "",
                                   judged.exponent->value, judged.exponent->interval});
-  if (report::judges(data.design)) return;
+  for (const auto& scale : report::scales_of(data, 0)) {
+    outcome.separated = outcome.separated.value_or(false) || (scale.fit && scale.fit->separated);
+    if (!scale.fit) continue;
+    const auto add = [&](const std::string& parameter, const char* of, const analysis::Estimate& found) {
+      outcome.findings.push_back(
+          {source_of("scale", scale.condition), parameter, of, found.value, found.interval});
+    };
+    for (const auto& [stimulus, place] : report::places_of(scale))
+      add(report::place_name(stimulus, unit), report::scale_unit(scale.model), place);
+    if (const auto& noise = scale.fit->noise) add(report::kScaleNoise, "", *noise);
+    if (const auto& tendency = scale.fit->favours_second)
+      add(report::kFavoursSecond, report::tendency_unit(scale.model), *tendency);
+  }
+  if (report::judges(data.design) || report::scales(data.design)) return;
   if (data.design == report::Design::adjustment) {
     for (const auto& settings : analysis::settings(data.trials, data.conditions))
       if (settings.mean)
@@ -251,6 +264,10 @@ void add_person(const protocol::Protocol& protocol, const report::SessionData& d
                 SessionOutcome& outcome) {
   outcome.person = report::study_person(data, protocol.exclusion.value_or(protocol::Exclusion{}), false);
   for (const auto& named : outcome.person->fits) outcome.fits.emplace_back(named.name, named.fit.options);
+  if (report::scales(data.design))
+    outcome.separated = std::ranges::any_of(outcome.person->scale_remarks, [](const auto& remark) {
+      return remark.second.code == analysis::kSeparated;
+    });
   outcome.person->fits.clear();  // a fit of all people together would take longer than all the rest
 }
 

@@ -37,6 +37,8 @@ struct SessionOutcome {
   int presented = 0, scored = 0, right = 0;
   double duration_s = 0;
   std::optional<double> model_p;  ///< analysis::Trade::model_p
+  /// for comparisons: whether analysis::ScaleFit::separated is true of one of the scales
+  std::optional<bool> separated;
   /// the participant's part of a study; only with PowerOptions::people
   std::optional<report::StudyPerson> person;
   Measures truths;               ///< the true values of this person's measures

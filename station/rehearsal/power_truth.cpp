@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <set>
 
 #include "physics/root.hpp"
 #include "station/analysis/diffusion.hpp"
@@ -10,6 +11,7 @@
 #include "station/analysis/response_signal.hpp"
 #include "station/procedure/description.hpp"
 #include "station/protocol/conditions.hpp"
+#include "station/report/summary.hpp"
 #include "station/trial/question.hpp"
 
 namespace turnpoint::rehearsal {
@@ -183,6 +185,11 @@ void GeneratingValues::add(const protocol::Protocol& protocol, const trial::Tria
   auto& sum = made.sum;
   sum.one_bound = sum.one_bound && !question.signal_s && sum.deadline_s == question.deadline_s &&
                   sum.caution == question.caution;
+  if (!question.compared.empty())
+    if (const auto* spec = protocol::find_procedure(protocol, trial.procedure)) {
+      auto& [trials, second] = sum.comparisons[protocol::compared(*spec, trial.factors)];
+      ++trials, second += observer.share(question, 1);
+    }
   if (!trial.correct) return;
   ++sum.trials;
   sum.correct += observer.share(question, *trial.correct);
@@ -211,6 +218,8 @@ void GeneratingValues::add(const Sum& more, Sum& sum) {
                                [](const auto& a, const auto& b) { return a.first == b.first; });
   for (const auto& [difficulty, drift] : more.drifts)
     put_drift(difficulty, same ? drift : std::nan(""), sum.drifts);
+  for (const auto& [stimuli, answers] : more.comparisons)
+    for (std::size_t i = 0; i < 2; ++i) sum.comparisons[stimuli][i] += answers[i];
   for (const auto& [lag_s, lag] : more.lags) {
     auto& all = sum.lags[lag_s];
     all.time_s += lag.time_s;
@@ -299,6 +308,33 @@ std::optional<std::array<double, 3>> GeneratingValues::curve(const std::string& 
     lags.push_back({lag.time_s / (n[0] + n[1]), n[1], lag.yes[1] / n[1], n[0], lag.yes[0] / n[0]});
   }
   return analysis::limiting_curve(lags, made->detecting);
+}
+
+std::map<std::string, double> GeneratingValues::scale(const std::string& condition,
+                                                      analysis::ScaleModel model,
+                                                      const std::string& level_unit) const {
+  const auto* made = find(condition);
+  if (!made) return {};
+  std::set<double> all;
+  for (const auto& [compared, answers] : made->sum.comparisons) all.insert(compared.begin(), compared.end());
+  const std::vector<double> stimuli(all.begin(), all.end());
+  std::vector<analysis::ExpectedComparisons> expected;
+  for (const auto& [compared, answers] : made->sum.comparisons) {
+    auto& one = expected.emplace_back();
+    for (const double stimulus : compared)
+      one.stimuli.push_back(static_cast<int>(std::ranges::lower_bound(stimuli, stimulus) - stimuli.begin()));
+    one.trials = answers[0], one.second = answers[1];
+  }
+  const std::size_t ends = model == analysis::ScaleModel::differences ? 1 : 0;
+  if (stimuli.size() < 2 + ends) return {};
+  const auto scale = analysis::limiting_scale(expected, static_cast<int>(stimuli.size()), model);
+  if (!scale) return {};
+  std::map<std::string, double> truths;
+  for (auto i = ends; i + ends < stimuli.size(); ++i)
+    truths[report::place_name(stimuli[i], level_unit)] = scale->values[i];
+  if (scale->noise) truths[report::kScaleNoise] = *scale->noise;
+  if (scale->favours_second) truths[report::kFavoursSecond] = *scale->favours_second;
+  return truths;
 }
 
 FitTruth GeneratingValues::fit(const std::string& condition, const analysis::FitOptions& options,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "station/analysis/psychometric_fit.hpp"
+#include "station/analysis/scaling.hpp"
 #include "station/analysis/signal_detection.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/simulation/observer.hpp"
@@ -60,6 +61,9 @@ class GeneratingValues {
     /// by difficulty: the drift towards the right answer (s = 0.1); NaN if it is not the same in all trials
     std::map<double, double> drifts;
     std::map<double, Lag> lags;  ///< by the time of the response signal
+    /// by the stimuli that were compared, in order of presentation: number of trials, and sum of the
+    /// probabilities of the answer "second"
+    std::map<std::vector<double>, std::array<double, 2>> comparisons;
   };
   std::map<std::string, Sum> sums() const;
   static GeneratingValues of_sums(const std::map<std::string, Sum>& sums);
@@ -86,6 +90,10 @@ class GeneratingValues {
   /// Asymptote, rate per s and intercept in s of the curve at a response signal (analysis::limiting_curve()).
   /// The observer's own curve has another shape than the fitted one, so this is the one that fits best.
   std::optional<std::array<double, 3>> curve(const std::string& condition) const;
+  /// The true values of a scale, by the names that a study gives them: those that unlimited trials would give
+  /// (analysis::limiting_scale()). They contain lapses, and what a deadline does.
+  std::map<std::string, double> scale(const std::string& condition, analysis::ScaleModel model,
+                                      const std::string& level_unit) const;
 
  private:
   struct Condition {

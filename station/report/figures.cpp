@@ -308,6 +308,40 @@ std::optional<Figure> judgement_figure(const Summary& summary) {
   return figure;
 }
 
+std::optional<Figure> scale_figure(const Summary& summary) {
+  const Words words(summary.data.language);
+  Chart chart;
+  std::vector<double> stimuli, values;
+  std::size_t count = 0;
+  for (const auto& scale : summary.scales) {
+    if (!scale.fit) continue;
+    count += static_cast<std::size_t>(scale.trials);
+    Points points;
+    Line line;
+    points.series = line.series = static_cast<int>(chart.layers.size()) / 2;
+    if (!scale.condition.empty()) points.name = scale.condition;
+    for (std::size_t i = 0; i < scale.stimuli.size(); ++i) {
+      const auto& at = scale.fit->values[i];
+      points.add(scale.stimuli[i], at.value, at.interval.low, at.interval.high);
+    }
+    line.x = points.x, line.y = points.y;
+    stimuli.insert(stimuli.end(), points.x.begin(), points.x.end());
+    for (const auto* ends : {&points.low, &points.high})
+      values.insert(values.end(), ends->begin(), ends->end());
+    chart.layers.insert(chart.layers.end(), {line, points});
+  }
+  if (stimuli.empty()) return std::nullopt;
+  chart.x = report::fitted(words(summary.data.level_label), stimuli, 0.06);
+  chart.y = report::fitted(words("figure.scale_value"), values, 0.08);
+  Figure figure;
+  figure.title = "Scale of the stimuli";
+  figure.chart_width_px = 620;
+  figure.chart_height_px = 320;
+  figure.caption = of_trials(summary, count) + " " + words("figure.caption_scale");
+  figure.charts.push_back(std::move(chart));
+  return figure;
+}
+
 std::optional<Figure> confusion_figure(const Summary& summary) {
   const auto edges = [](std::size_t count) {
     std::vector<double> all;

@@ -160,6 +160,42 @@ void add_counts(const analysis::YesNoCounts& counts, Json& json) {
   json["false_alarms"] = counts.false_alarms, json["correct_rejections"] = counts.correct_rejections;
 }
 
+Json scale_json(const analysis::StimulusScale& scale) {
+  Json stimuli = Json::array();
+  for (std::size_t i = 0; i < scale.stimuli.size(); ++i) {
+    const bool pairs = !scale.chosen.empty();
+    stimuli.push_back({{"stimulus", value(scale.stimuli[i])},
+                       {"value", scale.fit ? value(scale.fit->values[i]) : Json(nullptr)},
+                       {"chosen", pairs ? Json(scale.chosen[i]) : Json(nullptr)},
+                       {"presented", pairs ? Json(scale.presented[i]) : Json(nullptr)}});
+  }
+  const auto& fit = scale.fit;
+  const auto& check = scale.check;
+  const auto& triples = scale.transitivity;
+  constexpr const char* names[] = {"bradley-terry", "thurstone", "differences"};
+  return {{"condition", scale.condition},
+          {"model", names[static_cast<int>(scale.model)]},
+          {"trials", scale.trials},
+          {"stimuli", stimuli},
+          {"noise", fit ? value(fit->noise) : Json(nullptr)},
+          {"favours_second", fit ? value(fit->favours_second) : Json(nullptr)},
+          {"favours_second_unit", tendency_unit(scale.model)},
+          {"log_likelihood", fit ? value(fit->log_likelihood) : Json(nullptr)},
+          {"deviance", fit ? value(fit->deviance) : Json(nullptr)},
+          {"degrees_of_freedom", fit ? Json(fit->degrees) : Json(nullptr)},
+          {"deviance_p", check ? value(check->deviance_p) : Json(nullptr)},
+          {"runs", check ? Json(check->runs) : Json(nullptr)},
+          {"runs_p", check ? value(check->runs_p) : Json(nullptr)},
+          {"six_points", check && check->six_points > 0 ? Json(check->six_points) : Json(nullptr)},
+          {"six_points_p", check ? value(check->six_points_p) : Json(nullptr)},
+          {"triples", triples ? Json(triples->triples) : Json(nullptr)},
+          {"circular", triples ? Json(triples->circular) : Json(nullptr)},
+          {"moderate_violations", triples ? Json(triples->moderate) : Json(nullptr)},
+          {"strong_violations", triples ? Json(triples->strong) : Json(nullptr)},
+          {"consistence", triples ? value(triples->consistence) : Json(nullptr)},
+          {"statements", value(scale.statements)}};
+}
+
 Json confusion_json(const analysis::Confusion& confusion, const SessionData& data) {
   const auto rows = list_of(confusion.rows, [&](const auto& row) -> Json {
     return {{"stimulus",
@@ -323,6 +359,7 @@ std::string to_json(const Summary& summary) {
   json["fits"] = list_of(summary.fits, [&](const auto& named) { return fit_json(named, data); });
   if (!summary.settings.empty()) json["settings"] = list_of(summary.settings, settings_json);
   if (!summary.judgements.empty()) json["judgements"] = list_of(summary.judgements, judgements_json);
+  if (!summary.scales.empty()) json["scales"] = list_of(summary.scales, scale_json);
   json["confusion"] =
       list_of(summary.confusions, [&](const auto& confusion) { return confusion_json(confusion, data); });
   json["instructions"] = list_of(summary.trade.instructions, instruction_json);

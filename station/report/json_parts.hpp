@@ -55,10 +55,12 @@ inline Json value(const EarlyEnd& end) {
   return {{"block", end.block}, {"procedure", end.procedure}, {"reason", core::say(end.why, "en")}};
 }
 
+inline Json value(const analysis::Statement& statement) {
+  return {{"code", statement.code}, {"text", core::say(statement.text, "en")}};
+}
+
 inline Json value(const std::vector<analysis::Statement>& statements) {
-  return list_of(statements, [](const auto& one) -> Json {
-    return {{"code", one.code}, {"text", core::say(one.text, "en")}};
-  });
+  return list_of(statements, [](const auto& one) { return value(one); });
 }
 
 /// What each analysis measures, as the protocol decides it.

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,6 +25,9 @@ using protocol::has_noise;
 
 /// True if the answers are ratings or numbers.
 inline bool judges(Design design) { return design == Design::ratings || design == Design::numbers; }
+
+/// True if stimuli are compared with each other, and the answers give a scale.
+inline bool scales(Design design) { return design == Design::pairs || design == Design::differences; }
 
 /// A procedure's own estimate from one block, as `turnpoint run` prints it at the end of a session.
 struct ProcedureEstimate {
@@ -89,6 +93,8 @@ struct LevelAnalysis {
   /// for two sides in 2ifc: the two scenes, of which a trial's interval with one of them is chosen
   std::vector<std::string> scenes;
   double cut = 0;  ///< for two sides: the level at which the right answer changes
+  /// for comparisons: the stimuli of each procedure
+  std::map<std::string, std::vector<double>> stimuli;
   /// True if the threshold differs between the trials of one condition, because a procedure has a second
   /// dimension. No psychometric function is fitted then.
   bool thresholds_differ = false;

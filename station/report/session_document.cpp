@@ -170,6 +170,67 @@ void add_judgements(const Summary& summary, Document& document) {
                            : "95 % intervals: Student's t.");
 }
 
+Text share_of(double p, int sessions) {
+  return Text("p = ") + Text(Number{p}) + " (" + std::to_string(sessions) + " simulated sessions)";
+}
+
+void add_scales(const Summary& summary, Document& document) {
+  const auto& data = summary.data;
+  const bool pairs = data.design == Design::pairs;
+  document.heading(phrase("report.scale"));
+  document.figure("scale", scale_figure(summary));
+  for (const auto& scale : summary.scales) {
+    if (!scale.condition.empty()) document.heading(scale.condition, 3);
+    Table table{{data.level_label, phrase("report.scale_value")}, {}};
+    if (pairs) table.columns.emplace_back("Chosen");
+    for (std::size_t i = 0; scale.fit && i < scale.stimuli.size(); ++i) {
+      table.rows.push_back({amount(scale.stimuli[i], 4), brief(estimated(scale.fit->values[i]))});
+      if (pairs)
+        table.rows.back().push_back(
+            count(std::to_string(scale.chosen[i]) + " / " + std::to_string(scale.presented[i])));
+    }
+    if (!table.rows.empty()) document.table(std::move(table));
+    Table facts;
+    const auto& fit = scale.fit;
+    if (fit && fit->noise)
+      facts.rows.push_back({"Noise of a comparison (1: the whole scale)", estimated(fit->noise)});
+    if (fit && fit->favours_second)
+      facts.rows.push_back(
+          {std::string("Tendency to answer \u201csecond\u201d (") + tendency_unit(scale.model) + ")",
+           estimated(fit->favours_second)});
+    if (fit && scale.check) {
+      facts.rows.push_back({"Deviance (degrees of freedom)",
+                            Text(Number{fit->deviance}) + " (" + std::to_string(fit->degrees) + "), " +
+                                share_of(scale.check->deviance_p, scale.check->sessions)});
+      if (!pairs)
+        facts.rows.push_back({"Runs of answers", Text(std::to_string(scale.check->runs)) + ", " +
+                                                     share_of(scale.check->runs_p, scale.check->sessions)});
+      if (const auto& p = scale.check->six_points_p)
+        facts.rows.push_back({"Answers that the six-point property restricts",
+                              Text(std::to_string(scale.check->six_points) + " sets, ") +
+                                  share_of(*p, scale.check->sessions)});
+    }
+    if (const auto& triples = scale.transitivity; triples && triples->triples > 0) {
+      facts.rows.push_back({"Circular triples", count(std::to_string(triples->circular) + " / " +
+                                                      std::to_string(triples->triples))});
+      facts.rows.push_back(
+          {"Triples without moderate, without strong transitivity",
+           count(std::to_string(triples->moderate) + ", " + std::to_string(triples->strong))});
+      if (triples->consistence)
+        facts.rows.push_back({"Consistence (Kendall)", amount(*triples->consistence)});
+    }
+    if (!facts.rows.empty()) document.table(std::move(facts));
+    document.remark(scale.statements);
+  }
+  document.explain(
+      pairs ? "The mean of all values is 0. Bradley and Terry: a difference is the logarithm of the odds of "
+              "a choice; Thurstone: it is a d\u2032. 95 % intervals: profile likelihood with Jeffreys\u2019 "
+              "prior."
+            : "The scale runs from 0 at the first stimulus to 1 at the last. 95 % intervals: profile "
+              "likelihood with Jeffreys\u2019 prior. Few runs mean that the scale has the wrong shape, or "
+              "that some answers were given without attention.");
+}
+
 // --- answers by stimulus, and sensitivity
 
 void add_confusions(const Summary& summary, Document& document) {
@@ -793,6 +854,9 @@ Document document(const Summary& summary) {
   if (judges(data.design)) {
     add_judgements(summary, document);
     add_rocs(summary, document);
+  } else if (scales(data.design)) {
+    add_scales(summary, document);
+    add_trade(summary, document);
   } else if (data.design == Design::adjustment) {
     add_settings(summary, document);
   } else {

@@ -81,6 +81,9 @@ analysis::TrialRecord record_of(const core::TrialRow& row, const core::BlockStar
       for (const auto& [name, comparison] : protocol.task.correct_answer)
         if (name == protocol::scene_of(protocol.task, scene) && protocol::holds(comparison, factors))
           record.right_scene = scene, record.chosen_scene = *row.given.correct ? scene : 1 - scene;
+  if (const auto* spec = protocol::find_procedure(protocol, row.procedure);
+      spec && protocol.task.kind == protocol::TaskKind::comparison)
+    record.compared = protocol::compared(*spec, factors);
   if (protocol.timing.signal) record.signal_s = protocol::evaluate(protocol.timing.signal->after_s, factors);
   record.instruction = protocol::condition_of(protocol, factors, block.instruction);
   if (protocol.analysis.difficulty)
@@ -198,7 +201,14 @@ LevelAnalysis analysis_of(const protocol::Protocol& protocol, const protocol::Me
   auto name = meaning.level.empty() ? std::string("level") : words.name;
   if (meaning.size) name = "size of " + name;
   part.level_unit = words.unit;
-  part.level_label = axis_label(name, words.unit);
+  // in a comparison there is one in each interval, each with a factor of its own
+  part.level_label = scales(meaning.design)
+                         ? in_unit(core::phrase("figure.stimulus"), core::plain(words.unit))
+                         : axis_label(name, words.unit);
+  if (scales(meaning.design))
+    for (const auto& procedure : meaning.procedures)
+      if (const auto* spec = protocol::find_procedure(protocol, procedure))
+        part.stimuli[procedure] = spec->values;
   part.prior = prior_of(protocol, meaning);
   part.conditions = protocol::conditions(protocol);
   for (auto& condition : part.conditions) condition = protocol::condition_in(meaning, condition);
@@ -215,6 +225,7 @@ void set_analyses(const protocol::Protocol& protocol, SessionData& data) {
   data.name.clear(), data.meaning.clear(), data.conditions.clear();
   for (const auto& part : parts) {
     data.conditions.insert(data.conditions.end(), part.conditions.begin(), part.conditions.end());
+    data.stimuli.insert(part.stimuli.begin(), part.stimuli.end());
     if (part.level_label != data.level_label) data.level_label = in_unit(core::phrase("figure.level"), {});
     if (part.level_unit != parts.front().level_unit) data.level_unit.clear();
   }

@@ -183,6 +183,15 @@ void add_measures(const Summary& summary, StudyPerson& person) {
     measures.add(condition, "settings from below minus from above", data.level_unit,
                  settings.side_difference);
   }
+  for (const auto& scale : summary.scales) {
+    for (const auto& remark : scale.statements) person.scale_remarks.emplace_back(scale.condition, remark);
+    const auto unit = scale_unit(scale.model);
+    for (const auto& [stimulus, place] : places_of(scale))
+      measures.add(scale.condition, place_name(stimulus, data.level_unit), unit, std::optional(place));
+    if (scale.fit) measures.add(scale.condition, kScaleNoise, "", scale.fit->noise);
+    if (scale.fit)
+      measures.add(scale.condition, kFavoursSecond, tendency_unit(scale.model), scale.fit->favours_second);
+  }
   for (const auto& judged : summary.judgements) {
     measures.add(judged.condition, "exponent of Stevens' law", "", judged.exponent);
     const std::string what = data.design == Design::ratings ? "mean rating" : "geometric mean";
@@ -242,7 +251,7 @@ StudyPerson study_person(const SessionData& data, const protocol::Exclusion& rul
   person.person = data.participant;
   person.incomplete = incomplete;
   count_trials(data, person);
-  auto summary = summarise(data);
+  auto summary = summarise(data, 0);
   add_measures(summary, person);
   for (auto& named : summary.fits) {
     named.intervals.band_level.clear(), named.intervals.band_low.clear(), named.intervals.band_high.clear();
@@ -322,6 +331,30 @@ void add_balanced(Study& study) {
 
 }  // namespace
 
+/// Says of how many participants their scales of a condition have each remark.
+void add_scale_remarks(const std::vector<std::string>& conditions, Study& study) {
+  const auto counting =
+      std::ranges::count_if(study.persons, [](const auto& p) { return p.excluded.empty(); });
+  std::vector<std::pair<std::string, analysis::Statement>> remarks;
+  std::map<std::pair<std::string, std::string>, int> people;  // by condition and code
+  for (const auto& person : study.persons) {
+    if (!person.excluded.empty()) continue;
+    for (const auto& remark : person.scale_remarks)
+      if (people[{remark.first, remark.second.code}]++ == 0) remarks.push_back(remark);
+  }
+  std::ranges::stable_sort(remarks, {}, [&](const auto& remark) {
+    return std::ranges::find(conditions, remark.first) - conditions.begin();
+  });
+  for (const auto& [condition, remark] : remarks) {
+    const auto count = core::plain(people.at({condition, remark.code}));
+    study.statements.push_back(
+        {remark.code, condition.empty()
+                          ? core::phrase("statement.of_people", {count, core::plain(counting), remark.text})
+                          : core::phrase("statement.of_people_in", {count, core::plain(counting),
+                                                                    core::plain(condition), remark.text})});
+  }
+}
+
 void finish_study(Study& study) {
   add_balanced(study);
   std::vector<PersonMeasure> measures;
@@ -340,6 +373,7 @@ void finish_study(Study& study) {
   };
   std::stable_sort(measures.begin(), measures.end(),
                    [&place](const PersonMeasure& a, const PersonMeasure& b) { return place(a) < place(b); });
+  add_scale_remarks(conditions, study);
   study.means = analysis::group_means(measures);
   if (study.means.empty()) study.statements.push_back({"no-measures", core::phrase("statement.no_measures")});
   const auto& groups = study.groups_of_conditions;

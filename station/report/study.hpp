@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "station/analysis/group.hpp"
@@ -39,6 +40,8 @@ struct StudyPerson {
   std::vector<std::string> excluded;
   std::vector<NamedFit> fits;  ///< one fit for each condition, without confidence bands
   std::vector<analysis::PersonMeasure> measures;
+  /// for comparisons: the condition of a scale, and a remark about it, such as why there is none
+  std::vector<std::pair<std::string, analysis::Statement>> scale_remarks;
   std::vector<SessionEstimate> estimates;  ///< the procedures' own estimates, in the order of the sessions
   std::vector<SessionEarlyEnd> early_ends;
 };

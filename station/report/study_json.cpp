@@ -37,6 +37,11 @@ Json person_json(const StudyPerson& person) {
     own.update(value(said));
     return own;
   };
+  json["scale_remarks"] = list_of(person.scale_remarks, [](const auto& remark) {
+    Json of_scale{{"condition", remark.first}};
+    of_scale.update(value(remark.second));
+    return of_scale;
+  });
   json["estimates"] = list_of(person.estimates, of_session);
   json["early_ends"] = list_of(person.early_ends, of_session);
   json["measures"] = list_of(person.measures, [](const auto& measure) -> Json {

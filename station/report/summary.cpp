@@ -255,6 +255,47 @@ std::vector<analysis::Judgements> judgements_of(const SessionData& data) {
                                                              : Judged::magnitudes);
 }
 
+std::optional<analysis::ScaleModel> scale_model(Design design, core::Function function) {
+  if (design == Design::differences) return analysis::ScaleModel::differences;
+  if (design != Design::pairs) return std::nullopt;
+  return function == core::Function::logistic ? analysis::ScaleModel::bradley_terry
+                                              : analysis::ScaleModel::thurstone;
+}
+
+std::vector<analysis::StimulusScale> scales_of(const SessionData& data, int sessions) {
+  const auto model = scale_model(data.design, data.function);
+  if (!model) return {};
+  return analysis::scales(data.trials, data.conditions, *model, sessions, data.stimuli);
+}
+
+std::vector<std::pair<double, analysis::Estimate>> places_of(const analysis::StimulusScale& scale) {
+  std::vector<std::pair<double, analysis::Estimate>> places;
+  const std::size_t ends = scale.model == analysis::ScaleModel::differences ? 1 : 0;
+  for (std::size_t i = ends; scale.fit && i + ends < scale.stimuli.size(); ++i)
+    places.emplace_back(scale.stimuli[i], scale.fit->values[i]);
+  return places;
+}
+
+std::string place_name(double stimulus, const std::string& level_unit) {
+  return kPlaceOf + core::number(stimulus, 6) + (level_unit.empty() ? "" : " ") + level_unit;
+}
+
+const char* scale_unit(analysis::ScaleModel model) {
+  switch (model) {
+    case analysis::ScaleModel::bradley_terry:
+      return "log odds";
+    case analysis::ScaleModel::thurstone:
+      return "SD";
+    case analysis::ScaleModel::differences:
+      break;
+  }
+  return "";
+}
+
+const char* tendency_unit(analysis::ScaleModel model) {
+  return model == analysis::ScaleModel::differences ? kNoiseUnit : scale_unit(model);
+}
+
 bool has_confusions(const SessionData& data) {
   return !judges(data.design) && (data.choices.size() > 2 || data.design == Design::categories);
 }
@@ -341,6 +382,8 @@ std::optional<analysis::DependenceOptions> dependence_options(const SessionData&
       options.answers = Answers::settings;
       return options;
     case Design::categories:
+    case Design::pairs:
+    case Design::differences:
       return std::nullopt;
     case Design::forced_choice:
       options.answers = Answers::sides;
@@ -377,7 +420,7 @@ std::vector<analysis::Dependence> dependences_of(const SessionData& data) {
 }
 
 /// Adds what the answers at the levels of one analysis say, except for the psychometric functions.
-void add_levels(const SessionData& data, Summary& summary) {
+void add_levels(const SessionData& data, int scale_sessions, Summary& summary) {
   append(dependences_of(data), summary.dependences);
   if (data.design == Design::adjustment) {
     append(analysis::settings(data.trials, data.conditions), summary.settings);
@@ -388,6 +431,10 @@ void add_levels(const SessionData& data, Summary& summary) {
     if (data.design == Design::ratings && shows(data, "dprime"))
       append(analysis::rating_rocs(data.trials, data.conditions, static_cast<int>(data.choices.size())),
              summary.rocs);
+    return;
+  }
+  if (scales(data.design)) {
+    append(scales_of(data, scale_sessions), summary.scales);
     return;
   }
   if (has_confusions(data))
@@ -406,7 +453,7 @@ void add_levels(const SessionData& data, Summary& summary) {
 
 }  // namespace
 
-Summary summarise(const SessionData& data) {
+Summary summarise(const SessionData& data, int scale_sessions) {
   Summary summary;
   summary.data = data;
   summary.outcomes = analysis::count_outcomes(data.trials);
@@ -416,7 +463,7 @@ Summary summarise(const SessionData& data) {
   summary.fatigue = analysis::fatigue(data.trials);
   summary.finger = analysis::finger(data.finger, data.conditions);
   const auto count = std::max<std::size_t>(1, data.parts.size());
-  for (std::size_t part = 0; part < count; ++part) add_levels(part_of(data, part), summary);
+  for (std::size_t part = 0; part < count; ++part) add_levels(part_of(data, part), scale_sessions, summary);
   if (data.design == Design::adjustment || judges(data.design)) return summary;
   if (data.choices.size() <= 2) summary.bias = analysis::choice_bias(data.trials);
   auto how = trade_options(data);

@@ -9,6 +9,7 @@
 #include "station/analysis/dependence.hpp"
 #include "station/analysis/judgements.hpp"
 #include "station/analysis/response_signal.hpp"
+#include "station/analysis/scaling.hpp"
 #include "station/analysis/settings.hpp"
 #include "station/analysis/signal_detection.hpp"
 #include "station/analysis/trade.hpp"
@@ -49,6 +50,8 @@ struct Summary {
   std::vector<analysis::Settings> settings;
   /// for ratings and numbers: one entry for each condition
   std::vector<analysis::Judgements> judgements;
+  /// for comparisons: one entry for each condition
+  std::vector<analysis::StimulusScale> scales;
   /// effects of the trial before, one entry for each condition; empty for three or more answers
   std::vector<analysis::Dependence> dependences;
   /// force and friction of the finger; empty if no force cells recorded data
@@ -67,6 +70,25 @@ bool has_confusions(const SessionData& data);
 
 /// Returns only the analysis of ratings or numbers; empty for other designs.
 std::vector<analysis::Judgements> judgements_of(const SessionData& data);
+
+/// Number of simulated sessions with which a report checks a scale. A study does not check scales.
+inline constexpr int kScaleSessions = 499;
+
+/// Returns only the scales from comparisons, checked by so many simulated sessions; empty for other designs.
+std::vector<analysis::StimulusScale> scales_of(const SessionData& data, int sessions);
+
+/// How a comparison is scaled; empty for other designs.
+std::optional<analysis::ScaleModel> scale_model(Design design, core::Function function);
+
+/// The places of a scale that were estimated, with their stimuli: of differences those between the ends.
+std::vector<std::pair<double, analysis::Estimate>> places_of(const analysis::StimulusScale& scale);
+
+// How a study and a power study call the numbers of a scale.
+std::string place_name(double stimulus, const std::string& level_unit);
+const char* scale_unit(analysis::ScaleModel model);
+const char* tendency_unit(analysis::ScaleModel model);
+inline constexpr const char *kPlaceOf = "place of ", *kScaleNoise = "noise of a comparison",
+                            *kFavoursSecond = "tendency to answer second", *kNoiseUnit = "SD of the noise";
 
 /// False if the data give only a limit for the slope. The slope then lies on a bound of the
 /// maximum-likelihood fit, or the posterior does not determine it.
@@ -90,7 +112,7 @@ std::vector<analysis::CurveDifference> curve_differences_of(
 
 /// Analyses one session and computes the parts that the protocol chooses. The result depends only on `data`,
 /// seed included. Takes about 0.3 s with 1000 replicates.
-Summary summarise(const SessionData& data);
+Summary summarise(const SessionData& data, int scale_sessions = kScaleSessions);
 
 /// Returns the content of the report as one JSON document. Missing values are null.
 std::string to_json(const Summary& summary);

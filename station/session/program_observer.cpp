@@ -72,6 +72,8 @@ Json message_of(const simulation::Question& question) {
                {"correct", or_null(question.correct)},
                {"finding", name(question.finding)},
                {"categories", question.categories},
+               {"compared", question.compared},
+               {"range", question.range},
                {"answers", question.answers},
                {"unsure", question.unsure},
                {"rating", question.rating},

@@ -153,13 +153,27 @@ double Observer::bias(const Question& q) const {
   return parameters_.floor ? std::max(at, *parameters_.floor) : at;
 }
 
+/// The level as the observer feels it: that of the question or, of stimuli that are compared, their
+/// difference on the observer's scale.
+double Observer::level(const Question& q) const {
+  if (q.compared.empty()) return q.level;
+  std::vector<double> at;
+  for (const double place : q.compared)
+    at.push_back(parameters_.slope == 1 || place <= 0 ? place
+                                                      : core::exp(parameters_.slope * core::log(place)));
+  const auto last = at.size() - 1;
+  if (at.size() == 2) return q.range * (at[1] - at[0]);
+  return q.range * (std::fabs(at[last] - at[last - 1]) - std::fabs(at[1] - at[0]));
+}
+
 double Observer::strength(const Question& q, double from) const {
   const double threshold = this->threshold(q);
   const auto capped = [](double exponent) { return core::exp(std::min(exponent, kLogStrongest)); };
   if (q.decibel && q.decides != Decides::side)
     return capped((q.level - threshold) * 0.11512925464970228 * parameters_.slope);
-  const double ratio = std::fabs(q.level - from) / std::fabs(threshold);
-  return ratio > 0 ? capped(parameters_.slope * core::log(ratio)) : 0;
+  const double ratio = std::fabs(level(q) - from) / std::fabs(threshold);
+  const double exponent = q.compared.empty() ? parameters_.slope : 1;  // the scale has the slope already
+  return ratio > 0 ? capped(exponent * core::log(ratio)) : 0;
 }
 
 double Observer::sensitivity(const Question& q) const {
@@ -219,7 +233,7 @@ double Observer::drift(const Question& q) const {
       break;
     case Decides::side:
       half_logit = half_logit_of_normal(kZ75 * strength(q, bias(q)));
-      if (q.level < bias(q)) half_logit = -half_logit;
+      if (level(q) < bias(q)) half_logit = -half_logit;
       break;
     case Decides::presence:
       half_logit = half_logit_of_normal(sensitivity(q) - parameters_.criterion);

@@ -21,6 +21,8 @@ namespace turnpoint::simulation {
 /// - If the sign of the level decides, a normal distribution function of |level - bias|^slope, with the sign
 ///   of level - bias.
 /// - For yes/no and ratings, d' grows as level^slope, and the criterion lies at `criterion`.
+/// - In comparisons of stimuli (Question::compared), a normal distribution function of the difference on the
+///   observer's own scale, which is a power function with the exponent `slope` over their range.
 /// - For categories, the level that is felt has a normal distribution around the level presented. The answer
 ///   is the category whose level is nearest; of two categories one threshold apart, 75 % are told apart.
 /// The threshold is in the unit of the level. In a lapse the observer gives a random answer.
@@ -123,6 +125,11 @@ struct Question {
   std::optional<int> correct;  ///< for `right_answer`: the right answer; empty if no answer is right
   Finding finding = Finding::weibull;   ///< for `right_answer`: how the observer finds the right answer
   std::vector<double> categories = {};  ///< for `category`: the level for which each answer stands
+  /// for `side`, if stimuli are compared with each other: two, or the three or four whose differences are
+  /// compared, in order of presentation, as places between the lowest (0) and the highest (1) of the range.
+  /// `level` is then the difference on a straight scale
+  std::vector<double> compared = {};
+  double range = 0;  ///< of these stimuli, in the unit of the level
   int answers = 2;
   /// for `right_answer`: true if the observer may say that it would guess; `choice` is then `answers`
   bool unsure = false;
@@ -212,6 +219,7 @@ class Observer {
   /// Returns the probability that the evidence decides for the upper boundary.
   double upper(const Question& question, double drift) const;
   double threshold(const Question& question) const;
+  double level(const Question& question) const;
   double bias(const Question& question) const;
   double strength(const Question& question, double from) const;
   double sensitivity(const Question& question) const;

@@ -130,7 +130,8 @@ bool Director::State::draws_factors(const TrialSpec& spec) const {
   const bool decides = runs.count(procedure::kRightAnswer) && !orders_of(protocol.task).front().correct;
   const auto& from = *specs[static_cast<std::size_t>(current_procedure)];
   const auto sets = [&](const std::string& name) {
-    return name == from.level || (from.second && name == from.second->level) || from.with.count(name) ||
+    return name == from.level || (from.second && name == from.second->level) ||
+           std::ranges::find(from.against, name) != from.against.end() || from.with.count(name) ||
            now()->fixed.count(name) || std::ranges::find(from.balance, name) != from.balance.end();
   };
   return std::ranges::any_of(protocol.factors, [&](const auto& factor) {

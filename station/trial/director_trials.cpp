@@ -174,6 +174,9 @@ TrialSpec Director::State::warmup_trial() const {
   if (!specs.empty()) {
     factor = specs.front()->level;
     for (const auto& [name, value] : specs.front()->with) spec.factors[name] = value;
+    // any stimuli will do, also equal ones
+    for (std::size_t i = 0; i < specs.front()->against.size(); ++i)
+      spec.factors[specs.front()->against[i]] = specs.front()->values[i];
     if (const auto& second = specs.front()->second)
       spec.factors[second->level] = second->stimuli.values[second->stimuli.values.size() / 2];
     levels = specs.front()->values.empty() ? specs.front()->stimuli.values : specs.front()->values;
@@ -234,6 +237,7 @@ void Director::State::set_proposal(const procedure::Proposal& proposal, const pr
                                    protocol::Factors& factors) const {
   factors[from.level] = proposal.level;
   if (proposal.second) factors[from.second->level] = *proposal.second;
+  for (std::size_t i = 0; i < proposal.against.size(); ++i) factors[from.against[i]] = proposal.against[i];
   for (const auto& [name, value] : from.with) factors[name] = value;
   for (const auto& [name, level] : proposal.balanced)
     for (const auto& factor : protocol.factors)

@@ -96,6 +96,7 @@ std::vector<IntervalOrder> orders_of(const protocol::Task& task) {
     case TaskKind::single_interval:
       if (!task.standard.empty()) return {{{{task.standard}, task.intervals.front()}, {}}};
       break;
+    case TaskKind::comparison:
     case TaskKind::adjustment:
       break;
   }

@@ -7,6 +7,7 @@
 
 #include "station/core/number.hpp"
 #include "station/protocol/answers.hpp"
+#include "station/protocol/conditions.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/resolve.hpp"
 #include "station/protocol/sources.hpp"
@@ -64,6 +65,40 @@ double median_step(std::vector<double> categories) {
   return categories[categories.size() / 2];
 }
 
+/// The stimuli of the intervals of a comparison: the values of the factors on which their scenes depend.
+std::vector<double> stimuli_of(const TrialSpec& spec, const protocol::Protocol& protocol,
+                               const procedure::Spec& procedure) {
+  std::vector<double> stimuli;
+  for (const auto& scenes : spec.intervals) {
+    const auto found = spec.factors.find(protocol::presented(protocol, procedure, scenes));
+    const auto* value = found == spec.factors.end() ? nullptr : std::get_if<double>(&found->second);
+    if (!value) return {};
+    stimuli.push_back(*value);
+  }
+  return stimuli;
+}
+
+/// Turns a comparison into the question on which side of 0 a difference lies: that of the two stimuli, or of
+/// the sizes of two differences.
+simulation::Question compared(const TrialSpec& spec, const protocol::Protocol& protocol,
+                              simulation::Question question) {
+  const auto* procedure = protocol::find_procedure(protocol, spec.procedure);
+  if (!procedure && !protocol.procedures.empty()) procedure = &protocol.procedures.front();
+  std::vector<double> at;
+  if (procedure) at = stimuli_of(spec, protocol, *procedure);
+  question.decides = simulation::Decides::side, question.decibel = false, question.positive = 1;
+  if (at.size() == 2) question.level = at[1] - at[0];
+  if (at.size() == 3) question.level = std::fabs(at[2] - at[1]) - std::fabs(at[1] - at[0]);
+  if (at.size() == 4) question.level = std::fabs(at[3] - at[2]) - std::fabs(at[1] - at[0]);
+  if (!procedure || procedure->values.size() < 2) return question;
+  const auto& values = procedure->values;
+  question.default_threshold = median_step(values);
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  question.range = *high - *low;
+  for (const double stimulus : at) question.compared.push_back((stimulus - *low) / question.range);
+  return question;
+}
+
 }  // namespace
 
 simulation::Question question_of(const TrialSpec& spec, const protocol::Protocol& protocol,
@@ -97,6 +132,7 @@ simulation::Question question_of(const TrialSpec& spec, const protocol::Protocol
                         task.modulus.value_or(std::sqrt(std::max(value->low, 1e-3) * value->high))};
     return question;
   }
+  if (task.kind == protocol::TaskKind::comparison) return compared(spec, protocol, question);
   const auto rule = protocol::answer_rule_of(protocol, level);
   question.positive = rule.positive, question.cut = rule.cut;
   // in 2ifc the answer is the interval that holds the scene

@@ -777,6 +777,7 @@ std::string referred_table(const std::string& key) {
                                                          {"adjusts", "factor"},
                                                          {"over", "factor"},
                                                          {"balance", "factor"},
+                                                         {"against", "factor"},
                                                          {"by", "factor"},
                                                          {"for_each", "factor"},
                                                          {"question_shows", "factor"},

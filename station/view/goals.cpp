@@ -18,6 +18,8 @@ const std::vector<Goal>& goals() {
                                      {"setting", "boundary-adjustment"},
                                      {"identification", "friction-identification"},
                                      {"confidence", "friction-confidence"},
+                                     {"pairs", "friction-pairs"},
+                                     {"differences", "friction-triads"},
                                      {"boundary-quick", "boundary-adaptive"},
                                      {"boundary-limits", "limits-boundary"},
                                      {"contrast-staircase", "friction-staircase"},

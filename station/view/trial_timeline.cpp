@@ -16,6 +16,8 @@ std::size_t interval_count(const protocol::Task& task) {
       return 2;
     case Kind::several_intervals:
       return task.choices.size();
+    case Kind::comparison:
+      return task.intervals.size();
     case Kind::oddity:
     case Kind::abx:
     case Kind::match_to_sample:

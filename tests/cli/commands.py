@@ -775,6 +775,16 @@ class Report(Folder):
         _, out, _ = run(["report", "--db", "lab.sqlite"], self.folder)
         self.assertRegex(out, r"\n  threshold: threshold -?[0-9.]+ \(SD [0-9.]+\), 95 % -?[0-9.]+ to -?[0-9.]+\n")
 
+    def test_scales_have_the_recorded_shape(self):
+        for protocol, observer in (("friction-pairs", "sim"), ("friction-triads", "sim:threshold=3"), ("friction-triads", "sim:lapse=1")):
+            status, _, err = run(["run", protocol, "--participant", "P01", "--db", "scale.sqlite", "--headless", "--observer", observer, "--seed", "2"], self.folder)
+            self.assertEqual(status, 0, err)
+            document = json.loads(run(["report", "--db", "scale.sqlite", "--json"], self.folder)[1])
+            self.assertEqual(is_like(document["scales"], SHAPES["report scales"]), "")
+            guessed = observer == "sim:lapse=1"
+            self.assertEqual([one["value"] is None for one in document["scales"][0]["stimuli"]], [guessed] * len(document["scales"][0]["stimuli"]))
+            self.assertEqual([one["code"] for one in document["scales"][0]["statements"]], ["no-range"] if guessed else [])
+
     def test_an_estimator_is_found_by_a_relative_path(self):
         self.add_sessions()
         os.mkdir(os.path.join(self.folder, "programs"))

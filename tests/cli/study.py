@@ -424,6 +424,18 @@ class Measures(unittest.TestCase):
         for level in report["judgements"][0]["levels"]:
             self.equal(found[f"geometric mean at {level['level']:g} \u00b5m"], level["mean"]["value"])
 
+    def test_comparisons_have_the_place_of_each_stimulus(self):
+        for protocol, ends in (("friction-pairs", 0), ("friction-triads", 1)):
+            found, report = self.both(protocol)
+            scale = report["scales"][0]
+            inner = scale["stimuli"][ends:len(scale["stimuli"]) - ends]
+            self.assertEqual(len(inner), len([name for name in found if name.startswith("place of ")]))
+            for one in inner:
+                self.equal(found[f"place of {one['stimulus']:g} dB"], one["value"]["value"])
+            self.equal(found["tendency to answer second"], scale["favours_second"]["value"])
+            if ends:
+                self.equal(found["noise of a comparison"], scale["noise"]["value"])
+
     def test_abx_has_d_prime_by_both_models(self):
         found, report = self.both("friction-abx")
         d_primes = report["discrimination"][-1]["d_prime"]

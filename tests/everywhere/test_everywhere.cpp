@@ -156,6 +156,8 @@ constexpr Recorded kSessions[] = {
     {"matching", "671daafb56301337", "6b2912f4e02cfe2d"},
     {"cross-modal-matching", "0c39d187fabe8c6d", "58ae8ed91a523391"},
     {"magnitude-production", "1d495d0acb183b2d", "91e68fcc91fcfc60"},
+    {"friction-pairs", "e4d6b80016ae1b00", "60a2bf2c17115175"},
+    {"friction-triads", "2368bf91a31b0e4f", "5c3f0893736e40b5"},
 };
 
 }  // namespace

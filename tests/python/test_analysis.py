@@ -3,6 +3,7 @@
 TURNPOINT_RTDISTS_PEOPLE=17 TURNPOINT_RTDISTS_STARTS=5 compares the fits of all people of speed_acc."""
 import csv
 import inspect
+import itertools
 import json
 import math
 import os
@@ -231,6 +232,27 @@ class Report(unittest.TestCase):
             self.assertAlmostEqual(one.p, there["p"], places=12, msg=one.measure)
 
 
+    def test_scales_are_those_of_the_report(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for protocol, factors in (("friction-pairs", ["first_dB", "second_dB"]),
+                                      ("friction-triads", ["first_dB", "second_dB", "third_dB"])):
+                database = str(Path(folder, protocol + ".sqlite"))
+                subprocess.run([TURNPOINT, "run", f"protocols/{protocol}.toml", "--rig", "deploy/rigs/simulated.toml",
+                                "--participant", "P01", "--seed", "4", "--db", database, "--headless", "--observer", "sim:threshold=3"],
+                               check=True, stdout=subprocess.DEVNULL)
+                report = json.loads(subprocess.run([TURNPOINT, "report", "--db", database, "--participant", "P01", "--json"],
+                                                   check=True, capture_output=True, text=True).stdout)
+                trials = turnpoint.read(database).trials
+                trials = trials[trials.outcome == "answered"]
+                found = analysis.scale(trials[factors].astype(float), trials.response == "second")[0]
+                there = report["scales"][0]
+                self.assertEqual(found.stimuli, [one["stimulus"] for one in there["stimuli"]])
+                for value, one in zip(found.values, there["stimuli"], strict=True):
+                    self.assertEqual((value.value, value.low, value.high), (one["value"]["value"], *one["value"]["interval"].values()))
+                for name in ("deviance", "deviance_p", "runs", "runs_p", "six_points_p", "triples", "consistence"):
+                    self.assertEqual(getattr(found, name), there[name], name)
+
+
 class Others(unittest.TestCase):
     def test_detection_and_ratings(self):
         signal = [1] * 50 + [0] * 50
@@ -247,6 +269,47 @@ class Others(unittest.TestCase):
         self.assertLess(abs(analysis.area([40, 25, 20, 15], [10, 20, 30, 40]).value - rated.area.value), 0.03)
         with self.assertRaises(analysis.NotDetermined):
             analysis.ratings([10, 0], [0, 10])
+
+    def test_scale(self):
+        # Bradley and Terry by their own equations: wins = sum of n / (1 + exp(other - own)), without a penalty, which 300
+        # trials of each pair hardly change
+        rng = np.random.default_rng(4)
+        truth = np.array([-1.2, -0.3, 0.4, 1.1])
+        pairs = np.array([(a, b) for a in range(4) for b in range(4) if a != b for _ in range(150)])
+        second = rng.random(len(pairs)) < 1 / (1 + np.exp(truth[pairs[:, 0]] - truth[pairs[:, 1]]))
+        wins = np.bincount(np.where(second, pairs[:, 1], pairs[:, 0]), minlength=4)
+        values = np.zeros(4)
+        for _ in range(2000):
+            values += (wins - [sum(300 / (1 + math.exp(values[b] - values[a])) for b in range(4) if b != a)
+                               for a in range(4)]) / 900
+        found = analysis.scale(10.0 * pairs, second)[0]
+        self.assertEqual(found.stimuli, [0, 10, 20, 30])
+        for value, own in zip(found.values, values - values.mean()):
+            self.assertLess(abs(value.value - own), 0.01)
+        self.assertEqual((found.triples, found.circular, found.consistence), (4, 0, 1))
+        self.assertTrue(found.favours_second.low < 0 < found.favours_second.high)
+        thurstone = analysis.scale(pairs, second, model="thurstone")[0]
+        self.assertLess(abs(np.corrcoef([v.value for v in thurstone.values], values)[0, 1] - 1), 1e-3)
+        scale = np.array([0, 0.1, 0.25, 0.6, 1.0])
+        triads = np.array([t for a in range(5) for b in range(a) for c in range(b) for t in ((c, b, a), (a, b, c))] * 20)
+        felt = np.abs(np.diff(scale[triads])) @ [-1, 1] + 0.2 * rng.standard_normal(len(triads))
+        found = analysis.scale(triads, felt > 0, condition=["x"] * len(triads))[0]
+        self.assertTrue(found.noise.low < 0.2 < found.noise.high)
+        self.assertLess(max(abs(v.value - s) for v, s in zip(found.values, scale)), 0.1)
+        # the middle stimulus of a triad need not lie between the others
+        any_order = np.array([t for t in itertools.permutations(range(5), 3)] * 20)
+        felt_so = np.abs(np.diff(scale[any_order])) @ [-1, 1] + 0.2 * rng.standard_normal(len(any_order))
+        mixed = analysis.scale(any_order, felt_so > 0)[0]
+        self.assertTrue(mixed.noise.low < 0.2 < mixed.noise.high)
+        self.assertLess(max(abs(v.value - s) for v, s in zip(mixed.values, scale)), 0.1)
+        self.assertIsNone(analysis.scale([[1, 2], [3, 4]], [1, 0])[0].values)
+        self.assertIsNone(analysis.scale(triads, felt > 0, sessions=0)[0].deviance_p)
+        with self.assertRaisesRegex(ValueError, "sessions"):
+            analysis.scale(triads, felt > 0, sessions=-1)
+        with self.assertRaisesRegex(ValueError, "model"):
+            analysis.scale(pairs, second, model="differences")
+        with self.assertRaisesRegex(ValueError, "two, three or four"):
+            analysis.scale([1, 2], [1, 0])
 
     def test_psychometric(self):
         rng = np.random.default_rng(2)

@@ -373,6 +373,57 @@ TEST_CASE("the proportion correct of an identification is the observer's own, an
   CHECK(right.coverage->value >= 0.92);
 }
 
+TEST_CASE("the truth of a scale is that of the simulated observer, bent or not, and intervals contain it",
+          "[power]") {
+  const auto triads =
+      rehearsal::power(shipped("friction-triads"), options("sim:threshold=3,slope=2,lapse=0", 60));
+  // a power function over the range from -24 to -4 dB
+  for (const auto& [place, truth] :
+       {std::pair{"place of -18 dB", 0.09}, {"place of -14 dB", 0.25}, {"place of -8 dB", 0.64}}) {
+    const auto& found = find(triads, "scale", place);
+    REQUIRE(found.truth);
+    CHECK(*found.truth == Approx(truth).margin(1e-5));
+    CHECK(std::fabs(*found.bias) < 4 * found.sd / std::sqrt(60.0) + 0.01);
+    REQUIRE(found.coverage);
+    CHECK(found.coverage->value >= 0.85);
+  }
+  CHECK(*find(triads, "scale", "noise of a comparison").truth == Approx(3 / 0.6744898 / 20).epsilon(1e-4));
+  CHECK(*find(triads, "scale", "tendency to answer second").truth == Approx(0).margin(1e-6));
+  // twice the trials, and intervals that are narrower by the square root of 2
+  auto twice = shipped("friction-triads");
+  twice.procedures.front().repeats *= 2;
+  const auto longer = rehearsal::power(twice, options("sim:threshold=3,slope=2,lapse=0", 20));
+  CHECK(*find(longer, "scale", "place of -14 dB").interval_width ==
+        Approx(*find(triads, "scale", "place of -14 dB").interval_width / std::sqrt(2.0)).epsilon(0.15));
+  // All people of a study have the same scale here, which is the truth of its mean.
+  auto study = options("sim:threshold=4,lapse=0", 12);
+  study.people = 6;
+  const auto people = rehearsal::power(shipped("friction-pairs"), study);
+  const auto single = rehearsal::power(shipped("friction-pairs"), options("sim:threshold=4,lapse=0", 3));
+  const auto& mean = find(people, "mean", "place of -24 dB");
+  REQUIRE(mean.truth);
+  CHECK(*mean.truth == Approx(*find(single, "scale", "place of -24 dB").truth).epsilon(1e-3));
+  CHECK(*mean.truth < -3);
+}
+
+TEST_CASE("a power study says in how many sessions the prior decides about a scale", "[power]") {
+  // an observer for whom neighbours are far apart is never inconsistent
+  const auto sharp = rehearsal::power(shipped("friction-pairs"), options("sim:threshold=1,lapse=0", 12));
+  REQUIRE(sharp.separated);
+  CHECK(sharp.separated->trials == 12);
+  CHECK(sharp.separated->value == 1);
+  CHECK(find(sharp, "scale", "place of -24 dB").coverage->value < 0.5);
+  const auto blunt = rehearsal::power(shipped("friction-pairs"), options("sim:threshold=8,lapse=0", 12));
+  REQUIRE(blunt.separated);
+  CHECK(blunt.separated->value == 0);
+  auto study = options("sim:threshold=1,lapse=0", 12);
+  study.people = 6;
+  const auto people = rehearsal::power(shipped("friction-pairs"), study);
+  REQUIRE(people.separated);
+  CHECK(people.separated->value == 1);
+  CHECK(!rehearsal::power(shipped("boundary-constant"), options("sim", 2)).separated);
+}
+
 TEST_CASE(
     "d' of ABX and of three intervals is found as in the report, and its intervals contain the true value",
     "[power]") {

@@ -554,3 +554,73 @@ TEST_CASE("A report of an unforced choice counts unsure answers and fits no diff
   const auto html = report::to_html(report::summarise(data));
   CHECK(html.find("<tr><th>Unsure</th>") != std::string::npos);
 }
+
+TEST_CASE("all pairs give a scale, by Bradley and Terry or by Thurstone", "[report]") {
+  const auto source = shipped("friction-pairs");
+  const auto data = data_of(source, "sim:threshold=4,lapse=0,bias=1");
+  CHECK(data.meaning ==
+        "places on a scale of the values of `first_dB` and `second_dB`, from all pairs (Bradley and Terry)");
+  const auto report = report_of(data);
+  CHECK(report["fits"].empty());
+  REQUIRE(report["scales"].size() == 1);
+  const auto& scale = report["scales"][0];
+  CHECK(scale["model"] == "bradley-terry");
+  CHECK(scale["trials"] == 120);
+  REQUIRE(scale["stimuli"].size() == 6);
+  double sum = 0, chosen = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const auto& at = scale["stimuli"][i];
+    CHECK(at["presented"] == 40);
+    chosen += at["chosen"].get<double>();
+    sum += at["value"]["value"].get<double>();
+    CHECK(at["value"]["interval"]["low"] < at["value"]["value"]);
+    // neighbours are less than a threshold apart
+    if (i > 1) CHECK(at["value"]["value"] > scale["stimuli"][i - 2]["value"]["value"]);
+  }
+  CHECK(sum == Approx(0).margin(1e-9));
+  CHECK(chosen == 120);
+  CHECK(scale["stimuli"][0]["stimulus"] == -24);
+  CHECK(scale["favours_second"]["value"] < 0);  // the bias asks for more
+  CHECK(scale["degrees_of_freedom"] == 30 - 6);
+  CHECK(scale["triples"] == 20);
+  const auto html = report::to_html(report::summarise(data));
+  CHECK(html.find("Scale of the stimuli") != std::string::npos);
+  CHECK(html.find("Circular triples") != std::string::npos);
+  const auto other =
+      report_of(data_of(source + "\n[analysis]\npairs = \"thurstone\"\n", "sim:threshold=4,lapse=0"));
+  CHECK(other["scales"][0]["model"] == "thurstone");
+  // the observer's 75 % point is 4 dB: 0.674 standard deviations of a difference, which is a d' of 0.954
+  const auto& stimuli = other["scales"][0]["stimuli"];
+  CHECK(stimuli[5]["value"]["value"].get<double>() - stimuli[0]["value"]["value"].get<double>() ==
+        Approx(20 * 0.954 / 4).epsilon(0.35));
+}
+
+TEST_CASE("triads and quadruples give a scale of differences", "[report]") {
+  const auto source = shipped("friction-triads");
+  const auto report = report_of(data_of(source, "sim:threshold=3,lapse=0"));
+  REQUIRE(report["scales"].size() == 1);
+  const auto& scale = report["scales"][0];
+  CHECK(scale["model"] == "differences");
+  CHECK(scale["trials"] == 105);
+  const auto& stimuli = scale["stimuli"];
+  REQUIRE(stimuli.size() == 7);
+  CHECK(stimuli[0]["value"]["value"] == 0);
+  CHECK(stimuli[6]["value"]["value"] == 1);
+  // the simulated observer's scale is straight: -11 dB is at 13 / 20
+  CHECK(stimuli[3]["value"]["value"].get<double>() == Approx(0.65).margin(0.12));
+  // in many such sessions the standard deviation of the noise is 0.08 (turnpoint power)
+  CHECK(scale["noise"]["value"].get<double>() == Approx(3 / 0.6745 / 20).margin(0.2));
+  CHECK(scale["stimuli"][3]["chosen"].is_null());
+  CHECK(scale["runs_p"].get<double>() > 0);
+  auto four = replaced(source, "[\"first\", \"second\", \"third\"]",
+                       "[\"first\", \"second\", \"third\", \"fourth\"]");
+  four = replaced(four, "against = [\"second_dB\", \"third_dB\"]",
+                  "against = [\"second_dB\", \"third_dB\", \"fourth_dB\"]");
+  four =
+      replaced(four, "[task]",
+               "[[factor]]\nname = \"fourth_dB\"\nrange = [-24.0, -4.0]\n[scene.fourth]\nbase = \"plain\"\n"
+               "friction_contrast_dB = \"fourth_dB\"\n[task]");
+  const auto quadruples = report_of(data_of(four, "sim:threshold=3,lapse=0"));
+  CHECK(quadruples["scales"][0]["trials"] == 105);
+  CHECK(quadruples["scales"][0]["stimuli"][3]["value"]["value"].get<double>() == Approx(0.65).margin(0.15));
+}

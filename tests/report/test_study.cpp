@@ -1,5 +1,7 @@
 #include "station/report/study.hpp"
 
+#include <map>
+#include <nlohmann/json.hpp>
 #include <variant>
 
 #include "tests/report/simulated_report.hpp"
@@ -32,4 +34,28 @@ TEST_CASE("in the figure of a study, an answer \"unsure\" counts as the guess th
         ++markers;
       }
   CHECK(markers > 3);
+}
+
+TEST_CASE("a study says of how many participants the answers give no scale, and why", "[report]") {
+  report::Study study;
+  const auto add = [&study](const std::string& participant, const std::string& observer) {
+    auto data = data_of(shipped("friction-triads"), observer);
+    data.participant = participant;
+    study.persons.push_back(report::study_person(data, {}, false));
+    data.trials.clear();
+    study.settings = data;
+  };
+  add("P1", "sim:threshold=3,lapse=0");
+  add("P2", "sim:lapse=1");
+  add("P3", "sim:lapse=1");
+  add("P4", "sim:lapse=1");
+  study.persons.back().excluded.emplace_back("fewer than 200 answered trials");
+  report::finish_study(study);
+  std::map<std::string, std::string> said;
+  for (const auto& one : study.statements) said[one.code] = core::say(one.text, "en");
+  REQUIRE(said.contains("no-range"));
+  CHECK(said["no-range"].starts_with("2 of 3 participants: The answers do not determine a scale"));
+  const auto json = nlohmann::json::parse(report::to_json(study));
+  CHECK(json["participants"][0]["scale_remarks"].empty());
+  CHECK(json["participants"][1]["scale_remarks"][0]["code"] == "no-range");
 }

@@ -86,7 +86,9 @@ std::vector<Case> protocols() {
            {{"[protocol]", "[sessions]\ncount = 2\n\n[protocol]"}, {"repeats = 14", "repeats = 2"}},
            2,
            2},
-          {"boundary-adjustment.toml", {{"repeats = 9", "repeats = 4"}}}};
+          {"boundary-adjustment.toml", {{"repeats = 9", "repeats = 4"}}},
+          {"friction-pairs.toml", {{"repeats = 4 ", "repeats = 1 "}, {"-18.0, -14.0, ", ""}}},
+          {"friction-triads.toml", {{"repeats = 3", "repeats = 1"}, {"-18.0, -14.0, ", ""}}}};
 }
 
 /// The protocols to kill in this run: all, or those of TURNPOINT_KILLS_PART.

@@ -15,7 +15,8 @@ TEST_CASE("a rehearsed session has the same trials, answers and times as a sessi
       GENERATE("demo", "boundary-adjustment", "smoothness-points", "smoothness-line", "magnitude-standard",
                "friction-confidence", "friction-detection", "friction-identification", "friction-3ifc",
                "friction-4ifc", "friction-time-limit", "friction-abx", "limits-boundary", "response-signal",
-               "response-signal-buzz", "friction-rating", "bisection", "matching", "magnitude-production");
+               "response-signal-buzz", "friction-rating", "bisection", "matching", "magnitude-production",
+               "friction-pairs", "friction-triads");
   const TemporaryFolder folder;
   session::Setup setup;
   setup.rig = rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml");

@@ -135,6 +135,22 @@ TEST_CASE("if the answers are two sides, they follow a normal distribution aroun
   }
 }
 
+TEST_CASE("compared stimuli have places on the observer's own scale, which bends with its slope",
+          "[observer]") {
+  const auto share = [](const std::string& observer, std::vector<double> places) {
+    simulation::Question question;
+    question.decides = simulation::Decides::side, question.positive = 1;
+    question.compared = std::move(places), question.range = 20;
+    return simulation::Observer(simulation::parse(observer)).share(question, 1);
+  };
+  // A difference of the threshold, 5 of 20, is found in 75 % of the trials, on a straight and a bent scale.
+  CHECK(share("sim:threshold=5,lapse=0", {0.5, 0.75}) == Approx(0.75));
+  CHECK(share("sim:threshold=5,lapse=0,slope=2", {0.5, std::sqrt(0.5)}) == Approx(0.75));
+  CHECK(share("sim:threshold=5,lapse=0,slope=2", {0, 0.5, 1}) == Approx(core::normal_cdf(2 * 0.6744898)));
+  CHECK(share("sim:threshold=5,lapse=0,slope=2", {1, 0.5, 0}) == Approx(1 - core::normal_cdf(2 * 0.6744898)));
+  CHECK(share("sim:threshold=5,lapse=0", {0.1, 0.2, 0.8, 0.9}) == Approx(0.5));
+}
+
 TEST_CASE("yes and no are separated by the criterion", "[observer]") {
   auto question = at_level(6);
   question.decides = Decides::presence;

@@ -153,6 +153,21 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a simulated observer compares what the intervals present, in their order", "[session]") {
+  const auto protocol = shipped("friction-pairs");
+  Director director(protocol, 0, 1);
+  auto trial = director.next().value();
+  const auto forth = trial::question_of(trial, protocol, 1);
+  REQUIRE(forth.compared.size() == 2);
+  CHECK(forth.level != 0);
+  std::swap(trial.intervals[0], trial.intervals[1]);
+  const auto back = trial::question_of(trial, protocol, 1);
+  CHECK(back.compared == std::vector{forth.compared[1], forth.compared[0]});
+  CHECK(back.level == -forth.level);
+  trial.intervals[1] = trial.intervals[0];
+  CHECK(trial::question_of(trial, protocol, 1).level == 0);
+}
+
 TEST_CASE("the times of a trial follow its factors", "[session]") {
   auto protocol = shipped("response-signal");
   Director signalled(protocol, 0, 5);

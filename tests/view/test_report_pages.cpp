@@ -138,7 +138,8 @@ TEST_CASE(
     "[operator]") {
   const auto name = GENERATE("speed-accuracy", "boundary-adjustment", "friction-rating", "magnitude-free",
                              "friction-identification", "friction-zest", "friction-boundary-2d",
-                             "response-signal", "friction-confidence", "reward-rate", "friction-unforced");
+                             "response-signal", "friction-confidence", "reward-rate", "friction-unforced",
+                             "friction-pairs", "friction-triads");
   CAPTURE(name);
   auto protocol = shipped(name);
   const auto pages = view::report_pages(report::summarise(data_of(protocol)));

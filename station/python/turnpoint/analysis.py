@@ -11,12 +11,12 @@ each other, or numbers outside their range, raise ValueError."""
 import numpy as np
 
 from . import _analysis
-from ._analysis import (Cell, Condition, Curve, CurveDifference, Detection, Difference, Diffusion, Estimate, Lag, Psychometric, Ratings,
+from ._analysis import (Cell, Condition, Curve, CurveDifference, Detection, Difference, Diffusion, Estimate, Lag, Psychometric, Ratings, Scale,
                         SpeedAccuracy)
 
 __all__ = ["Cell", "Condition", "Curve", "CurveDifference", "Detection", "Difference", "Diffusion", "Estimate", "Lag", "NotDetermined",
-           "Psychometric", "Ratings", "SpeedAccuracy", "area", "compare_curves", "detection", "diffusion", "first_passage",
-           "holm", "psychometric", "ratings", "response_signal", "speed_accuracy"]
+           "Psychometric", "Ratings", "Scale", "SpeedAccuracy", "area", "compare_curves", "detection", "diffusion", "first_passage",
+           "holm", "psychometric", "ratings", "response_signal", "scale", "speed_accuracy"]
 
 
 class NotDetermined(ValueError):
@@ -199,6 +199,32 @@ def compare_curves(curves) -> list[CurveDifference]:
     return _analysis.compare_curves(list(curves))
 
 
+def scale(stimuli, second, *, condition=None, order=(), model=None, sessions=499) -> list[Scale]:
+    """Scales stimuli by comparisons, one scale per condition.
+
+    stimuli: a row per trial with the values of two, three or four stimuli in order of presentation.
+    second: whether the answer was the second stimulus of a pair; for three, that the last two differ more than the first two;
+    for four, that the second pair differs more than the first.
+    condition, order: name of the condition of each trial, and their order.
+    model: for pairs "bradley-terry" (default; Bradley & Terry 1952, Biometrika 39:324-345) or "thurstone" (case V, in standard
+    deviations of what one stimulus is felt as); for three or four "differences" (maximum-likelihood difference scaling, Maloney
+    & Yang 2003, J. Vis. 3:573-585; from 0 at the lowest to 1 at the highest). Jeffreys' prior keeps values of stimuli finite
+    that were always or never chosen (Kosmidis & Firth 2021, Biometrika 108:71-82). Values that the answers do not determine
+    are None, and a statement says why.
+    sessions: number of simulated sessions with which the scale is checked; 0 for none, which takes much less time."""
+    stimuli = np.asarray(stimuli, dtype=float)
+    if stimuli.ndim != 2 or stimuli.shape[1] not in (2, 3, 4) or len(stimuli) == 0:
+        raise ValueError("stimuli: a row per trial with two, three or four values is needed")
+    if not np.isfinite(stimuli).all():
+        raise ValueError("stimuli: NaN or infinite")
+    allowed = ("bradley-terry", "thurstone") if stimuli.shape[1] == 2 else ("differences",)
+    model = allowed[0] if model is None else model
+    _one_of("model", model, allowed)
+    first = stimuli[:, 0]
+    return _analysis.scale(stimuli.tolist(), _flags("second", second, first), _texts("condition", condition, first),
+                           [str(name) for name in order], model, _sessions(sessions))
+
+
 def holm(p, *, family=None) -> np.ndarray:
     """Corrects p values for the number of tests (Holm 1979, Scand. J. Stat. 6:65-70), as R's p.adjust(p, "holm") does.
 
@@ -213,6 +239,12 @@ def holm(p, *, family=None) -> np.ndarray:
 def _one_of(name, value, allowed):
     if value not in allowed:
         raise ValueError(f"{name}: {value!r} is not one of " + ", ".join(map(repr, allowed)))
+
+
+def _sessions(sessions):
+    if int(sessions) != sessions or sessions < 0:
+        raise ValueError(f"sessions: {sessions} is not a whole number of 0 or more")
+    return int(sessions)
 
 
 def _share(name, value, zero=False):

@@ -56,6 +56,7 @@ QVariantList ReportModel::sections() const {
 QStringList ReportModel::picture_names() const {
   static const std::map<std::string, const char*> keys{{"judgements", "report.fit"},
                                                        {"settings", "report.fit"},
+                                                       {"scale", "report.scale"},
                                                        {"psychometric-function", "report.fit"},
                                                        {"threshold-curve", "report.curve"},
                                                        {"answers-to-each-stimulus", "report.answers"},
