@@ -80,9 +80,10 @@ void require_band(const ZoneProfile& profile, const ZoneRequest& r) {
 
 }  // namespace
 
-// The two profiles of a solved zone: with one tone, and with all.
+// The two profiles of a solved zone: with one tone, and with all. The key is what they were solved for: the
+// request, with a friction only if the edge depends on it.
 struct ZoneDesigner::Solved {
-  ZoneRequest request;
+  ZoneRequest key;
   ZoneProfile alone, all;
 };
 
@@ -92,10 +93,10 @@ ZoneDesigner::~ZoneDesigner() = default;
 
 ZoneProfile& ZoneDesigner::solve(const ZoneRequest& request) {
   constexpr std::size_t most = 16;
+  ZoneRequest key = request;
+  if (key.edge.kind != Edge::Kind::friction) key.friction = 0;
   for (auto& one : solved_) {
-    if (request.edge.kind == Edge::Kind::friction) break;
-    one->request.friction = request.friction;
-    if (one->request != request) continue;
+    if (one->key != key) continue;
     one->alone.rescale_to_friction(request.friction);
     one->all.rescale_to_friction(request.friction);
     return one->all;
@@ -111,7 +112,7 @@ ZoneProfile& ZoneDesigner::solve(const ZoneRequest& request) {
   place(all, request, 2e-7);
   require_band(all, request);
   if (solved_.size() == most) solved_.erase(solved_.begin());
-  solved_.push_back(std::make_unique<Solved>(Solved{request, std::move(alone), std::move(all)}));
+  solved_.push_back(std::make_unique<Solved>(Solved{key, std::move(alone), std::move(all)}));
   return solved_.back()->all;
 }
 

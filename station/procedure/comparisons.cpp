@@ -3,6 +3,7 @@
 #include <set>
 #include <utility>
 
+#include "station/procedure/constant_stimuli.hpp"
 #include "station/procedure/description.hpp"
 #include "station/procedure/keys.hpp"
 #include "station/procedure/state_hash.hpp"
@@ -78,10 +79,7 @@ class Comparisons : public Procedure {
       ++recorded_;
       return;
     }
-    // at a random place among the remaining trials, but not as the very next one
-    core::Draws draws({key_.seed, core::Stream::level_order, key_.block, key_.attempt, 1 + requeued_++});
-    const auto left = queue_.size() - position_;
-    const auto offset = left == 0 ? 0 : 1 + draws.below(left);
+    const auto offset = place_of_repetition(key_, requeued_++, queue_.size() - position_);
     queue_.insert(queue_.begin() + static_cast<std::ptrdiff_t>(position_ + offset), stimuli);
   }
 

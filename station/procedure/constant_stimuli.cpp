@@ -172,6 +172,11 @@ std::optional<Proposal> ConstantStimuli::next() const {
   return choice(0);
 }
 
+std::size_t place_of_repetition(const core::DrawKey& key, int repetitions, std::size_t left) {
+  core::Draws draws({key.seed, core::Stream::level_order, key.block, key.attempt, 1 + repetitions});
+  return left == 0 ? 0 : 1 + draws.below(left);
+}
+
 void ConstantStimuli::record(Answer answer) {
   if (answer == Answer::none && !context_.unanswered_are_data && !spec_.rules.empty()) {
     ++requeued_;
@@ -184,11 +189,8 @@ void ConstantStimuli::record(Answer answer) {
     ++recorded_;
     return;
   }
-  // Insert the unanswered trial at a random place among the remaining trials, but not as the very next one.
-  // If no trials remain, append it.
-  core::Draws draws({key_.seed, core::Stream::level_order, key_.block, key_.attempt, 1 + requeued_++});
   const auto left = queue_.size() - position_;
-  const auto offset = left == 0 ? 0 : 1 + draws.below(left);
+  const auto offset = place_of_repetition(key_, requeued_++, left);
   if (left > 0) item.repeat = queue_[position_ + offset - 1].repeat;
   ++left_[kind_of(item)];
   queue_.insert(queue_.begin() + static_cast<std::ptrdiff_t>(position_ + offset), item);

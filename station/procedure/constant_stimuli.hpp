@@ -10,6 +10,10 @@
 
 namespace turnpoint::procedure {
 
+/// Where an unanswered trial of a list comes again, counted in the trials that are left: at a random place,
+/// but not as the very next one; as the last if none is left. `repetitions` is the number of those before.
+std::size_t place_of_repetition(const core::DrawKey& key, int repetitions, std::size_t left);
+
 /// Presents every value `repeats` times. Combinations of the balanced factors occur equally often, as far as
 /// possible. The order is shuffled.
 /// Unanswered trials are repeated later; with rules of the order (Spec::rules), at once. Ends early if enough

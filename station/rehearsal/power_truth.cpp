@@ -333,7 +333,8 @@ std::map<std::string, double> GeneratingValues::scale(const std::string& conditi
   for (auto i = ends; i + ends < stimuli.size(); ++i)
     truths[report::place_name(stimuli[i], level_unit)] = scale->values[i];
   if (scale->noise) truths[report::kScaleNoise] = *scale->noise;
-  if (scale->favours_second) truths[report::kFavoursSecond] = *scale->favours_second;
+  // Without a tendency, the fit ends within rounding errors of 0, which would be printed.
+  if (scale->favours_second) truths[report::kFavoursSecond] = std::round(1e9 * *scale->favours_second) / 1e9;
   return truths;
 }
 

@@ -332,7 +332,7 @@ std::optional<Figure> scale_figure(const Summary& summary) {
   }
   if (stimuli.empty()) return std::nullopt;
   chart.x = report::fitted(words(summary.data.level_label), stimuli, 0.06);
-  chart.y = report::fitted(words("figure.scale_value"), values, 0.08);
+  chart.y = report::fitted(words(place_label(summary.scales.front().model)), values, 0.08);
   Figure figure;
   figure.title = "Scale of the stimuli";
   figure.chart_width_px = 620;

@@ -24,6 +24,7 @@ std::optional<Figure> response_time_figure(const Summary& summary);
 std::optional<Figure> settings_figure(const Summary& summary);
 /// Plots the mean rating, or the geometric mean of the numbers, at each level, with its interval.
 std::optional<Figure> judgement_figure(const Summary& summary);
+/// Plots the places of the stimuli of a comparison on their scale, with intervals.
 std::optional<Figure> scale_figure(const Summary& summary);
 /// Plots the level of the measured vibration relative to the planned vibration, in order of presentation.
 /// Open markers are trials that are void because of their level.

@@ -181,7 +181,7 @@ void add_scales(const Summary& summary, Document& document) {
   document.figure("scale", scale_figure(summary));
   for (const auto& scale : summary.scales) {
     if (!scale.condition.empty()) document.heading(scale.condition, 3);
-    Table table{{data.level_label, phrase("report.scale_value")}, {}};
+    Table table{{data.level_label, place_label(scale.model)}, {}};
     if (pairs) table.columns.emplace_back("Chosen");
     for (std::size_t i = 0; scale.fit && i < scale.stimuli.size(); ++i) {
       table.rows.push_back({amount(scale.stimuli[i], 4), brief(estimated(scale.fit->values[i]))});

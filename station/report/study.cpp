@@ -329,8 +329,6 @@ void add_balanced(Study& study) {
         {cells[i].person->person, cells[i].condition, "BIS", "SD", (*scores)[i]});
 }
 
-}  // namespace
-
 /// Says of how many participants their scales of a condition have each remark.
 void add_scale_remarks(const std::vector<std::string>& conditions, Study& study) {
   const auto counting =
@@ -354,6 +352,8 @@ void add_scale_remarks(const std::vector<std::string>& conditions, Study& study)
                                                                     core::plain(condition), remark.text})});
   }
 }
+
+}  // namespace
 
 void finish_study(Study& study) {
   add_balanced(study);

@@ -8,6 +8,7 @@
 #include "station/analysis/psychometric_posterior.hpp"
 #include "station/core/number.hpp"
 #include "station/report/measures.hpp"
+#include "station/report/words.hpp"
 
 namespace turnpoint::report {
 
@@ -290,6 +291,12 @@ const char* scale_unit(analysis::ScaleModel model) {
       break;
   }
   return "";
+}
+
+core::Phrase place_label(analysis::ScaleModel model) {
+  const auto name = core::phrase("report.scale_value");
+  const std::string unit = scale_unit(model);
+  return unit.empty() ? name : in_unit(name, core::plain(unit));
 }
 
 const char* tendency_unit(analysis::ScaleModel model) {

@@ -87,6 +87,8 @@ std::vector<std::pair<double, analysis::Estimate>> places_of(const analysis::Sti
 std::string place_name(double stimulus, const std::string& level_unit);
 const char* scale_unit(analysis::ScaleModel model);
 const char* tendency_unit(analysis::ScaleModel model);
+/// What an axis or a column of a scale is called, with its unit if it has one.
+core::Phrase place_label(analysis::ScaleModel model);
 inline constexpr const char *kPlaceOf = "place of ", *kScaleNoise = "noise of a comparison",
                             *kFavoursSecond = "tendency to answer second", *kNoiseUnit = "SD of the noise";
 

@@ -84,13 +84,11 @@ simulation::Question compared(const TrialSpec& spec, const protocol::Protocol& p
                               simulation::Question question) {
   const auto* procedure = protocol::find_procedure(protocol, spec.procedure);
   if (!procedure && !protocol.procedures.empty()) procedure = &protocol.procedures.front();
-  std::vector<double> at;
-  if (procedure) at = stimuli_of(spec, protocol, *procedure);
+  const auto at = procedure ? stimuli_of(spec, protocol, *procedure) : std::vector<double>{};
   question.decides = simulation::Decides::side, question.decibel = false, question.positive = 1;
-  if (at.size() == 2) question.level = at[1] - at[0];
-  if (at.size() == 3) question.level = std::fabs(at[2] - at[1]) - std::fabs(at[1] - at[0]);
-  if (at.size() == 4) question.level = std::fabs(at[3] - at[2]) - std::fabs(at[1] - at[0]);
-  if (!procedure || procedure->values.size() < 2) return question;
+  if (at.empty()) return question;
+  const auto last = at.size() - 1;
+  question.level = last == 1 ? at[1] - at[0] : std::fabs(at[last] - at[last - 1]) - std::fabs(at[1] - at[0]);
   const auto& values = procedure->values;
   question.default_threshold = median_step(values);
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
