@@ -12,6 +12,7 @@
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/gate.hpp"
+#include "physics/smooth_sides.hpp"
 #include "physics/taper.hpp"
 
 namespace turnpoint::physics {
@@ -194,7 +195,7 @@ double boundary_derivative(const Surface& s, Parameter parameter, double f, doub
   require_on_surface(s, "boundary_m", x);
   require_fall(s);
   if (parameter == Parameter::quality_factor) return 0;
-  const Taper taper(s);
+  const Taper taper(smooth_sides(s));
   const double w = taper.half_width_m(x), slope = taper.slope(x), cut_off_m = cut_off_half_width_m(s, f);
   const double ratio = w / cut_off_m, by_ln_slope = 2.0 / 3 * (ratio - 1) * cut_off_m;
   const double aside = std::min({1e-3 * s.length_m, x, s.length_m - x});
@@ -234,7 +235,7 @@ BoundaryBudget boundary_budget(const Surface& surface, double f, double x) {
   validate(surface, f);
   require_on_surface(surface, "boundary_m", x);
   BoundaryBudget budget;
-  if (!(Taper(surface).slope(x) < 0)) return budget;
+  if (!(Taper(smooth_sides(surface)).slope(x) < 0)) return budget;
   auto& parts = budget.contributions;
   for (const Parameter parameter : parameters(surface)) {
     const double sd = standard_deviation(surface, parameter);

@@ -14,6 +14,7 @@
 #include "physics/gate.hpp"
 #include "physics/map_bounds.hpp"
 #include "physics/plate_theory.hpp"
+#include "physics/smooth_sides.hpp"
 #include "physics/statement.hpp"
 
 namespace turnpoint::physics {
@@ -161,18 +162,20 @@ std::optional<double> solve_frequency_Hz(const Surface& surface, const MapOption
   const double w = x >= 0 && x <= surface.length_m ? half_width_m(surface, x) : 0;
   if (!(w > 0)) return std::nullopt;
   const bool by_field = options.model == Model::modes && options.edge.kind != Edge::Kind::turning;
+  const Surface smooth = smooth_sides(surface);
   const auto f =
       by_field && near_Hz
           ? near_Hz
-          : first_mode_frequency_Hz(surface, options, x, near_Hz.value_or(cut_off_frequency_Hz(surface, w)));
-  return f && by_field ? field_frequency_Hz(surface, options, x, *f) : f;
+          : first_mode_frequency_Hz(smooth, options, x, near_Hz.value_or(cut_off_frequency_Hz(surface, w)));
+  return f && by_field ? field_frequency_Hz(smooth, options, x, *f) : f;
 }
 
 BoundaryMap::BoundaryMap(const Surface& surface, const MapOptions& options) {
   check(surface, options);
   const Model model = options.model.value_or(Model::edge);
-  state_ = std::make_unique<const State>(State{surface, options, model, Taper(surface), Dispersion(surface),
-                                               make_edge_table(surface, options, model)});
+  const Surface smooth = smooth_sides(surface);
+  state_ = std::make_unique<const State>(State{surface, options, model, Taper(smooth), Dispersion(surface),
+                                               make_edge_table(smooth, options, model)});
 }
 
 BoundaryMap::~BoundaryMap() = default;

@@ -9,6 +9,7 @@
 #include "physics/field.hpp"
 #include "physics/gate.hpp"
 #include "physics/modal_field.hpp"
+#include "physics/smooth_sides.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -100,7 +101,7 @@ std::unique_ptr<CentreLine> make_marched_line(const Surface& surface, const Marc
 }
 
 std::optional<double> turning_point_m(const Surface& surface, double frequency_Hz) {
-  return Taper(surface).position_m(cut_off_half_width_m(surface, frequency_Hz));
+  return Taper(smooth_sides(surface)).position_m(cut_off_half_width_m(surface, frequency_Hz));
 }
 
 std::unique_ptr<CentreLine> make_centre_line(const Surface& surface, double frequency_Hz, Model model,
@@ -115,7 +116,7 @@ std::unique_ptr<CentreLine> make_centre_line(const Surface& surface, double freq
         resolution.across = ModalResolution::Across::cut_off_shape;
         return make_modal_line(surface, frequency_Hz, losses, resolution);
       }
-      return make_marched_line(surface, march_equation(surface, frequency_Hz, losses));
+      return make_marched_line(smooth_sides(surface), march_equation(surface, frequency_Hz, losses));
     case Model::modes:
       if (surface.drive == DriveShape::piston && surface.theory != PlateTheory::kirchhoff)
         throw std::domain_error(

@@ -7,6 +7,7 @@
 #include "physics/dispersion.hpp"
 #include "physics/field.hpp"
 #include "physics/root.hpp"
+#include "physics/smooth_sides.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -34,10 +35,11 @@ std::optional<double> solve_edge_m(const Surface& surface, const MapOptions& opt
     const auto line = make_centre_line(surface, f, wave == Wave::as_modelled ? model : Model::mode);
     return edge_position_m(surface, f, *line, options);
   }
-  const auto apex = Taper(surface).apex_m();
+  const Surface smooth = smooth_sides(surface);
+  const auto apex = Taper(smooth).apex_m();
   const bool pointed = apex && *apex <= surface.length_m * (1 + 1e-9);
-  if (options.edge.kind != Edge::Kind::friction && !pointed) return marched_edge_m(surface, options.edge, f);
-  const auto line = make_marched_line(surface, best_equation(surface, f, Losses::kept));
+  if (options.edge.kind != Edge::Kind::friction && !pointed) return marched_edge_m(smooth, options.edge, f);
+  const auto line = make_marched_line(smooth, best_equation(surface, f, Losses::kept));
   return edge_position_m(surface, f, *line, options);
 }
 

@@ -24,9 +24,10 @@ Refused no_such_edge(const Edge& edge) {
 
 // Returns how often a range of frequencies may be halved. The number is lower where one position takes long
 // to compute: for friction edges, and on a taper with many points, where the solution needs a step for every
-// point.
+// point. On smoothed sides, which still wiggle, the ratio does not follow a polynomial closely in any case.
 int deepest(const Surface& surface, const MapOptions& options) {
   const auto* table = std::get_if<TabulatedTaper>(&surface.taper);
+  if (table != nullptr && !table->slopes.empty()) return 5;
   if (table != nullptr && table->points.size() > 200) return 3;
   return options.edge.kind == Edge::Kind::friction ? 5 : 9;
 }

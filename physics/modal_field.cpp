@@ -12,6 +12,7 @@
 #include "physics/modal_setup.hpp"
 #include "physics/piston_lift.hpp"
 #include "physics/section_field.hpp"
+#include "physics/smooth_sides.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -250,7 +251,7 @@ std::unique_ptr<CentreLine> make_modal_line(const Surface& surface, double f, Lo
                                             const ModalResolution& resolution) {
   if (resolution.degree && (*resolution.degree < 4 || *resolution.degree > largest_degree))
     throw std::invalid_argument("degree is " + std::to_string(*resolution.degree) + "; allowed: 4 to 12");
-  return std::make_unique<ModalLine>(surface, f, losses, resolution);
+  return std::make_unique<ModalLine>(smooth_sides(surface), f, losses, resolution);
 }
 
 }  // namespace turnpoint::physics

@@ -11,6 +11,7 @@
 #include "physics/modal_setup.hpp"
 #include "physics/section_basis.hpp"
 #include "physics/section_field.hpp"
+#include "physics/smooth_sides.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -265,10 +266,11 @@ void add_responses(const Strip& strip, const Disc& disc, const std::vector<doubl
 
 std::vector<DiscResponse> disc_responses(const Surface& surface, double f, const Disc& disc,
                                          const std::vector<double>& x_m) {
+  const Surface smooth = smooth_sides(surface);
   std::vector<DiscResponse> all(x_m.size());
-  for (const Strip& strip : make_strips(surface, f, Parity::even)) add_responses(strip, disc, x_m, all);
+  for (const Strip& strip : make_strips(smooth, f, Parity::even)) add_responses(strip, disc, x_m, all);
   if (disc.beside_m == 0) return all;
-  for (const Strip& strip : make_strips(surface, f, Parity::odd)) add_responses(strip, disc, x_m, all);
+  for (const Strip& strip : make_strips(smooth, f, Parity::odd)) add_responses(strip, disc, x_m, all);
   return all;
 }
 

@@ -66,8 +66,15 @@ double gently_narrowing(const Taper& taper, double x, double h) {
   return h;
 }
 
+// Elements end at the points of a table, where the curvature jumps.
+double element_end(const std::vector<Cubic>& pieces, double x) {
+  const auto next = std::partition_point(pieces.begin(), pieces.end(),
+                                         [x](const Cubic& p) { return p.x0 <= x * (1 + 1e-12); });
+  return next == pieces.end() ? pieces.back().x1 : next->x0;
+}
+
 // Throws std::domain_error if the two-dimensional field would take too long: if the cubes of the elements'
-// unknowns add up to too much.
+// unknowns add up to too much. Each piece of a table has an element at least.
 void require_work(const Surface& surface, double f) {
   const Taper taper(surface);
   const Dispersion dispersion(surface);
@@ -76,30 +83,23 @@ void require_work(const Surface& surface, double f) {
   const ModalResolution usual;
   const int spare = spare_functions(dispersion, f, usual);
   const int per_function = surface.theory == PlateTheory::kirchhoff ? 8 : 18;
-  constexpr int panels = 100;
-  double work = 0;
-  for (int i = 0; i < panels; ++i) {
-    const double w = taper.half_width_m(surface.length_m * (i + 0.5) / panels);
-    const double elements = surface.length_m / panels / std::min(usual.radians / k, widths_per_element * w);
-    work += elements * std::pow((functions_for(k * w, plate) + spare) * per_function, 3);
+  double work = 0, end = 0;
+  for (double x = 0; x < surface.length_m; x = end) {
+    const double piece =
+        taper.table().pieces().empty() ? surface.length_m : element_end(taper.table().pieces(), x) - x;
+    const double panels = std::ceil(100 * piece / surface.length_m), panel = piece / panels;
+    for (int i = 0; i < panels; ++i) {
+      const double w = taper.half_width_m(x + panel * (i + 0.5));
+      const double elements =
+          std::max(1 / panels, panel / std::min(usual.radians / k, widths_per_element * w));
+      work += elements * std::pow((functions_for(k * w, plate) + spare) * per_function, 3);
+    }
+    end = x + piece;
   }
   if (work > most_work)
     throw std::domain_error(
         "the two-dimensional field has too many waves across this surface to be solved; "
         "allowed: the model mode");
-}
-
-// Elements end at the points of a table, where the curvature jumps. Where the points are closer together than
-// a quarter of an element, it ends at the last point within its length `h`.
-double element_end(const std::vector<Cubic>& pieces, double x, double h) {
-  const auto beyond = [&pieces](double at) {
-    return std::partition_point(pieces.begin(), pieces.end(), [at](const Cubic& p) { return p.x0 <= at; });
-  };
-  const auto next = beyond(x * (1 + 1e-12));
-  if (next == pieces.end()) return pieces.back().x1;
-  if (next->x0 >= x + 0.25 * h) return next->x0;
-  const auto last = beyond(x + h) - 1;
-  return last->x0 >= x + 0.25 * h ? last->x0 : next->x0;
 }
 
 }  // namespace
@@ -168,7 +168,7 @@ std::vector<ModalElement> make_modal_elements(const ModalSetup& s, const ModalRe
     double h = std::min(resolution.radians / s.k, widths_per_element * w);
     if (!single && elements.size() < 2) h = std::min(h, (elements.empty() ? 0.15 : 0.35) * w0);
     double end = s.taper.length_m();
-    if (!knots.empty()) end = std::min(end, element_end(knots, x, h));
+    if (!knots.empty()) end = std::min(end, element_end(knots, x));
     if (!s.equation.plate()) h = gently_narrowing(s.taper, x, std::min(h, end - x));
     if (x + 1.5 * h > end) h = x + h >= end ? end - x : 0.5 * (end - x);
     if (!(h > 1e-9 * w0)) break;  // the apex is reached

@@ -7,6 +7,7 @@
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/higher_modes.hpp"
+#include "physics/smooth_sides.hpp"
 #include "physics/taper.hpp"
 
 namespace turnpoint::physics {
@@ -192,43 +193,96 @@ double bound_plate(ModeBound& bound, const Surface& surface, double f, double ne
   return modes * std::exp(-ln_decay(surface, f, 2, 0, near));
 }
 
+// Adds the difference between two solutions, multiplied by `margin`. Both are scaled to the last maximum of
+// the first, or to the drive edge if it has none.
+void add_difference(SideError& error, const CentreLine& a, const CentreLine& b, double length_m, double k,
+                    double margin) {
+  const auto peak = a.last_peak_m(), peak_b = b.last_peak_m();
+  const Scaled unit_a = a.value(peak.value_or(0)), unit_b = b.value(peak.value_or(0));
+  const auto scaled = [](const Scaled& v, const Scaled& unit) {
+    return v.mantissa / unit.mantissa * std::exp(std::min(600.0, v.ln_scale - unit.ln_scale));
+  };
+  double worst = 0, most = 0;
+  for (int i = 0; i <= 300; ++i) {
+    const auto va = scaled(a.value(length_m * i / 300), unit_a);
+    worst = std::max(worst, std::abs(va - scaled(b.value(length_m * i / 300), unit_b)));
+    most = std::max(most, std::abs(va));
+  }
+  error.shape += margin * worst / most;
+  const auto va = scaled(a.value(0), unit_a), sa = scaled(a.slope(0), unit_a) / k;
+  const auto vb = scaled(b.value(0), unit_b), sb = scaled(b.slope(0), unit_b) / k;
+  error.phase +=
+      margin * std::hypot(std::abs(va - vb), std::abs(sa - sb)) / std::hypot(std::abs(va), std::abs(sa));
+  const auto apart = [length_m](std::optional<double> one, std::optional<double> other) {
+    if (one.has_value() != other.has_value()) return length_m;
+    return one ? std::abs(*one - *other) : 0;
+  };
+  double moved = apart(peak, peak_b);
+  for (const double level : {0.9, 0.5, 0.1, 0.01})
+    moved = std::max(moved, apart(a.level_m(level), b.level_m(level)));
+  error.position_m += margin * moved;
+}
+
 }  // namespace
+
+double SideError::drive(double conditioning) const {
+  const double lost = std::min(phase * conditioning, 1 - 1e-6);
+  return shape + lost / (1 - lost);
+}
+
+double SideError::level_dB(double conditioning) const {
+  return -20 * std::log10(1 - std::min(shape + phase * conditioning, 1 - 1e-6));
+}
 
 SideError side_error(const Surface& surface, double f) {
   const Dispersion dispersion(surface);
+  const bool clamped = dispersion.clamped_bending(), supported = dispersion.bending && !clamped;
+  Surface smooth = smooth_sides(surface);
+  Surface narrow = narrowed_sides(surface, smooth, f), rough = surface;
+  const auto* table = std::get_if<TabulatedTaper>(&smooth.taper);
+  const bool smoothed = table != nullptr && !table->slopes.empty();
   SideError error;
-  if (!dispersion.bending || dispersion.clamped || std::holds_alternative<LinearTaper>(surface.taper))
-    return error;
-  constexpr double margin = 2;
-  constexpr int panels = 64;
-  const Taper taper(surface);
+  if (!smoothed && (!supported || std::holds_alternative<LinearTaper>(surface.taper))) return error;
+  smooth.length_m = rough.length_m = narrow.length_m = moving_part(smooth, f).length_m;
   const double k = dispersion.wavenumber_per_m(f), cut = dispersion.cut_off_half_width_m(f);
-  const double x0 = taper.position_m(cut).value_or(taper.length_m());
-  const double share =
-      dispersion.stiffness_N_m / (2 * dispersion.stiffness_N_m * k * k + dispersion.tension_N_per_m);
-  double bend = 0;
-  const auto changed_k2 = [&](double x) {  // change of k^2 at x
-    const double w = taper.half_width_m(x), slope = taper.slope(x), q = pi / (2 * w);
-    const double kappa = std::abs(taper.second_derivative(x)) / std::pow(1 + slope * slope, 1.5);
-    bend = std::max(bend, (1 - surface.poisson) * kappa / k);
-    return (1 - surface.poisson) * kappa * q * q * 2 / w * share;
-  };
-  // x = x0 (1 - u^2) removes the root of the wavenumber along x at the turning point.
-  for (int i = 0; i < panels; ++i) {
-    const double u = (i + 0.5) / panels, x = x0 * (1 - u * u), q = pi / (2 * taper.half_width_m(x));
-    const double along = std::sqrt(std::max(k * k - q * q, 1e-6 * k * k));
-    error.phase += margin * changed_k2(x) / (2 * along) * 2 * x0 * u / panels;
+  const Taper even(smooth), narrower(narrow);
+  const double reach = even.position_m(cut).value_or(even.length_m());
+  const double ratio = even.half_width_m(0) / cut;
+  const double fall =
+      (even.half_width_m(0) - even.half_width_m(reach)) / std::max(reach, 1e-9 * even.length_m());
+  // amplitude of a higher mode at the drive edge, relative to that of the first; see `coupling`
+  const double amplitude = surface.drive == DriveShape::piston ? 1 : std::min(1.0, fall * ratio);
+  for (int n = 1;; ++n) {
+    // the cut-off half-width of this mode divided by that of the first
+    const double wider = clamped ? (4 * n - 1) / 3.0 : 2 * n - 1;
+    if (n > 1 && ratio < 0.98 * wider) break;
+    MarchEquation equation = march_equation(surface, f, Losses::kept);
+    equation.b *= wider * wider;
+    // Curvature and width at each point matter to g and v, but not to the field across a rough strip.
+    equation.c = equation.w_power = 0;
+    const auto line = make_marched_line(smooth, equation);
+    SideError one;
+    if (smoothed) add_difference(one, *line, *make_marched_line(rough, equation), even.length_m(), k, 2);
+    add_difference(one, *line, *make_marched_line(narrow, equation), even.length_m(), k, 1);
+    if (n == 1)
+      error = one;
+    else
+      error.shape += amplitude * (one.shape + one.phase * (clamped ? plate_amplification(surface, even, f)
+                                                                   : line->drive_conditioning(k)));
   }
-  const double fall = std::max(1e-9, std::abs(taper.slope(x0)));
-  error.position_m = margin * changed_k2(x0) * cut * cut * cut / (2 * (pi / 2) * (pi / 2) * fall);
-  const double airy = airy_length_m(cut, fall);
-  error.shape = margin * bend + error.phase + error.position_m / airy;
+  if (!supported) return error;
+  // near the sides, the field differs from that of a membrane by its slope times the narrowing
+  double inwards = 0;
+  for (int i = 0; i <= 64; ++i)
+    inwards = std::max(inwards, even.half_width_m(reach * i / 64) - narrower.half_width_m(reach * i / 64));
+  error.shape += 2 * k * inwards;
   return error;
 }
 
-ModeBound mode_bound(const Surface& surface, double f, double conditioning, std::optional<double> last_peak_m,
+ModeBound mode_bound(const Surface& given, double f, double conditioning, std::optional<double> last_peak_m,
                      std::optional<double> edge_m) {
   ModeBound bound;
+  const Surface surface = smooth_sides(given);
   const Dispersion dispersion(surface);
   const Taper taper(surface);
   const double cut = dispersion.cut_off_half_width_m(f);
@@ -274,11 +328,11 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning, std:
   // the same error of the field moves them farther.
   const double stretched = (x0 - last_peak_m.value_or(x0)) / (1.5 * airy_length);
   bound.equation_m *= std::max(1.0, stretched * stretched);
-  const SideError sides = side_error(surface, f);
-  bound.equation_m += sides.position_m;
-  bound.shape += sides.shape;
-  bound.drive += sides.drive(conditioning);
-  bound.level_dB += sides.level_dB(conditioning);
+  bound.sides = side_error(given, f);
+  bound.equation_m += bound.sides.position_m;
+  bound.shape += bound.sides.shape;
+  bound.drive += bound.sides.drive(conditioning);
+  bound.level_dB += bound.sides.level_dB(conditioning);
   return bound;
 }
 

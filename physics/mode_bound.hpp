@@ -7,18 +7,18 @@
 
 namespace turnpoint::physics {
 
-// The error of every model on a plate with simply supported, curved sides: such a plate is solved as a
-// membrane. On a curved side, however, zero bending moment means lap v = (1 - nu) kappa dv/dn and not lap v =
-// 0, with the side's curvature kappa (Rayleigh, Theory of Sound, section 225). To first order in kappa this
-// changes k^2 by (1
-// - nu) kappa (pi/2W)^2 2 D / (W (2 D k^2 + N)), which shifts the turning point and turns the phase of the
-// standing wave. The bounds are twice these first-order effects. 0 for other surfaces and for straight sides.
+// The error of every model that comes from the sides: rough ones are solved as smoother ones, and a simply
+// supported plate with curved sides as a membrane (smooth_sides.hpp). The bounds are differences between
+// three solutions of the one-mode equation, with loss: on the smoothed sides, on the given ones (taken twice,
+// as a margin) and on the narrowed ones. Where higher modes propagate, the same is done for each of them. 0
+// if the sides are straight or given by few points.
 struct SideError {
   double position_m = 0;  // shift of any edge
   double shape = 0;       // error of |v|, relative to the last maximum
-  double phase = 0;       // of the wave at the drive edge
-  double drive(double conditioning) const { return shape + phase * conditioning; }
-  double level_dB(double conditioning) const { return 8.686 * drive(conditioning); }
+  double phase = 0;       // of the wave at the drive edge, relative to the standing wave there
+  // error of |v| if v(0) is set to one, relative to the largest value
+  double drive(double conditioning) const;
+  double level_dB(double conditioning) const;
 };
 SideError side_error(const Surface& surface, double frequency_Hz);
 
@@ -38,6 +38,7 @@ struct ModeBound {
   // factor by which resonance makes the higher modes on the surface larger than the drive edge alone would
   double resonance = 1;
   double steepest = 0;  // largest |W'| between the drive edge and the turning point
+  SideError sides;      // what the above include because of the sides
 };
 
 // Computes the bounds. `conditioning` is CentreLine::drive_conditioning of the first mode. `last_peak_m` is

@@ -30,7 +30,8 @@ double end_slope(double h0, double h1, double d0, double d1) {
 
 }  // namespace
 
-MonotoneCubic::MonotoneCubic(std::span<const double> x, std::span<const double> y) {
+MonotoneCubic::MonotoneCubic(std::span<const double> x, std::span<const double> y,
+                             std::span<const double> slopes) {
   const std::size_t n = x.size();
   if (n < 2 || y.size() != n) throw std::invalid_argument("a monotone cubic needs two or more points");
   std::vector<double> h(n - 1), d(n - 1), m(n);
@@ -45,6 +46,7 @@ MonotoneCubic::MonotoneCubic(std::span<const double> x, std::span<const double> 
   for (std::size_t i = 1; i + 1 < n; ++i) m[i] = inner_slope(h[i - 1], h[i], d[i - 1], d[i]);
   m.front() = n == 2 ? d[0] : end_slope(h[0], h[1], d[0], d[1]);
   m.back() = n == 2 ? d[0] : end_slope(h[n - 2], h[n - 3], d[n - 2], d[n - 3]);
+  if (!slopes.empty()) m.assign(slopes.begin(), slopes.end());
   pieces_.reserve(n - 1);
   for (std::size_t i = 0; i + 1 < n; ++i) {
     pieces_.push_back({x[i], x[i + 1], y[i], m[i], (3 * d[i] - 2 * m[i] - m[i + 1]) / h[i],

@@ -19,13 +19,15 @@ struct Cubic {
   }
 };
 
-// A monotone function with continuous slope through strictly monotone points. Beyond the first and last
+// A monotone function with continuous slope through strictly monotone points. (With given slopes, it is
+// monotone if each of them is at most three times that of the chords beside it.) Beyond the first and last
 // point, the first and last cubic continue. Throws std::invalid_argument for fewer than two points or
 // unsorted x.
 class MonotoneCubic {
  public:
   MonotoneCubic() = default;
-  MonotoneCubic(std::span<const double> x, std::span<const double> y);
+  // With slopes at the points, these are used.
+  MonotoneCubic(std::span<const double> x, std::span<const double> y, std::span<const double> slopes = {});
 
   double operator()(double x) const { return piece(x).value(x); }
   double slope(double x) const { return piece(x).slope(x); }

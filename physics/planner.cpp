@@ -140,7 +140,6 @@ struct Reference {
   Probe mode;
   double conditioning;
   ModeBound bound;
-  SideError sides;
   bool shallow_peak;  // true if slightly more loss would remove the last maximum
 };
 
@@ -151,7 +150,7 @@ Reference reference(const Surface& surface, const Edge& edge, double f) {
       edge.kind == Edge::Kind::friction ? mode.line->level_m(faint).value_or(surface.length_m) : mode.edge;
   const auto bound = mode_bound(surface, f, conditioning, mode.peak, farthest);
   const bool uncertain_peak = mode.peak && peak_is_shallow(surface, f, *mode.peak);
-  return {f, edge, std::move(mode), conditioning, bound, side_error(surface, f), uncertain_peak};
+  return {f, edge, std::move(mode), conditioning, bound, uncertain_peak};
 }
 
 RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference) {
@@ -195,9 +194,9 @@ double modes_accuracy(const Surface& surface, const ModeBound& bound) {
   return quiet + (thick ? thick_plate_resonance : plate_resonance) * resonance;
 }
 
-// Adds the error of curved, simply supported sides, which the two-dimensional field has too.
+// Adds the error that comes from the sides, which the two-dimensional field has too.
 void add_sides(RungEstimate& e, const PlanRequest& request, const Reference& reference) {
-  const SideError& sides = reference.sides;
+  const SideError& sides = reference.bound.sides;
   e.amplitude_bound +=
       request.normalise == Normalise::peak ? sides.shape : sides.drive(reference.conditioning);
   e.level_bound_dB += sides.level_dB(reference.conditioning);

@@ -8,6 +8,7 @@
 #include "physics/dispersion.hpp"
 #include "physics/gate.hpp"
 #include "physics/root.hpp"
+#include "physics/smooth_sides.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -18,7 +19,7 @@ using std::numbers::pi;
 // multiple of pi exactly at the resonances.
 class Phase {
  public:
-  explicit Phase(const Surface& surface) : surface_(surface), taper_(surface) {}
+  explicit Phase(const Surface& surface) : surface_(smooth_sides(surface)), taper_(surface_) {}
 
   double operator()(double frequency_Hz) const {
     const TaylorMarch march(taper_, march_equation(surface_, frequency_Hz, Losses::left_out));

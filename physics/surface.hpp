@@ -60,6 +60,9 @@ struct TaperPoint {
 // point must be at x = 0, the last at or beyond the surface's length; half-widths must fall strictly.
 struct TabulatedTaper {
   std::vector<TaperPoint> points;
+  // dW/dx at the points, if smooth_sides() has made the table; empty for a measured one, whose slopes follow
+  // from its points
+  std::vector<double> slopes = {};
 };
 
 using TaperForm = std::variant<LinearTaper, ExponentialTaper, TabulatedTaper>;

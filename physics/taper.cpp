@@ -21,7 +21,7 @@ MonotoneCubic join(const TaperForm& form) {
     x.push_back(point.x_m);
     w.push_back(point.half_width_m);
   }
-  return MonotoneCubic(x, w);
+  return MonotoneCubic(x, w, table->slopes);
 }
 
 }  // namespace

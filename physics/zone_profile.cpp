@@ -11,6 +11,7 @@
 #include "physics/dispersion.hpp"
 #include "physics/nnls.hpp"
 #include "physics/root.hpp"
+#include "physics/smooth_sides.hpp"
 #include "physics/statement.hpp"
 #include "physics/taper.hpp"
 
@@ -267,7 +268,7 @@ std::optional<double> ZoneProfile::edge_m() const {
 }
 
 double ZoneProfile::edge_slope_m_per_Hz() const {
-  const Taper taper(surface_);
+  const Taper taper(smooth_sides(surface_));
   const double f = highest_Hz();
   const Dispersion dispersion(surface_);
   const auto above = taper.position_continued_m(dispersion.cut_off_half_width_m(f * 1.001));

@@ -398,6 +398,106 @@ TEST_CASE("the errors of models and map lie inside their bounds on random thick 
                  turnpoint::physics_test::random_thick_plate);
 }
 
+namespace {
+
+// Adds a point behind another one that is lower by `fall_m`, and lowers the following ones by as much.
+std::vector<TaperPoint> with_ledge(std::vector<TaperPoint> points, double x_m, double width_m,
+                                   double fall_m) {
+  std::vector<TaperPoint> all;
+  bool behind = false;
+  for (TaperPoint point : points) {
+    if (behind) point.half_width_m = std::max(1e-4, point.half_width_m - fall_m);
+    all.push_back(point);
+    if (behind || point.x_m < x_m - 1e-9) continue;
+    all.push_back({point.x_m + width_m, point.half_width_m - fall_m});
+    behind = true;
+  }
+  return all;
+}
+
+// Puts a second point 5 um behind each point, and rounds the half-widths to 0.1 um.
+std::vector<TaperPoint> doubled(const std::vector<TaperPoint>& points) {
+  std::vector<TaperPoint> all;
+  for (const TaperPoint& point : points)
+    for (const double off_m : {0.0, 5e-6})
+      all.push_back({point.x_m + off_m, std::round((point.half_width_m - 0.06 * off_m) * 1e7) * 1e-7});
+  all.pop_back();
+  return all;
+}
+
+}  // namespace
+
+// Elements that contain several points of a table do not follow its sides. The reference has an element for
+// each interval, and shares no code with `modes`.
+TEST_CASE("the bounds of modes hold on tables with close, uneven and noisy points", "[physics]") {
+  Surface plate = turnpoint::physics_test::tapered_plate(PlateTheory::kirchhoff);
+  plate.quality_factor = 30;
+  Surface thick = turnpoint::physics_test::tapered_plate(PlateTheory::mindlin);
+  thick.quality_factor = 100;
+  Surface membrane = seed_brass();
+  membrane.length_m = 0.44;
+  membrane.quality_factor = 60;
+  const auto noisy = turnpoint::physics_test::noisy_points;
+  const auto wide = noisy(89, 0, true, 1);
+  struct Case {
+    const char* name;
+    std::vector<TaperPoint> points;
+  };
+  const Case cases[]{{"a pair, 5 um and 0.3 um", with_ledge(wide, 0.08, 5e-6, 0.3e-6)},
+                     {"doubled and rounded", doubled(wide)},
+                     {"a ledge of 1 %", with_ledge(wide, 0.08, 0.8e-6, 0.12e-3)},
+                     {"a ledge of 3 %", with_ledge(wide, 0.08, 3e-6, 0.36e-3)},
+                     {"noise of 0.3 %", noisy(400, 3e-3, true, 1)},
+                     {"noise of 0.3 %, uneven", noisy(300, 3e-3, false, 1)}};
+  for (const auto& [name, points] : cases) {
+    for (const Surface& like : {plate, thick, membrane}) {
+      if (like.theory == PlateTheory::mindlin && points.size() != 300) continue;  // takes long
+      const Surface s = turnpoint::physics_test::tabulated(like, points);
+      const double f = bending_modelled(s) ? 40e3 : 30e3;
+      CollocationGrid grid;
+      grid.along = points.size() > 200 ? 5 : 7;
+      grid.across_plate = 13;
+      grid.across = 17;
+      const CollocatedField truth(s, f, grid);
+      for (const auto model : {Model::mode, Model::modes}) {
+        PlanRequest request{{Tone{f, 1, 0}}, 301, Edge::percent(0.5), Normalise::drive, {}};
+        const auto line = make_centre_line(s, f, model);
+        const RungEstimate bound = estimate(s, request, model);
+        request.coarsest = model;
+        const RungEstimate assumed = choose_model(s, request).bound;  // before solving
+        const double ln_unit = model == Model::modes ? 0 : line->value(0).ln_magnitude();
+        double worst = 0, most = 0;
+        for (int i = 0; i <= 300; ++i) {
+          const double x = 0.4 * i / 300, v = std::abs(truth.value(x));
+          worst = std::max(worst, std::abs(std::exp(line->value(x).ln_magnitude() - ln_unit) - v));
+          most = std::max(most, v);
+        }
+        const double k = wavenumber_per_m(s, f), peak = peak_of(truth, *line->last_peak_m(), 0.02 / k);
+        const double level_dB =
+            8.686 * std::abs(line->value(*line->last_peak_m()).ln_magnitude() - ln_unit - std::log(peak));
+        const double edge = *line->level_m(0.5);
+        const double moved_m = std::abs(edge_of(truth, edge, 0.5 * peak, 1e-4 / k) - edge);
+        CAPTURE(name, static_cast<int>(s.theory), turnpoint::physics::name(model), worst / most,
+                bound.amplitude_bound, level_dB, bound.level_bound_dB, moved_m, bound.boundary_bound_m);
+        if (std::getenv("TURNPOINT_SHOW") != nullptr)
+          std::printf(
+              "%-24s %-9s %d %-5s amplitude %.1e of %.1e, %.1e; level %.1e of %.1e dB; edge %.1e of %.1e m\n",
+              name, bending_modelled(s) ? "plate" : "membrane", static_cast<int>(s.theory),
+              std::string(turnpoint::physics::name(model)).c_str(), worst / most, bound.amplitude_bound,
+              assumed.amplitude_bound, level_dB, bound.level_bound_dB, moved_m, bound.boundary_bound_m);
+        CHECK(worst / most <= bound.amplitude_bound);
+        CHECK(level_dB <= bound.level_bound_dB);
+        CHECK(moved_m <= bound.boundary_bound_m);
+        if (model == Model::modes && s.theory == PlateTheory::kirchhoff && points.size() > 200)
+          CHECK(bound.amplitude_bound < 0.04);  // the fits are as short as they can be
+        CHECK(worst / most <= assumed.amplitude_bound);
+        CHECK(level_dB <= assumed.level_bound_dB);
+        CHECK(moved_m <= assumed.boundary_bound_m);
+      }
+    }
+  }
+}
+
 TEST_CASE("on simply supported plates with curved sides, the bounds include the bending moment on the sides",
           "[physics][oracle]") {
   const auto rows = turnpoint::physics_test::oracle("supported_taper.csv");

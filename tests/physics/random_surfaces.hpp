@@ -1,7 +1,11 @@
 #pragma once
 // Random surfaces of every kind, for a frequency of 20 kHz.
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "physics/dispersion.hpp"
 #include "physics/surface.hpp"
@@ -10,6 +14,38 @@
 namespace turnpoint::physics_test {
 
 inline constexpr double frequency_Hz = 20000;
+
+// Half-widths of a straight taper, measured with independent errors of this relative size and put in
+// descending order, as a table demands. `wide` multiplies them all, and the slope.
+inline std::vector<physics::TaperPoint> noisy_points(int count, double error, bool even, double wide) {
+  Draw draw(1);
+  std::vector<physics::TaperPoint> points;
+  std::vector<double> widths;
+  for (int i = 0; i < count; ++i) {
+    const bool inner = i > 0 && i + 1 < count;
+    points.push_back({0.44 * (i + (even || !inner ? 0 : draw.between(-0.4, 0.4))) / (count - 1), 0});
+    widths.push_back(wide * (0.0151 - 0.03 * points.back().x_m) *
+                     (1 + std::sqrt(3.0) * draw.between(-error, error)));
+  }
+  points.back().x_m = 0.44;
+  std::ranges::sort(widths, std::greater());
+  for (std::size_t i = 0; i < widths.size(); ++i) points[i].half_width_m = widths[i];
+  return points;
+}
+
+inline physics::Surface tabulated(const physics::Surface& like, std::vector<physics::TaperPoint> points) {
+  physics::Surface s = like;
+  s.taper = physics::TabulatedTaper{std::move(points)};
+  return s;
+}
+
+// A plate like that of the simulated rig.
+inline physics::Surface tapered_plate(physics::PlateTheory theory) {
+  physics::Surface s = physics::aluminium_plate();
+  s.theory = theory;
+  s.length_m = 0.44;
+  return s;
+}
 
 // Returns a table of 4 to 6 points with long, nearly even parts and steep steps. Higher modes are trapped
 // between the steps.
