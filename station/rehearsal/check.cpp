@@ -463,6 +463,8 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
     check.measures.push_back(protocol::line_of(meaning, *protocol));
   check.languages = options.drawable ? drawn.languages : protocol->languages;
   check.id = protocol->id, check.title = protocol->title, check.rig_name = rig->name;
+  check.different_places = protocol::place_count(*protocol);
+  check.dropout_after_h = protocol->dropout_after_h;
   check.protocol_defaults = protocol->defaults_used;
   check.rig_defaults = rig->defaults_used;
   check.survey =
