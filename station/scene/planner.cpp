@@ -178,9 +178,11 @@ Solution Planner::State::solve(const Scene& scene, const std::vector<ToneTarget>
   solution.fields = physics::evaluate_tones(surface, tones, physics::linspace_points(surface, profile_points),
                                             at_least_mode(solution.choice.model), physics::Normalise::none,
                                             solution.choice.solved);
+  const auto by_mode =
+      solution.choice.model == Model::modes ? physics::SolvedLines{} : solution.choice.solved;
   solution.choice.solved.clear();
   solution.uncertainty_m = boundary_uncertainty_m(surface, scene, wanted);
-  solution.warnings = physics::tone_warnings(surface, tones);
+  solution.warnings = physics::tone_warnings(surface, tones, by_mode);
   return solution;
 }
 
