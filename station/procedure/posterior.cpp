@@ -285,16 +285,8 @@ std::size_t Posterior::best_stimulus() const {
 void Posterior::update(std::size_t stimulus, bool one) {
   double total = 0;
   for (std::size_t p = 0; p < places_; ++p)
-    for (std::size_t s = 0; s < shapes_; ++s) {
-      const double f = core_[row(stimulus, p) * padded_shapes_ + s];
-      double* weights = &weights_[(p * shapes_ + s) * ends_];
-      double part = 0;
-      for (std::size_t e = 0; e < ends_; ++e) {
-        const double probability = likely(guesses_[e] + ranges_[e] * f);
-        part += weights[e] *= one ? probability : 1 - probability;
-      }
-      total += part;
-    }
+    weigh(&weights_[p * shapes_ * ends_], total, guesses_.data(), ranges_.data(),
+          &core_[row(stimulus, p) * padded_shapes_], shapes_, ends_, kFloor, one);
   const double scale = 1 / total;
   for (auto& weight : weights_) weight *= scale;
 }

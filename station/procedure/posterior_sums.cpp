@@ -1,5 +1,6 @@
 #include "station/procedure/posterior_sums.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "station/core/elementary.hpp"
@@ -41,6 +42,34 @@ void sum_rows(double* __restrict sums, const double* __restrict factors, const d
   for (std::size_t x = 0; x < kAbreast; ++x)
     sums[x] = rest[x] + ((sum[x][0] + sum[x][1]) + (sum[x][2] + sum[x][3])) +
               ((sum[x][4] + sum[x][5]) + (sum[x][6] + sum[x][7]));
+}
+
+TURNPOINT_CLONES
+void weigh(double* __restrict weights, double& total, const double* __restrict guesses,
+           const double* __restrict ranges, const double* __restrict values, std::size_t shapes,
+           std::size_t ends, double least, bool one) {
+  const Quad low = Quad{} + least, high = Quad{} + (1 - least);
+  for (std::size_t s = 0; s < shapes; ++s, weights += ends) {
+    double part = 0;
+    std::size_t e = 0;
+    for (; e + 4 <= ends; e += 4) {
+      Quad guess, range, weight;
+      std::memcpy(&guess, guesses + e, sizeof guess);
+      std::memcpy(&range, ranges + e, sizeof range);
+      std::memcpy(&weight, weights + e, sizeof weight);
+      Quad p = guess + range * values[s];
+      p = p < low ? low : p;
+      p = high < p ? high : p;
+      weight *= one ? p : 1 - p;
+      std::memcpy(weights + e, &weight, sizeof weight);
+      for (int i = 0; i < 4; ++i) part += weight[i];
+    }
+    for (; e < ends; ++e) {
+      const double p = std::clamp(guesses[e] + ranges[e] * values[s], least, 1 - least);
+      part += weights[e] *= one ? p : 1 - p;
+    }
+    total += part;
+  }
 }
 
 TURNPOINT_CLONES

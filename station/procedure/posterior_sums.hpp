@@ -22,6 +22,13 @@ void sum_rows(double* __restrict sums, const double* __restrict factors, const d
               const std::array<const std::uint32_t*, kAbreast>& rows, const std::size_t* places,
               std::size_t count, std::size_t length);
 
+/// Multiplies the weights of a place, [shape][end], by the probability of the answer, and adds them to
+/// `total`, those of a shape first among themselves. The probability of answer 1 is the end's guess plus its
+/// range times the value of the shape, and at least `least` from 0 and 1.
+void weigh(double* __restrict weights, double& total, const double* __restrict guesses,
+           const double* __restrict ranges, const double* __restrict values, std::size_t shapes,
+           std::size_t ends, double least, bool one);
+
 /// The logarithms of this many groups are computed together.
 constexpr std::size_t kBatch = 128;
 
