@@ -175,9 +175,9 @@ std::vector<ToneField> evaluate_tones(const Surface& surface, std::span<const To
 }
 
 std::vector<double> amplitude_profile(const Surface& surface, std::span<const Tone> tones,
-                                      std::span<const double> x, Model model) {
+                                      std::span<const double> x, Model model, const SolvedLines& solved) {
   Field field;
-  field.tones = evaluate_tones(surface, tones, x, model, Normalise::none);
+  field.tones = evaluate_tones(surface, tones, x, model, Normalise::none, solved);
   sum_tones(field, x.size());
   return field.amplitude;
 }

@@ -15,10 +15,6 @@
 
 namespace turnpoint::physics {
 
-class CentreLine;
-// The solutions of a model, one for each tone (see PlanChoice), or none.
-using SolvedLines = std::vector<std::shared_ptr<const CentreLine>>;
-
 // Which value of |v| is set to one:
 //   drive  v(0) of the strongest tone; weaker tones keep their ratio to the strongest one
 //   peak   last maximum of |v| of each tone, times the tone's amplitude relative to the strongest; if a tone
@@ -87,7 +83,8 @@ std::vector<ToneField> evaluate_tones(const Surface& surface, std::span<const To
 // Amplitude in m at each point, for the tones' amplitudes at the drive edge: the root of the sum of |v|^2
 // over the tones.
 std::vector<double> amplitude_profile(const Surface& surface, std::span<const Tone> tones,
-                                      std::span<const double> x_m, Model model);
+                                      std::span<const double> x_m, Model model,
+                                      const SolvedLines& solved = {});
 
 // Computes position and strength for one frequency (see ToneInfo), but no profile.
 ToneInfo tone_info(const Surface& surface, double frequency_Hz, Model model = Model::mode);

@@ -1,5 +1,7 @@
 #pragma once
 // A pure tone that drives the edge of the surface.
+#include <memory>
+#include <vector>
 
 namespace turnpoint::physics {
 
@@ -10,5 +12,9 @@ struct Tone {
   double amplitude_m = 1;
   double phase_rad = 0;
 };
+
+class CentreLine;
+// The solutions of a model, one for each tone (see PlanChoice), or none.
+using SolvedLines = std::vector<std::shared_ptr<const CentreLine>>;
 
 }  // namespace turnpoint::physics

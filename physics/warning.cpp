@@ -1,6 +1,7 @@
 #include "physics/warning.hpp"
 
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "physics/airborne.hpp"
@@ -37,13 +38,16 @@ std::vector<Warning> surface_warnings(const Surface& s) {
   return list;
 }
 
-std::vector<Warning> tone_warnings(const Surface& s, std::span<const Tone> tones) {
+std::vector<Warning> tone_warnings(const Surface& s, std::span<const Tone> tones, const SolvedLines& solved) {
+  if (!solved.empty() && solved.size() != tones.size())
+    throw std::invalid_argument("warnings need as many solutions as tones, or none");
   std::vector<Warning> list;
   const auto warn = [&list](const char* code, const char* sentence,
                             std::initializer_list<StatementValue> values) {
     add(list, make_statement(code, sentence, values));
   };
-  for (const Tone& tone : tones) {
+  for (std::size_t i = 0; i < tones.size(); ++i) {
+    const Tone& tone = tones[i];
     const double f = tone.frequency_Hz, kHz = f / 1e3;
     validate(s, f);
     if (f < audible_limit_Hz)
@@ -84,7 +88,9 @@ std::vector<Warning> tone_warnings(const Surface& s, std::span<const Tone> tones
            "%1 kHz: the air that moves with the surface adds %2 % to its mass, which the model leaves out",
            {{kHz, 3}, {100 * air.mass_share, 3}});
     const bool linear = std::holds_alternative<LinearTaper>(s.taper);
-    const auto line = make_centre_line(linear ? s : moving_part(s, f), f, Model::mode);
+    const auto line = linear && !solved.empty()
+                          ? solved[i]
+                          : make_centre_line(linear ? s : moving_part(s, f), f, Model::mode);
     const auto peak = line->last_peak_m();
     if (!peak) continue;
     const double ln_gain = line->value(*peak).ln_magnitude() - line->value(0).ln_magnitude();

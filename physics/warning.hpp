@@ -29,6 +29,8 @@ inline constexpr double audible_limit_Hz = 22400;
 // than a fingertip (14 mm) there, if the air alone damps it more than the stated quality factor says or adds
 // a tenth to its mass, if the gain at the last maximum is above 10, or if plate theory kirchhoff is used
 // although shear moves the boundary by more than 1 mm. Each code appears once, not once per tone.
-std::vector<Warning> tone_warnings(const Surface& surface, std::span<const Tone> tones);
+// `solved` may contain the solutions of the model `mode` for these tones; they are then not solved again.
+std::vector<Warning> tone_warnings(const Surface& surface, std::span<const Tone> tones,
+                                   const SolvedLines& solved = {});
 
 }  // namespace turnpoint::physics

@@ -85,13 +85,14 @@ void require_band(const ZoneProfile& profile, const ZoneRequest& r) {
 struct ZoneDesigner::Solved {
   ZoneRequest key;
   ZoneProfile alone, all;
+  std::vector<Warning> warnings = {};  // of the tones, which depend on their frequencies only
 };
 
 ZoneDesigner::ZoneDesigner(const Surface& surface, const FrictionMap& friction)
     : surface_(surface), friction_(friction) {}
 ZoneDesigner::~ZoneDesigner() = default;
 
-ZoneProfile& ZoneDesigner::solve(const ZoneRequest& request) {
+const ZoneDesigner::Solved& ZoneDesigner::solve(const ZoneRequest& request) {
   constexpr std::size_t most = 16;
   ZoneRequest key = request;
   if (key.edge.kind != Edge::Kind::friction) key.friction = 0;
@@ -99,7 +100,7 @@ ZoneProfile& ZoneDesigner::solve(const ZoneRequest& request) {
     if (one->key != key) continue;
     one->alone.rescale_to_friction(request.friction);
     one->all.rescale_to_friction(request.friction);
-    return one->all;
+    return *one;
   }
   // First design the zone with a single tone. This shows roughly where the highest tone must be before the
   // other tones are chosen.
@@ -112,8 +113,10 @@ ZoneProfile& ZoneDesigner::solve(const ZoneRequest& request) {
   place(all, request, 2e-7);
   require_band(all, request);
   if (solved_.size() == most) solved_.erase(solved_.begin());
-  solved_.push_back(std::make_unique<Solved>(Solved{key, std::move(alone), std::move(all)}));
-  return solved_.back()->all;
+  auto warnings = tone_warnings(surface_, all.tones());
+  solved_.push_back(
+      std::make_unique<Solved>(Solved{key, std::move(alone), std::move(all), std::move(warnings)}));
+  return *solved_.back();
 }
 
 ZoneDesign design_zone(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request) {
@@ -122,7 +125,8 @@ ZoneDesign design_zone(const Surface& surface, const FrictionMap& friction, cons
 
 ZoneDesign ZoneDesigner::design(const ZoneRequest& request) {
   check(surface_, friction_, request);
-  const ZoneProfile& profile = solve(request);
+  const Solved& solved = solve(request);
+  const ZoneProfile& profile = solved.all;
   ZoneDesign design;
   design.tones = profile.tones();
   assign_phases(design.tones);
@@ -137,8 +141,7 @@ ZoneDesign ZoneDesigner::design(const ZoneRequest& request) {
   }
   design.reason = reason.str();
   design.warnings = surface_warnings(surface_);
-  for (Warning& warning : tone_warnings(surface_, design.tones))
-    design.warnings.push_back(std::move(warning));
+  design.warnings.insert(design.warnings.end(), solved.warnings.begin(), solved.warnings.end());
   return design;
 }
 

@@ -70,7 +70,7 @@ class ZoneDesigner {
 
  private:
   struct Solved;
-  ZoneProfile& solve(const ZoneRequest& request);
+  const Solved& solve(const ZoneRequest& request);
 
   const Surface& surface_;
   const FrictionMap& friction_;

@@ -138,6 +138,8 @@ Json to_json(const rehearsal::Check& check, const std::string& signal) {
       {"wanted_sessions", check.wanted_sessions},
       {"stopped", signal.empty() ? Json(nullptr) : Json(signal)},
       {"blocks", blocks},
+      {"different_places", check.different_places},
+      {"dropout_after_h", json_number(check.dropout_after_h)},
       {"runs", runs},
       {"frequencies",
        {{"lowest_Hz", planned ? json_number(extremes.lowest_Hz) : Json(nullptr)},
@@ -242,6 +244,13 @@ void print(std::ostream& out, const rehearsal::Check& check, const std::string& 
         range(check.trials, 1), range(check.duration_s, 60), check.simulated_sessions,
         check.simulated_sessions < check.wanted_sessions ? fmt::format(" of {}", check.wanted_sessions) : "",
         number(check.trials.error, 2), number(check.duration_s.error / 60, 2));
+  if (check.different_places > 1)
+    fmt::print(
+        out, "Places in the counterbalancing: {} different ones; {}\n", check.different_places,
+        check.dropout_after_h
+            ? fmt::format("a participant who has not completed is replaced {} h after the last session",
+                          number(*check.dropout_after_h))
+            : std::string("a participant who drops out is not replaced (no [assignment])"));
   for (const auto& of : check.runs)
     fmt::print(
         out,

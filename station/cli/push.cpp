@@ -11,7 +11,9 @@
 #include "station/cli/shared_options.hpp"
 #include "station/collector/received.hpp"
 #include "station/collector/schema.hpp"
+#include "station/protocol/visits.hpp"
 #include "station/store/open.hpp"
+#include "station/view/report_data.hpp"
 
 namespace turnpoint::cli {
 
@@ -90,6 +92,9 @@ std::pair<std::string, std::int64_t> place_option(const std::string& word) {
 void push(Options given, Context& context) {
   auto& options = given.push;
   for (const auto& word : given.places) options.places.insert(place_option(word));
+  for (const auto& [protocol_id, count] : options.places)
+    if (const auto protocol = view::newest_protocol(options.database, protocol_id))
+      if (const auto rule = protocol::assignment(*protocol)) options.assignments.emplace(protocol_id, *rule);
   if (!options.return_places.empty() && (!options.received.empty() || !options.places.empty()))
     throw UsageError("--return-places cannot be combined with --places or --received");
   const auto report = collector::push(options);

@@ -1,13 +1,23 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <cmath>
+#include <limits>
+#include <map>
 #include <memory>
+#include <set>
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/shared_options.hpp"
 #include "station/collector/fetch.hpp"
+#include "station/core/number.hpp"
+#include "station/protocol/visits.hpp"
+#include "station/store/open.hpp"
+#include "station/store/places.hpp"
 #include "station/store/read.hpp"
+#include "station/system/clocks.hpp"
+#include "station/view/report_data.hpp"
 
 namespace turnpoint::cli {
 
@@ -16,6 +26,7 @@ namespace sessions_command {
 struct Options {
   std::string database;
   store::SessionFilter filter;
+  bool places = false;
 };
 
 Json to_json(const store::SessionRecord& session) {
@@ -55,8 +66,92 @@ void print(std::ostream& out, const std::vector<store::SessionRecord>& sessions)
   if (sessions.empty()) fmt::print(out, "none\n");
 }
 
+/// How many participants there are in a row of a design: in all, and by how far they have come.
+struct Row {
+  int started = 0, completed = 0, expected = 0, dropped_out = 0;
+};
+
+/// The rows of the design of a protocol: all, or those with a participant if there are many.
+struct Design {
+  std::string protocol_id;
+  core::RunMode mode = core::RunMode::live;
+  core::Assignment assignment;
+  std::map<std::int64_t, Row> rows;
+};
+
+Design design_of(const std::string& path, const std::string& protocol_id, core::RunMode mode) {
+  const auto protocol = view::newest_protocol(path, protocol_id);
+  Design design{protocol_id, mode, {}, {}};
+  if (!protocol) return design;
+  auto counted = *protocol;
+  // without [assignment], nobody is ever a dropout
+  if (!counted.dropout_after_h) counted.dropout_after_h = std::numeric_limits<double>::infinity();
+  design.assignment = *protocol::assignment(counted);
+  if (design.assignment.rows <= 100)
+    for (int row = 0; row < design.assignment.rows; ++row) design.rows[row];
+  auto reader = store::open_reader(path);
+  for (const auto& one :
+       store::participations(reader, protocol_id, mode, design.assignment, system::realtime_ns())) {
+    auto& row = design.rows[one.place % design.assignment.rows];
+    ++row.started;
+    ++(one.progress == store::Progress::completed  ? row.completed
+       : one.progress == store::Progress::expected ? row.expected
+                                                   : row.dropped_out);
+  }
+  return design;
+}
+
+void print(std::ostream& out, const Design& design) {
+  fmt::print(out, "{}, {}: {} different places, {}\n", design.protocol_id, core::name(design.mode),
+             design.assignment.rows,
+             std::isinf(design.assignment.dropout_after_h)
+                 ? "nobody is replaced"
+                 : fmt::format("a participant is expected for {} h after the last session",
+                               core::number(design.assignment.dropout_after_h)));
+  fmt::print(out, "{:>7} {:>8} {:>10} {:>9} {:>12}\n", "place", "started", "completed", "expected",
+             "dropped out");
+  for (const auto& [place, row] : design.rows)
+    fmt::print(out, "{:>7} {:>8} {:>10} {:>9} {:>12}\n", place, row.started, row.completed, row.expected,
+               row.dropped_out);
+}
+
+Json to_json(const Design& design) {
+  Json rows = Json::array();
+  for (const auto& [place, row] : design.rows)
+    rows.push_back({{"place", place},
+                    {"started", row.started},
+                    {"completed", row.completed},
+                    {"expected", row.expected},
+                    {"dropped_out", row.dropped_out}});
+  return {{"protocol_id", design.protocol_id},
+          {"run_mode", core::name(design.mode)},
+          {"different_places", design.assignment.rows},
+          {"dropout_after_h", json_number(design.assignment.dropout_after_h)},
+          {"places", rows}};
+}
+
+/// Prints how many participants each place of each protocol has, without any session.
+void places(const Options& options, const std::string& path, Context& context) {
+  std::set<std::pair<std::string, core::RunMode>> studies;
+  for (const auto& session : store::list_sessions(path, {"", "", options.filter.protocol_id}))
+    studies.emplace(session.start.protocol_id, session.start.run_mode);
+  Json json = Json::array();
+  for (const auto& [protocol_id, mode] : studies) {
+    const auto design = design_of(path, protocol_id, mode);
+    if (context.json)
+      json.push_back(to_json(design));
+    else
+      print(context.out, design);
+  }
+  if (context.json) return print_json(context.out, json);
+  if (studies.empty()) fmt::print(context.out, "none\n");
+}
+
 void sessions(const Options& options, Context& context) {
+  if (options.places && !(options.filter.session_id.empty() && options.filter.participant.empty()))
+    throw UsageError("--places counts all participants: leave out --session and --participant");
   const collector::ReadableDatabase database(options.database, options.filter);
+  if (options.places) return places(options, database.path(), context);
   const auto list = store::list_sessions(database.path(), options.filter);
   if (!context.json) return print(context.out, list);
   Json json = Json::array();
@@ -75,6 +170,10 @@ void add_sessions(CommandLine& app, Context& context) {
   command->add_option("--participant", options->filter.participant,
                       "List only this participant: CODE or CODE@STATION");
   command->add_option("--protocol", options->filter.protocol_id, "List only this protocol");
+  command->add_flag(
+      "--places", options->places,
+      "Instead, count the participants at each place in the counterbalancing: started, completed, "
+      "still expected, dropped out");
   add_json(*command, context);
   command->footer("Example: turnpoint sessions --db lab.sqlite");
   command->callback([options, &context] { sessions(*options, context); });

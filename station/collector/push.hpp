@@ -19,6 +19,8 @@ struct PushOptions {
   std::map<std::string, std::int64_t> places;
   /// protocols whose leased places are given back; this station then assigns places by itself again
   std::vector<std::string> return_places;
+  /// for each protocol that replaces dropouts: how. The server leases the lowest places of others.
+  std::map<std::string, core::Assignment> assignments = {};
 };
 
 struct PushedSession {

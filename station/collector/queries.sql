@@ -20,6 +20,7 @@ SELECT station_id, last_contact FROM turnpoint.station
 WHERE last_contact IS NULL OR last_contact < now() - interval '7 days' ORDER BY station_id;
 
 -- Places in the counterbalancing: how many are used and leased at each station
+-- (`turnpoint sessions --db postgresql://... --places` counts who started, completed, is expected and dropped out)
 SELECT l.protocol_id, l.station_id, count(*) AS leased, count(e.participant) AS used
 FROM turnpoint.lease l LEFT JOIN turnpoint.enrolment e USING (protocol_id, sequence_index, station_id)
 GROUP BY l.protocol_id, l.station_id ORDER BY 1, 2;

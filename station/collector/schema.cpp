@@ -538,11 +538,43 @@ BEGIN
   RETURN mine[1];
 END $fn$;
 
--- Leases this many more places in the counterbalancing of a protocol to the caller: the lowest that no station has.
--- Returns all places that are leased to the caller.
-CREATE OR REPLACE FUNCTION turnpoint.lease_places(protocol text, more bigint) RETURNS SETOF bigint
-LANGUAGE plpgsql SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS $fn$
-DECLARE mine text := turnpoint.own_station();
+-- The place of each live participant of a protocol who has completed or is still expected, by the rule in
+-- station/store/places.hpp. Codes of one person count once.
+CREATE OR REPLACE FUNCTION turnpoint.held_places(protocol text, rule json) RETURNS SETOF bigint LANGUAGE sql STABLE AS $$
+  WITH RECURSIVE
+    pair AS (SELECT station_a, code_a, station_b, code_b FROM turnpoint.same_person
+      UNION SELECT station_b, code_b, station_a, code_a FROM turnpoint.same_person),
+    code AS (SELECT s.session_id, s.station_id, s.participant, s.sequence_index, s.planned_session, s.status,
+        greatest((SELECT max(g.realtime_ns) FROM turnpoint.segment g WHERE g.session_id = s.session_id),
+          t.recorded_realtime_ns) AS last, t.session_id IS NOT NULL AS has_trials
+      FROM turnpoint.session s JOIN turnpoint.protocol q USING (protocol_key)
+        LEFT JOIN LATERAL (SELECT k.session_id, k.recorded_realtime_ns FROM turnpoint.trial k
+          WHERE k.session_id = s.session_id ORDER BY k.trial_index DESC LIMIT 1) t ON true
+      WHERE q.protocol_id = protocol AND s.run_mode = 'live'),
+    same AS (SELECT station_id, participant, station_id AS station_2, participant AS code_2 FROM code
+      UNION SELECT a.station_id, a.participant, p.station_b, p.code_b
+        FROM same a JOIN pair p ON (p.station_a, p.code_a) = (a.station_2, a.code_2)),
+    person AS (SELECT station_id, participant, min(ARRAY[station_2, code_2]) AS person FROM same GROUP BY 1, 2)
+  SELECT (array_agg(sequence_index ORDER BY last DESC, session_id COLLATE "C" DESC))[1]
+  FROM code JOIN person USING (station_id, participant) GROUP BY person
+  HAVING bool_or(status = 'running')
+    OR max(last) > extract(epoch FROM now()) * 1000000000 - (rule->>'dropout_after_h')::numeric * 3600000000000
+    OR count(DISTINCT CASE WHEN (rule->>'sessions')::bigint = 1 THEN 1
+        WHEN planned_session <= (rule->>'sessions')::bigint THEN planned_session END)
+      FILTER (WHERE status = 'completed'
+        OR ((rule->>'incomplete_count')::boolean AND status <> 'running' AND has_trials))
+      >= (rule->>'sessions')::bigint $$;
+
+-- Leases this many more places in the counterbalancing of a protocol to the caller. Without a rule: the lowest that no
+-- station has. With one (core::Assignment as JSON): one after the other, the lowest that no station has in the row with
+-- the fewest participants who have completed or are expected, and free leased places. Returns all places that are
+-- leased to the caller.
+DROP FUNCTION IF EXISTS turnpoint.lease_places(text, bigint);
+CREATE OR REPLACE FUNCTION turnpoint.lease_places(protocol text, more bigint, rule json DEFAULT NULL)
+RETURNS SETOF bigint LANGUAGE plpgsql SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS $fn$
+DECLARE
+  mine text := turnpoint.own_station();
+  n bigint := coalesce((rule->>'rows')::bigint, 1);
 BEGIN
   IF more < 0 OR more + (SELECT count(*) FROM turnpoint.lease t WHERE t.protocol_id = protocol AND t.station_id = mine
       AND NOT EXISTS (SELECT FROM turnpoint.enrolment e WHERE e.protocol_id = protocol
@@ -550,15 +582,29 @@ BEGIN
     RAISE EXCEPTION 'a station cannot lease % more places; it may hold up to 10000 that nobody has', more
       USING ERRCODE = 'TP003';
   END IF;
+  IF n < 1 OR n > 1000000 THEN RAISE EXCEPTION 'a design has 1 to 1000000 rows' USING ERRCODE = 'TP003'; END IF;
   PERFORM turnpoint.note_hold();
   LOCK TABLE turnpoint.lease IN SHARE ROW EXCLUSIVE MODE;  -- the database's lock_timeout limits how long this waits
   INSERT INTO turnpoint.lease (protocol_id, sequence_index, station_id)
-    SELECT protocol, i, mine FROM generate_series(0::bigint,
-      (SELECT count(*) FROM turnpoint.lease t WHERE t.protocol_id = protocol)
-      + (SELECT count(*) FROM turnpoint.enrolment t WHERE t.protocol_id = protocol) + more) i
-    WHERE NOT EXISTS (SELECT FROM turnpoint.lease t WHERE t.protocol_id = protocol AND t.sequence_index = i)
-      AND NOT EXISTS (SELECT FROM turnpoint.enrolment t WHERE t.protocol_id = protocol AND t.sequence_index = i)
-    ORDER BY i LIMIT more;
+    WITH unused AS (SELECT t.sequence_index AS place FROM turnpoint.lease t WHERE t.protocol_id = protocol
+        AND NOT EXISTS (SELECT FROM turnpoint.enrolment e WHERE e.protocol_id = protocol
+                          AND e.sequence_index = t.sequence_index)),
+      taken AS (SELECT place FROM unused
+        UNION SELECT t.sequence_index FROM turnpoint.enrolment t WHERE t.protocol_id = protocol
+        UNION SELECT t.sequence_index FROM turnpoint.lease t WHERE t.protocol_id = protocol),
+      taken_in AS (SELECT place % n AS r, count(*) AS places FROM taken GROUP BY 1),
+      held_in AS (SELECT place % n AS r, count(*) AS persons FROM (SELECT place FROM unused
+        UNION ALL SELECT * FROM turnpoint.held_places(protocol, rule)) h WHERE rule IS NOT NULL GROUP BY 1),
+      -- Of the rows beyond these, none comes before those of these in which nobody has a place.
+      a_row AS (SELECT r, coalesce(places, 0) AS places, coalesce(persons, 0) AS persons,
+          max(coalesce(persons, 0)) OVER () + more / count(*) OVER () + 1 AS highest
+        FROM generate_series(0, least(n, (SELECT count(*) FROM taken) + more) - 1) i(r)
+          LEFT JOIN taken_in USING (r) LEFT JOIN held_in USING (r)),
+      -- Each free place, and how many would be in its row with it and those before it.
+      free AS (SELECT p.place, persons + row_number() OVER (PARTITION BY r ORDER BY p.place) AS level
+        FROM a_row, LATERAL generate_series(r, r + n * (places + highest - persons), n) p(place)
+        WHERE p.place NOT IN (SELECT place FROM taken))
+    SELECT protocol, place, mine FROM free ORDER BY level, place LIMIT more;
   RETURN QUERY SELECT t.sequence_index FROM turnpoint.lease t
     WHERE t.protocol_id = protocol AND t.station_id = mine ORDER BY t.sequence_index;
 END $fn$;
@@ -626,7 +672,7 @@ END $fn$;
 constexpr const char* kRights = R"sql(
 REVOKE ALL ON ALL FUNCTIONS IN SCHEMA turnpoint FROM PUBLIC;
 GRANT EXECUTE ON FUNCTION turnpoint.hello(), turnpoint.chains(), turnpoint.prepare(), turnpoint.store_session(text),
-  turnpoint.exchange_tombstones(json, json), turnpoint.store_joins(json), turnpoint.lease_places(text, bigint),
+  turnpoint.exchange_tombstones(json, json), turnpoint.store_joins(json), turnpoint.lease_places(text, bigint, json),
   turnpoint.return_places(text, json)
   TO turnpoint_station;
 GRANT EXECUTE ON FUNCTION turnpoint.hello() TO turnpoint_reader;

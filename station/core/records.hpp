@@ -39,6 +39,16 @@ struct Conditions {
   std::optional<double> skin_moisture;
 };
 
+/// How new participants get their places in the counterbalancing if those who drop out are replaced
+/// (store/places.hpp). It follows from the protocol.
+struct Assignment {
+  double dropout_after_h = 0;  ///< how long after the last session a participant is still expected
+  /// number of different places: those whose difference is a multiple of it have the same group and orders
+  int rows = 1;
+  int sessions = 1;               ///< number of planned sessions, after which a participant has completed
+  bool incomplete_count = false;  ///< whether a session that has trials but was not completed counts as done
+};
+
 /// Where the data of a session come from: everything that is needed to run the session again or to explain it
 /// later.
 struct SessionStart {
@@ -64,6 +74,8 @@ struct SessionStart {
   /// participant's place is known: a participant at place p belongs to group number p modulo their count.
   std::string group = {};
   std::vector<std::string> groups = {};  ///< names of all groups; not stored
+  /// empty if the lowest place that nobody has had goes to the next participant; not stored
+  std::optional<Assignment> assignment = {};
 };
 
 /// One process run of a session, with readings of the clocks at its start. Each resume opens another segment.

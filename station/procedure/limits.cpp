@@ -39,6 +39,34 @@ double gap(double low, double high, Scale scale) {
 
 }  // namespace
 
+std::vector<double> levels_of_series(const Spec& spec, std::size_t most) {
+  const bool listed = !spec.ascending.uniform && !spec.descending.uniform;
+  if (!listed || spec.step.empty() || !(spec.step.front() > 0) || !spec.min || !spec.max) return {};
+  std::vector<double> given{*spec.min, *spec.max};
+  given.insert(given.end(), spec.ascending.values.begin(), spec.ascending.values.end());
+  given.insert(given.end(), spec.descending.values.begin(), spec.descending.values.end());
+  if (spec.scale != Scale::linear && *std::min_element(given.begin(), given.end()) <= 0) return {};
+  const double step = spec.step.front(), slack = kSlack * step;
+  const double lowest = position_of(*spec.min, spec.scale), highest = position_of(*spec.max, spec.scale);
+  std::vector<double> positions;
+  const auto add_series = [&](double start, int way) {
+    const double from = position_of(start, spec.scale);
+    for (std::size_t k = 0; k <= most; ++k) {
+      const double at = at_step(from, way * static_cast<std::int64_t>(k), step);
+      if (at < lowest - slack || at > highest + slack) break;
+      positions.push_back(at);
+    }
+  };
+  for (const double start : spec.ascending.values) add_series(start, 1);
+  for (const double start : spec.descending.values) add_series(start, -1);
+  std::sort(positions.begin(), positions.end());
+  const auto same = [slack](double a, double b) { return b - a <= slack; };
+  positions.erase(std::unique(positions.begin(), positions.end(), same), positions.end());
+  if (positions.size() > most) return {};
+  for (double& at : positions) at = std::clamp(level_at(at, spec.scale), *spec.min, *spec.max);
+  return positions;
+}
+
 Limits::Limits(const Spec& spec, const core::DrawKey& key) : spec_(spec) {
   core::Draws draws({key.seed, core::Stream::level_order, key.block, key.attempt, 0});
   const bool up = !spec.ascending.empty(), down = !spec.descending.empty();

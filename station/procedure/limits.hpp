@@ -66,4 +66,8 @@ class Limits : public Procedure {
   std::vector<Answer> answers_;
 };
 
+/// The levels that series with listed starts can present, in ascending order. Empty if starts are drawn from
+/// a range, if the series cannot run, or if there are more than `most` levels.
+std::vector<double> levels_of_series(const Spec& spec, std::size_t most);
+
 }  // namespace turnpoint::procedure

@@ -153,9 +153,16 @@ void Posterior::set_core(const Spec& spec, const std::vector<std::pair<std::size
               : probability(spec.function, scale_, {at, steepness, 0, 0}, stimulus.level);
       core_[d * padded_shapes_ + s] = f;
       for (std::size_t e = 0; e < ends_ && kept_.empty(); ++e)
-        entropy_.push_back(binary_entropy(likely(guesses_[e] + ranges_[e] * f)));
+        entropy_.push_back(likely(guesses_[e] + ranges_[e] * f));
     }
   }
+  // binary_entropy() of these probabilities, all of which lie between 0 and 1
+  std::vector<double> zero, log_one(entropy_.size()), log_zero(entropy_.size());
+  for (const double one : entropy_) zero.push_back(1 - one);
+  core::logs(entropy_, log_one);
+  core::logs(zero, log_zero);
+  for (std::size_t i = 0; i < entropy_.size(); ++i)
+    entropy_[i] = -entropy_[i] * log_one[i] - zero[i] * log_zero[i];
 }
 
 void Posterior::set_groups(const Spec& spec) {
@@ -192,17 +199,13 @@ std::vector<double> Posterior::sums(const std::vector<double>& factors, const st
                                     std::size_t length) const {
   const std::size_t n = stimuli_.size();
   const auto matter = places_that_matter();
-  std::vector<double> all;
-  all.reserve(n);
-  for (std::size_t x = 0; x < n; x += 2) {
-    const std::size_t other = std::min(x + 1, n - 1);
-    Products first, second;
-    for (const std::size_t p : matter)
-      add(first, second, &factors[p * length], &table[row(x, p) * length], &table[row(other, p) * length],
-          length);
-    all.push_back(first.sum());
-    if (other > x) all.push_back(second.sum());
+  std::vector<double> all(n + kAbreast);
+  for (std::size_t first = 0; first < n; first += kAbreast) {
+    std::array<const std::uint32_t*, kAbreast> rows;
+    for (std::size_t x = 0; x < kAbreast; ++x) rows[x] = &rows_[std::min(first + x, n - 1) * places_];
+    sum_rows(&all[first], factors.data(), table.data(), rows, matter.data(), matter.size(), length);
   }
+  all.resize(n);
   return all;
 }
 
@@ -282,16 +285,8 @@ std::size_t Posterior::best_stimulus() const {
 void Posterior::update(std::size_t stimulus, bool one) {
   double total = 0;
   for (std::size_t p = 0; p < places_; ++p)
-    for (std::size_t s = 0; s < shapes_; ++s) {
-      const double f = core_[row(stimulus, p) * padded_shapes_ + s];
-      double* weights = &weights_[(p * shapes_ + s) * ends_];
-      double part = 0;
-      for (std::size_t e = 0; e < ends_; ++e) {
-        const double probability = likely(guesses_[e] + ranges_[e] * f);
-        part += weights[e] *= one ? probability : 1 - probability;
-      }
-      total += part;
-    }
+    weigh(&weights_[p * shapes_ * ends_], total, guesses_.data(), ranges_.data(),
+          &core_[row(stimulus, p) * padded_shapes_], shapes_, ends_, kFloor, one);
   const double scale = 1 / total;
   for (auto& weight : weights_) weight *= scale;
 }

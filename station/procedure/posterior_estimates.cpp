@@ -39,17 +39,28 @@ double quantile(const std::vector<double>& edges, const std::vector<double>& wei
   return edges.back();
 }
 
+struct Moments {
+  double mean = 0, sd = 0;
+};
+
+Moments moments_of(const std::vector<double>& values, const std::vector<double>& weights) {
+  Moments moments;
+  for (std::size_t i = 0; i < values.size(); ++i) moments.mean += weights[i] * values[i];
+  double variance = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    variance += weights[i] * (values[i] - moments.mean) * (values[i] - moments.mean);
+  moments.sd = std::sqrt(variance);
+  return moments;
+}
+
 /// Returns the estimate from ascending values and their weights, which sum to 1. The mode is that of the
 /// weights.
 Estimate estimate_of(const std::vector<double>& values, const std::vector<double>& weights) {
   Estimate estimate;
   estimate.mode =
       values[static_cast<std::size_t>(std::max_element(weights.begin(), weights.end()) - weights.begin())];
-  for (std::size_t i = 0; i < values.size(); ++i) estimate.mean += weights[i] * values[i];
-  double variance = 0;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    variance += weights[i] * (values[i] - estimate.mean) * (values[i] - estimate.mean);
-  estimate.sd = std::sqrt(variance);
+  const auto moments = moments_of(values, weights);
+  estimate.mean = moments.mean, estimate.sd = moments.sd;
   const auto edges = edges_of(values);
   estimate.interval = {quantile(edges, weights, kTail), quantile(edges, weights, 1 - kTail)};
   return estimate;
@@ -80,10 +91,20 @@ double Posterior::most_likely_threshold() const {
 std::vector<double> Posterior::marginal(Parameter parameter) const {
   std::vector<double> marginal(values_[parameter].size());
   const std::size_t stride = stride_[parameter];
+  // The values take turns, because a sum waits for its last addition.
   for (std::size_t first = 0; first < size(); first += stride * marginal.size())
-    for (std::size_t value = 0; value < marginal.size(); ++value)
-      for (std::size_t i = 0; i < stride; ++i) marginal[value] += weights_[first + value * stride + i];
+    for (std::size_t i = 0; i < stride; ++i)
+      for (std::size_t value = 0; value < marginal.size(); ++value)
+        marginal[value] += weights_[first + value * stride + i];
   return marginal;
+}
+
+double Posterior::mean(Parameter parameter) const {
+  return moments_of(values_[parameter], marginal(parameter)).mean;
+}
+
+double Posterior::sd(Parameter parameter) const {
+  return moments_of(values_[parameter], marginal(parameter)).sd;
 }
 
 Estimate Posterior::estimate(Parameter parameter) const {

@@ -1,5 +1,6 @@
 #include "station/procedure/posterior_sums.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "station/core/elementary.hpp"
@@ -10,39 +11,65 @@ namespace turnpoint::procedure {
 namespace {
 
 using Quad = double __attribute__((vector_size(32)));
+using Lanes = double __attribute__((vector_size(8 * kLanes)));
+static_assert(kAbreast == 4, "a Quad has a value for each stimulus");
 
 }  // namespace
 
-// The partial sums are copied to local variables, which cannot overlap the inputs, so that the compiler can
-// keep them in registers.
 TURNPOINT_CLONES
-void add(Products& first, Products& second, const double* x, const double* y, const double* z,
-         std::size_t n) {
-  Quad one_low, one_high, two_low, two_high, value, by;
-  std::memcpy(&one_low, &first.lane[0], sizeof one_low);
-  std::memcpy(&one_high, &first.lane[4], sizeof one_high);
-  std::memcpy(&two_low, &second.lane[0], sizeof two_low);
-  std::memcpy(&two_high, &second.lane[4], sizeof two_high);
-  std::size_t i = 0;
-  for (; i + kLanes <= n; i += kLanes) {
-    std::memcpy(&value, x + i, sizeof value);
-    std::memcpy(&by, y + i, sizeof by);
-    one_low += value * by;
-    std::memcpy(&by, z + i, sizeof by);
-    two_low += value * by;
-    std::memcpy(&value, x + i + 4, sizeof value);
-    std::memcpy(&by, y + i + 4, sizeof by);
-    one_high += value * by;
-    std::memcpy(&by, z + i + 4, sizeof by);
-    two_high += value * by;
+void sum_rows(double* __restrict sums, const double* __restrict factors, const double* __restrict table,
+              const std::array<const std::uint32_t*, kAbreast>& rows, const std::size_t* places,
+              std::size_t count, std::size_t length) {
+  Lanes sum[kAbreast] = {};
+  Quad rest = {};  // one for each stimulus
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t place = places[k];
+    const double* factor = factors + place * length;
+    std::array<const double*, kAbreast> row;
+    for (std::size_t x = 0; x < kAbreast; ++x) row[x] = table + rows[x][place] * length;
+    std::size_t i = 0;
+    for (; i + kLanes <= length; i += kLanes) {
+      Lanes factor_here, by;
+      std::memcpy(&factor_here, factor + i, sizeof factor_here);
+#pragma GCC unroll 4
+      for (std::size_t x = 0; x < kAbreast; ++x) {
+        std::memcpy(&by, row[x] + i, sizeof by);
+        sum[x] += factor_here * by;
+      }
+    }
+    for (; i < length; ++i) rest += factor[i] * Quad{row[0][i], row[1][i], row[2][i], row[3][i]};
   }
-  double one_rest = first.rest, two_rest = second.rest;
-  for (; i < n; ++i) one_rest += x[i] * y[i], two_rest += x[i] * z[i];
-  std::memcpy(&first.lane[0], &one_low, sizeof one_low);
-  std::memcpy(&first.lane[4], &one_high, sizeof one_high);
-  std::memcpy(&second.lane[0], &two_low, sizeof two_low);
-  std::memcpy(&second.lane[4], &two_high, sizeof two_high);
-  first.rest = one_rest, second.rest = two_rest;
+  for (std::size_t x = 0; x < kAbreast; ++x)
+    sums[x] = rest[x] + ((sum[x][0] + sum[x][1]) + (sum[x][2] + sum[x][3])) +
+              ((sum[x][4] + sum[x][5]) + (sum[x][6] + sum[x][7]));
+}
+
+TURNPOINT_CLONES
+void weigh(double* __restrict weights, double& total, const double* __restrict guesses,
+           const double* __restrict ranges, const double* __restrict values, std::size_t shapes,
+           std::size_t ends, double least, bool one) {
+  const Quad low = Quad{} + least, high = Quad{} + (1 - least);
+  for (std::size_t s = 0; s < shapes; ++s, weights += ends) {
+    double part = 0;
+    std::size_t e = 0;
+    for (; e + 4 <= ends; e += 4) {
+      Quad guess, range, weight;
+      std::memcpy(&guess, guesses + e, sizeof guess);
+      std::memcpy(&range, ranges + e, sizeof range);
+      std::memcpy(&weight, weights + e, sizeof weight);
+      Quad p = guess + range * values[s];
+      p = p < low ? low : p;
+      p = high < p ? high : p;
+      weight *= one ? p : 1 - p;
+      std::memcpy(weights + e, &weight, sizeof weight);
+      for (int i = 0; i < 4; ++i) part += weight[i];
+    }
+    for (; e < ends; ++e) {
+      const double p = std::clamp(guesses[e] + ranges[e] * values[s], least, 1 - least);
+      part += weights[e] *= one ? p : 1 - p;
+    }
+    total += part;
+  }
 }
 
 TURNPOINT_CLONES

@@ -12,7 +12,7 @@ QuestPlus::QuestPlus(const Spec& spec)
 
 std::size_t QuestPlus::chosen() const {
   if (spec_.kind == Kind::zest)
-    return posterior_.nearest_stimulus(posterior_.estimate(Posterior::threshold).mean, spec_.scale);
+    return posterior_.nearest_stimulus(posterior_.mean(Posterior::threshold), spec_.scale);
   if (spec_.kind == Kind::best_pest)
     return posterior_.nearest_stimulus(posterior_.most_likely_threshold(), spec_.scale);
   return posterior_.best_stimulus();
@@ -24,7 +24,7 @@ bool QuestPlus::rules_met() const {
   const bool by_trials = stop.trials && trials >= *stop.trials;
   if (by_trials && stop.rule == StopRule::any) return true;
   if (stop.min_trials && trials < *stop.min_trials) return false;
-  const bool by_sd = stop.threshold_sd && *posterior_.estimate(Posterior::threshold).sd <= *stop.threshold_sd;
+  const bool by_sd = stop.threshold_sd && posterior_.sd(Posterior::threshold) <= *stop.threshold_sd;
   const bool by_entropy = stop.entropy_nats && posterior_.entropy_nats() <= *stop.entropy_nats;
   const bool by_right =
       enough_right(stop, history_.size(), [this](std::size_t i) { return history_[i] % 2 == 1; });

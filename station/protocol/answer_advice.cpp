@@ -224,7 +224,7 @@ void check_catch(AdviceList& advice, const std::variant<Block, Sequence>& part) 
   const auto sources = sources_of(protocol);
   const auto sets = [&](const Source& source) { return source.spec && source.level == trials->factor; };
   if (std::none_of(sources.begin(), sources.end(), sets)) return;
-  const double middle = middle_level(protocol, trials->factor);
+  const double middle = middle_level_of(protocol, trials->factor);
   for (const double level : trials->levels)
     if ((sides     ? std::fabs((rule.size ? std::fabs(level) : level) - rule.cut)
          : decibel ? level

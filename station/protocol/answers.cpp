@@ -270,7 +270,7 @@ std::optional<double> accepted(const ValueAnswer& answer, double given) {
 }
 
 double middle_level(const Protocol& protocol, const std::string& level) {
-  const auto rule = answer_rule_of(protocol, level);
+  const auto rule = answer_rule(protocol, level);
   const bool sides = rule.kind == AnswerKind::side, decibel = !sides && level.ends_with("_dB");
   const auto distance = [&](double value) {
     return std::fabs((rule.size ? std::fabs(value) : value) - rule.cut);
@@ -285,6 +285,12 @@ double middle_level(const Protocol& protocol, const std::string& level) {
   auto& all = by_procedures.empty() ? by_blocks : by_procedures;
   if (all.empty()) return 1;
   return core::median(all);
+}
+
+double middle_level_of(const Protocol& protocol, const std::string& level) {
+  for (const auto& meaning : protocol.meanings)
+    if (meaning.level == level) return meaning.middle;
+  return middle_level(protocol, level);
 }
 
 }  // namespace turnpoint::protocol

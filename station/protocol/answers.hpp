@@ -71,4 +71,7 @@ bool two_sided(const Protocol& protocol, const std::string& level);
 /// levels.
 double middle_level(const Protocol& protocol, const std::string& level);
 
+/// The same level; taken from the meanings of a protocol that has been read, without computing it again.
+double middle_level_of(const Protocol& protocol, const std::string& level);
+
 }  // namespace turnpoint::protocol

@@ -185,7 +185,10 @@ std::vector<Meaning> meanings_of(const Protocol& protocol) {
     if (!all.empty()) break;
   }
   if (all.empty()) all.emplace_back(), settings.emplace_back();
-  for (auto& meaning : all) decide(protocol, meaning);
+  for (auto& meaning : all) {
+    decide(protocol, meaning);
+    meaning.middle = middle_level(protocol, meaning.level);
+  }
   name_all(all, settings);
   return all;
 }

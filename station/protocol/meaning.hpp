@@ -75,6 +75,7 @@ struct Meaning {
   /// factor of a second dimension along which the threshold changes within the analysis; "" if there is none.
   /// No function of the level is fitted then
   std::string along;
+  double middle = 1;  ///< middle_level() of `level`
 };
 
 /// The analysis to which trials of this procedure (or, without one, of this block) belong: an index of

@@ -420,6 +420,8 @@ struct Protocol {
   std::optional<Payoff> payoff;
   std::vector<procedure::Spec> procedures;
   std::optional<SessionPlan> sessions;  ///< empty: the protocol does not say how many sessions there are
+  /// time after which a participant who has not completed is replaced (assignment()); empty: never
+  std::optional<double> dropout_after_h;
   std::vector<std::variant<Block, Sequence>> plan;  ///< blocks and sequences in the order of the file
   std::map<std::string, Instruction> instructions;
   std::vector<Interlude> interludes;  ///< all interludes in the order of the file

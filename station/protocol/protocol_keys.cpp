@@ -666,6 +666,13 @@ const Keys& all() {
                   "as done")
                  .by_default("\"repeat\"")},
             "several visits"),
+      table("assignment",
+            {number("dropout_after_h", {0, 100000, Ends::open_low, "h"},
+                    "how long after the last session a participant who has not completed is expected; then a "
+                    "new participant gets the same group and orders")
+                 .required()},
+            "who gets which group and orders: those with the fewest participants who have completed or are "
+            "expected"),
   };
   return keys;
 }

@@ -187,6 +187,34 @@ void check_continuing(const Reading& reading) {
   }
 }
 
+void read_assignment(TableReader& file, const Reading& reading) {
+  const auto* table = file.maybe_table("assignment");
+  if (!table) return;
+  TableReader reader(*table, "assignment", reading.findings, file.keys("assignment"));
+  reading.protocol.dropout_after_h = reader.number("dropout_after_h");
+  reader.finish();
+}
+
+/// Reports an [assignment] that has nothing to even out, or that replaces participants before they may come
+/// back.
+void check_assignment(const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  if (!protocol.dropout_after_h) return;
+  const auto place = reading.places.of("assignment.dropout_after_h");
+  if (place_count(protocol) == 1)
+    reading.findings.add(place, phrase("all participants have the same blocks in the same order"),
+                         phrase("leave [assignment] out, or add a sequence or a factor with %1",
+                                {plain("draw = \"per-participant\"")}));
+  // The first day on which a participant may come ends at most so many hours after the last session.
+  const int min_days = protocol.sessions ? protocol.sessions->min_days : 0;
+  const double needed_h = min_days > 0 ? 24.0 * (min_days + 1) : 0;
+  if (*protocol.dropout_after_h < needed_h)
+    reading.findings.add(
+        place,
+        phrase("participants would be replaced before the first day on which they may come back is over"),
+        phrase("at least %1", {plain(core::number(needed_h))}));
+}
+
 }  // namespace
 
 void read_sessions(TableReader& file, Reading& reading) {
@@ -194,6 +222,7 @@ void read_sessions(TableReader& file, Reading& reading) {
     reading.findings.add(reading.protocol.factors.front().place,
                          phrase("%1 groups", {plain(group_count(reading.protocol))}),
                          phrase("at most %1", {plain("100")}));
+  read_assignment(file, reading);
   const auto* table = file.maybe_table("sessions");
   if (!table) return;
   TableReader reader(*table, "sessions", reading.findings, file.keys("sessions"));
@@ -233,6 +262,7 @@ void check_visits(const Reading& reading) {
   check_group_factors(reading);
   check_rules(reading);
   check_continuing(reading);
+  check_assignment(reading);
 }
 
 }  // namespace turnpoint::protocol

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "station/procedure/limits.hpp"
 #include "station/protocol/expression.hpp"
 
 namespace turnpoint::protocol {
@@ -18,13 +19,18 @@ void add_steps(double low, double high, int steps, std::vector<double>& levels) 
   for (int i = 0; i <= steps; ++i) levels.push_back(low + (high - low) * i / steps);
 }
 
-// A staircase can present any level between its limits, and a slider any value in the range of its factor.
-// Evenly spaced values represent them.
+// A staircase can present any level between its limits, a series of the method of limits those that are whole
+// steps from its start, and a slider any value in the range of its factor. Evenly spaced values represent the
+// levels of a staircase and of a slider.
 std::vector<double> levels_of(const Protocol& protocol, const procedure::Spec& spec) {
   auto levels = spec.values;
   levels.insert(levels.end(), spec.stimuli.values.begin(), spec.stimuli.values.end());
   if (spec.start) levels.push_back(*spec.start);
-  if (spec.min && spec.max) add_steps(*spec.min, *spec.max, 24, levels);
+  constexpr int steps = 24;
+  const auto of_series = spec.kind == procedure::Kind::limits ? procedure::levels_of_series(spec, steps + 1)
+                                                              : std::vector<double>{};
+  levels.insert(levels.end(), of_series.begin(), of_series.end());
+  if (of_series.empty() && spec.min && spec.max) add_steps(*spec.min, *spec.max, steps, levels);
   const auto* factor = find_factor(protocol.factors, spec.level);
   if (spec.kind == procedure::Kind::adjustment && factor && factor->range)
     add_steps(factor->range->first, factor->range->second, 4, levels);

@@ -14,7 +14,8 @@ struct Source {
   /// name of the source for messages: `procedure "levels"`, `fixed levels`, `catch trials`
   core::Phrase what;
   std::string level;  ///< name of the factor whose levels the source presents
-  /// values that this factor can take; for a staircase or slider, evenly spaced samples
+  /// values that this factor can take; for a staircase or slider, or for series that start
+  /// anywhere, evenly spaced samples
   std::vector<double> levels;
   /// name of the factor of the procedure's second dimension, and its values; "" if there is none
   std::string second = {};

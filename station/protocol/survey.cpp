@@ -40,13 +40,24 @@ core::Phrase reach(const scene::Scene& scene, const rig::Rig& rig, const scene::
   if (scene.edge.kind == physics::Edge::Kind::friction)
     options.friction = physics::FrictionContext{planner.friction(), scene.displacement_m.value_or(1e-6),
                                                 rig.friction.fingertip_m};
-  const physics::BoundaryMap map(planner.surface(), options);
   const double low_Hz = scene::lowest_frequency(rig, 0),
                high_Hz = scene::highest_frequency(rig, core::kHighestShareOfRate * rig.output.rate_Hz);
+  // Without tones that this rig can play, a map of all frequencies says whether the edge exists at all.
+  const auto of_rig = [&]() -> std::optional<physics::BoundaryMap> {
+    auto in_band = options;
+    in_band.band = {low_Hz, high_Hz};
+    try {
+      return physics::BoundaryMap(planner.surface(), in_band);
+    } catch (const std::domain_error&) {
+      physics::BoundaryMap(planner.surface(), options);
+      return std::nullopt;
+    }
+  };
+  const auto map = of_rig();
   std::optional<double> nearest, furthest;
   constexpr int steps = 400;
-  for (int i = 0; i <= steps; ++i)
-    if (const auto x = map.boundary_m(low_Hz + (high_Hz - low_Hz) * i / steps)) {
+  for (int i = 0; map && i <= steps; ++i)
+    if (const auto x = map->boundary_m(low_Hz + (high_Hz - low_Hz) * i / steps)) {
       nearest = std::min(nearest.value_or(*x), *x);
       furthest = std::max(furthest.value_or(*x), *x);
     }
@@ -100,12 +111,12 @@ std::vector<Combination> planned(const Protocol& protocol, const std::vector<Com
   return chosen;
 }
 
-// The planner's answer for one combination: a plan, or the reason why there is none and what would be
-// possible.
+// The planner's answer for one combination: a plan, or the reason why there is none.
 struct Answer {
   std::optional<scene::DrivePlan> plan;
   std::optional<scene::Cues> cues_roved_down;
-  core::Phrase refused, allowed;
+  core::Phrase refused;
+  std::optional<scene::Scene> refused_scene;
   Place place;  ///< place in the file of the key that the rig cannot satisfy
 };
 
@@ -171,8 +182,8 @@ Place blamed_place(const Protocol& protocol, const KeyPlaces& places, const Scen
   return from.boundary_mm ? from.boundary_mm->place : from.place;
 }
 
-void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector<Combination>& combinations,
-                std::size_t begin, std::size_t end, scene::Planner& planner, std::vector<Answer>& answers,
+void plan_range(const Protocol& protocol, const std::vector<Combination>& combinations, std::size_t begin,
+                std::size_t end, scene::Planner& planner, std::vector<Answer>& answers,
                 const std::stop_token& stop, const std::function<void()>& planned) {
   std::set<std::string> explained;
   const KeyPlaces places(protocol.source, protocol.path);
@@ -189,12 +200,11 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
             planner.plan(resolve(protocol, combination.scene, combination.factors, -from.rove_dB)).cues;
     } catch (const scene::Unreachable& error) {
       answers[i].refused = error.why();
+      answers[i].refused_scene = scene;
       answers[i].place = from.place;
       if (explained.insert(combination.scene).second) try {
           answers[i].place = blamed_place(protocol, places, from, scene, planner);
-          answers[i].allowed = reach(scene, rig, planner);
-          // this rig cannot present any boundary with this kind of edge, so there is nothing to suggest
-        } catch (const std::domain_error&) {
+        } catch (const std::domain_error&) {  // this rig cannot present any boundary with this kind of edge
         }
     }
     planned();
@@ -217,15 +227,41 @@ std::vector<Answer> plan_all(const Protocol& protocol, const rig::Rig& rig,
     if (progress) progress(done, static_cast<int>(count));
   };
   scene::Planner planner(rig);
-  plan_range(protocol, rig, combinations, 0, begun, planner, answers, stop, planned);
+  plan_range(protocol, combinations, 0, begun, planner, answers, stop, planned);
   auto second = std::async(std::launch::async, [&, other = planner]() mutable {
-    plan_range(protocol, rig, combinations, half, count, other, answers, stop, planned);
+    plan_range(protocol, combinations, half, count, other, answers, stop, planned);
   });
-  plan_range(protocol, rig, combinations, begun, half, planner, answers, stop, planned);
+  plan_range(protocol, combinations, begun, half, planner, answers, stop, planned);
   second.get();
   if (stop.stop_requested()) throw Abandoned();
   return answers;
 }
+
+// What the rig could present instead of scenes that it cannot present. Scenes with the same edge have the
+// same answer, and finding it takes as long as planning many scenes.
+class Reaches {
+ public:
+  explicit Reaches(const rig::Rig& rig) : rig_(rig) {}
+
+  core::Phrase of(const scene::Scene& scene) {
+    if (!planner_) planner_.emplace(rig_);
+    auto key = physics::format(scene.edge);
+    if (scene.edge.kind == physics::Edge::Kind::friction)
+      key += " " + core::exact(scene.displacement_m.value_or(0));
+    if (scene.boundary_m) key += " boundary";
+    const auto [found, is_new] = known_.try_emplace(key);
+    if (is_new) try {
+        found->second = reach(scene, rig_, *planner_);
+      } catch (const std::domain_error&) {  // no boundary with this kind of edge: there is nothing to suggest
+      }
+    return found->second;
+  }
+
+ private:
+  const rig::Rig& rig_;
+  std::optional<scene::Planner> planner_;
+  std::map<std::string, core::Phrase> known_;
+};
 
 void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop,
                  const std::function<void(int done, int of)>& progress, Survey& survey) {
@@ -234,6 +270,7 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   const auto combinations = planned(protocol, all);
   const auto answers = plan_all(protocol, rig, combinations, stop, progress);
   std::map<std::string, Trouble> unreachable, inexact;
+  Reaches reaches(rig);
   // the text of the first warning with each warning code, because each code is reported only once
   std::map<std::string, core::Phrase> told;
   for (std::size_t i = 0; i < answers.size(); ++i) {
@@ -241,7 +278,8 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
     if (!answers[i].plan) {
       auto& trouble = unreachable[combination.scene];
       if (trouble.cases++ == 0)
-        trouble = {in_case(combination, answers[i].refused), answers[i].allowed, answers[i].place, 1};
+        trouble = {in_case(combination, answers[i].refused), reaches.of(*answers[i].refused_scene),
+                   answers[i].place, 1};
       continue;
     }
     const auto& plan = *answers[i].plan;

@@ -1,10 +1,19 @@
 #include "station/protocol/visits.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <numeric>
 
 #include "station/protocol/conditions.hpp"
 
 namespace turnpoint::protocol {
+
+namespace {
+
+/// With more different places than this, no two participants of a study share one.
+constexpr int kMostPlaces = 1'000'000;
+
+}  // namespace
 
 bool is_group(const Factor& factor) { return factor.draw == FactorDraw::per_participant; }
 
@@ -37,6 +46,25 @@ std::vector<std::string> group_names(const Protocol& protocol) {
     if (!name.empty()) names.push_back(name);
   }
   return names;
+}
+
+int place_count(const Protocol& protocol) {
+  // An order of n levels is one of n rows of a Williams square, or of 2 n if n is odd (block_order.cpp).
+  std::int64_t orders = 1;
+  for (const auto& part : protocol.plan) {
+    const auto* sequence = std::get_if<Sequence>(&part);
+    const auto* factor = sequence ? find_factor(protocol.factors, sequence->over) : nullptr;
+    const auto levels = factor ? static_cast<std::int64_t>(factor->levels.size()) : 0;
+    if (levels > 1) orders = std::lcm(orders, levels % 2 == 0 ? levels : 2 * levels);
+    if (orders > kMostPlaces) return kMostPlaces;
+  }
+  return static_cast<int>(std::min<std::int64_t>(orders * group_count(protocol), kMostPlaces));
+}
+
+std::optional<core::Assignment> assignment(const Protocol& protocol) {
+  if (!protocol.dropout_after_h) return std::nullopt;
+  return core::Assignment{*protocol.dropout_after_h, place_count(protocol), session_count(protocol),
+                          protocol.sessions && protocol.sessions->incomplete == Unfinished::count};
 }
 
 int session_count(const Protocol& protocol) { return protocol.sessions ? protocol.sessions->count : 1; }

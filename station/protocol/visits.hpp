@@ -1,7 +1,9 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "station/core/records.hpp"
 #include "station/protocol/protocol.hpp"
 
 namespace turnpoint::protocol {
@@ -20,6 +22,13 @@ Factors group_of(const Protocol& protocol, int place);
 /// The names of all groups: the participant at place p belongs to group number p modulo their count. Empty if
 /// there are no groups.
 std::vector<std::string> group_names(const Protocol& protocol);
+
+/// Number of different places: participants whose places differ by a multiple of it have the same group and
+/// the same orders of blocks in all sessions.
+int place_count(const Protocol& protocol);
+
+/// How the protocol replaces participants who drop out; empty if it does not.
+std::optional<core::Assignment> assignment(const Protocol& protocol);
 
 /// Number of planned sessions; 1 if the protocol plans none.
 int session_count(const Protocol& protocol);

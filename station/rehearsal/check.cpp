@@ -463,6 +463,8 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
     check.measures.push_back(protocol::line_of(meaning, *protocol));
   check.languages = options.drawable ? drawn.languages : protocol->languages;
   check.id = protocol->id, check.title = protocol->title, check.rig_name = rig->name;
+  check.different_places = protocol::place_count(*protocol);
+  check.dropout_after_h = protocol->dropout_after_h;
   check.protocol_defaults = protocol->defaults_used;
   check.rig_defaults = rig->defaults_used;
   check.survey =
@@ -478,13 +480,17 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   if (rig::largest_trigger_code(*rig) > 0) check.triggers = protocol::trigger_codes(*protocol);
   try {
     const auto& finish = options.steps.finish;
-    estimate(*protocol, options.sessions, stop, options.steps, check);
+    // Nobody asks how long a session is that cannot run: then one session for each visit shows whether its
+    // procedures can work.
+    const bool can_run = check.problems.empty();
+    estimate(*protocol, can_run ? options.sessions : std::min(1, options.sessions.value_or(1)), stop,
+             options.steps, check);
     if (stop.stop_requested()) throw protocol::Abandoned();
-    check.runs = check_runs(
-        *protocol, std::min(runs_sessions(check.trials.median), options.sessions.value_or(kMostSessions)),
-        stop, options.steps);
-    warn_of_runs(protocol->path, check);
-    if (check.problems.empty()) {
+    if (can_run) {
+      check.runs = check_runs(
+          *protocol, std::min(runs_sessions(check.trials.median), options.sessions.value_or(kMostSessions)),
+          stop, options.steps);
+      warn_of_runs(protocol->path, check);
       if (options.finger) check.finger = shares(check.survey, *rig);
       note_needless_tolerances(*protocol, check);
       if (options.sound) check.sound = loudest(check.survey, *rig, stop, options.steps);

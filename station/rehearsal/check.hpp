@@ -78,6 +78,9 @@ struct Check {
   /// what the trials measure, one line for each analysis: "main: threshold of `contrast_dB` at 82 % correct"
   std::vector<std::string> measures;
   std::vector<CheckedBlock> blocks;
+  int different_places = 1;  ///< in the counterbalancing: number of combinations of group and orders
+  /// time after which a participant who has not completed is replaced; empty: never
+  std::optional<double> dropout_after_h;
   std::vector<CheckedRuns> runs;  ///< one for each limit of runs that the protocol sets
   /// values of one session; if sessions or groups differ in length, values of the longest
   Spread trials, duration_s;

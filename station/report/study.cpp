@@ -246,6 +246,22 @@ GroupFit group_fit(const Study& study, const std::string& condition) {
 
 }  // namespace
 
+std::vector<RowCount> row_counts(const Study& study) {
+  if (study.design_rows == 1) return {};
+  std::map<int, RowCount> rows;
+  if (study.design_rows <= 100)
+    for (int row = 0; row < study.design_rows; ++row) rows[row];
+  for (const auto& person : study.persons) {
+    auto& row = rows[person.row];
+    ++row.started;
+    row.completed += person.completed;
+    row.used += person.completed && person.excluded.empty();
+  }
+  std::vector<RowCount> list;
+  for (auto& [number, row] : rows) row.row = number, list.push_back(row);
+  return list;
+}
+
 StudyPerson study_person(const SessionData& data, const protocol::Exclusion& rules, bool incomplete) {
   StudyPerson person;
   person.person = data.participant;

@@ -30,9 +30,11 @@ struct SessionEarlyEnd {
 /// their number.
 struct StudyPerson {
   std::string person;
-  std::vector<std::string> sessions;       ///< ids of the participant's sessions
-  std::string group;                       ///< the participant's group; "" if the protocol has no groups
-  bool incomplete = false;                 ///< true if a session was not completed
+  std::vector<std::string> sessions;  ///< ids of the participant's sessions
+  std::string group;                  ///< the participant's group; "" if the protocol has no groups
+  int row = 0;              ///< of the design: the place in the counterbalancing modulo Study::design_rows
+  bool completed = false;   ///< true if all planned sessions count
+  bool incomplete = false;  ///< true if a session was not completed
   int presented = 0, answered = 0;         ///< numbers of presented and of answered experimental trials
   double timeouts = 0, anticipations = 0;  ///< proportions of the presented trials
   std::optional<double> accuracy, catch_accuracy, median_time_s;
@@ -70,6 +72,7 @@ struct Study {
   std::map<std::string, std::string> groups_of_conditions;  ///< as of protocol::groups_of_conditions()
   std::vector<std::string> rules;  ///< the rules of exclusion, as the protocol states them
   std::vector<StudyPerson> persons;
+  int design_rows = 1;  ///< number of different places in the counterbalancing
   std::vector<GroupFit> groups;
   std::vector<analysis::GroupMean> means;
   std::vector<analysis::Effect> effects;
@@ -99,6 +102,15 @@ StudyPerson study_person(const SessionData& data, const protocol::Exclusion& rul
 
 /// Returns the rules as sentences, in the order in which the manual lists them.
 std::vector<std::string> rules_in_words(const protocol::Exclusion& rules);
+
+/// How many participants have a row of the design.
+struct RowCount {
+  int row = 0, started = 0, completed = 0;
+  int used = 0;  ///< completed, and not excluded
+};
+/// Returns the rows of the design, or those with a participant if there are more than 100; empty if all
+/// participants have the same.
+std::vector<RowCount> row_counts(const Study& study);
 
 /// Computes balanced integration scores, group fits, means and effects from the participants who are not
 /// excluded.

@@ -43,6 +43,19 @@ void add_people(const Study& study, Document& document) {
   document.table(std::move(table));
 }
 
+/// How many participants have each group and order.
+void add_rows(const Study& study, Document& document) {
+  const auto rows = row_counts(study);
+  if (rows.empty()) return;
+  document.heading("Places in the counterbalancing");
+  Table table{{"Place", "Participants with trials", "Completed", "Completed and not excluded"}, {}};
+  for (const auto& row : rows)
+    table.rows.push_back({count(row.row), count(row.started), count(row.completed), count(row.used)});
+  document.table(std::move(table));
+  document.explain("Participants whose places differ by a multiple of " + std::to_string(study.design_rows) +
+                   " have the same group and the same orders; they are counted together.");
+}
+
 void add_group(const GroupFit& group, const Study& study, Document& document) {
   document.heading(name_of(group.condition), 3);
   if (group.result.fit) {
@@ -159,6 +172,7 @@ Document document(const Study& study) {
   add_meanings(study.settings, document);
   document.remark(study.statements);
   add_people(study, document);
+  add_rows(study, document);
   add_groups(study, document);
   add_means(study, document);
   add_own(study, document);

@@ -102,6 +102,9 @@ Json json_of(const Study& study) {
                       {"incomplete_count", sessions.incomplete_count}};
   json["rules"] = study.rules;
   json["participants"] = list_of(study.persons, person_json);
+  json["places"] = list_of(row_counts(study), [](const auto& row) -> Json {
+    return {{"place", row.row}, {"started", row.started}, {"completed", row.completed}, {"used", row.used}};
+  });
   json["groups"] = list_of(study.groups, group_json);
   json["means"] = list_of(study.means, [](const auto& mean) -> Json {
     return {{"measure", mean.measure},      {"unit", mean.unit},        {"condition", mean.condition},

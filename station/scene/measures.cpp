@@ -118,12 +118,10 @@ void measure(const physics::Surface& surface, const physics::FrictionMap& fricti
   plan.cues = cues_of(surface, tones, fields, amplitude, x_m, plan);
 }
 
-double scale_to_friction(const physics::Surface& surface, const physics::FrictionMap& friction,
-                         const rig::Rig& rig, const std::vector<physics::Tone>& tones, const Scene& scene) {
-  const auto x_m = physics::linspace_points(surface, profile_points);
-  const auto amplitude = physics::amplitude_profile(surface, tones, x_m, physics::Model::mode);
+double scale_to_friction(const std::vector<double>& x_m, const std::vector<double>& amplitude_m,
+                         const physics::FrictionMap& friction, const rig::Rig& rig, const Scene& scene) {
   const auto mean_at = [&](double scale) {
-    return zone_friction(x_m, amplitude, scale, friction, rig.friction.fingertip_m, scene).mean;
+    return zone_friction(x_m, amplitude_m, scale, friction, rig.friction.fingertip_m, scene).mean;
   };
   double low = 0, high = 1;
   while (mean_at(high) > scene.zone->friction) {

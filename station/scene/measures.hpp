@@ -19,10 +19,10 @@ void measure(const physics::Surface& surface, const physics::FrictionMap& fricti
              const std::vector<physics::Tone>& tones, const std::vector<physics::ToneField>& fields,
              DrivePlan& plan);
 
-/// Returns the factor by which all amplitudes must be multiplied to give the zone the mean friction that the
-/// scene specifies. Throws Unreachable if no factor does.
-double scale_to_friction(const physics::Surface& surface, const physics::FrictionMap& friction,
-                         const rig::Rig& rig, const std::vector<physics::Tone>& tones, const Scene& scene);
+/// Returns the factor by which the amplitudes at the points `x_m` must be multiplied to give the zone the
+/// mean friction that the scene specifies. Throws Unreachable if no factor does.
+double scale_to_friction(const std::vector<double>& x_m, const std::vector<double>& amplitude_m,
+                         const physics::FrictionMap& friction, const rig::Rig& rig, const Scene& scene);
 
 /// Throws Unreachable if the plan exceeds the rig's largest displacement or full scale.
 void refuse_beyond_limits(const rig::Rig& rig, const DrivePlan& plan);

@@ -178,9 +178,11 @@ Solution Planner::State::solve(const Scene& scene, const std::vector<ToneTarget>
   solution.fields = physics::evaluate_tones(surface, tones, physics::linspace_points(surface, profile_points),
                                             at_least_mode(solution.choice.model), physics::Normalise::none,
                                             solution.choice.solved);
+  const auto by_mode =
+      solution.choice.model == Model::modes ? physics::SolvedLines{} : solution.choice.solved;
   solution.choice.solved.clear();
   solution.uncertainty_m = boundary_uncertainty_m(surface, scene, wanted);
-  solution.warnings = physics::tone_warnings(surface, tones);
+  solution.warnings = physics::tone_warnings(surface, tones, by_mode);
   return solution;
 }
 
@@ -236,18 +238,22 @@ double Planner::State::drive_under_finger_m(const Scene& scene, double frequency
   return wanted_m / found->second;
 }
 
-/// Says which error bounds of the chosen model are beyond the tolerance.
-core::Phrase beyond_tolerance(const physics::PlanChoice& choice, const physics::Tolerance& tolerance) {
+/// Says which error bounds of a model are beyond the tolerance of the scene: `friction` as the scene states
+/// it, `tolerance` as the physics library takes it.
+core::Phrase beyond_tolerance(const physics::RungEstimate& model, const physics::Tolerance& tolerance,
+                              std::optional<double> friction) {
   core::Phrase all = plain("");
-  const auto add = [&all](const char* key, double bound, std::optional<double> limit, double unit) {
+  const auto add = [&all](const char* key, double bound, std::optional<double> limit, double unit,
+                          double as_stated = 0) {
     if (!limit || bound <= *limit) return;
     if (!all.values.empty()) all.values.push_back(plain("; "));
-    all.values.push_back(phrase(key, {plain(number(bound / unit, 3)), plain(number(*limit / unit, 3))}));
+    all.values.push_back(phrase(
+        key, {plain(number(bound / unit, 3)), plain(number(*limit / unit, 3)), plain(number(as_stated, 3))}));
   };
-  add("problem.bound_boundary", choice.bound.boundary_bound_m, tolerance.boundary_m, 1e-3);
-  add("problem.bound_amplitude", choice.bound.amplitude_bound, tolerance.amplitude, 1e-2);
-  add("problem.bound_level", choice.bound.level_bound_dB, tolerance.level_dB, 1);
-  return phrase("problem.bound_beyond", {plain(std::string(physics::name(choice.model))), std::move(all)});
+  add("problem.bound_boundary", model.boundary_bound_m, tolerance.boundary_m, 1e-3);
+  add("problem.bound_amplitude", model.amplitude_bound, tolerance.amplitude, 1e-2, friction.value_or(0));
+  add("problem.bound_level", model.level_bound_dB, tolerance.level_dB, 1);
+  return all;
 }
 
 Planner::Planner(const rig::Rig& rig) : state_(std::make_unique<State>(rig)) {}
@@ -313,12 +319,16 @@ DrivePlan Planner::make(const Scene& scene) {
   const auto& choice = solution.choice;
   plan.model = choice.model;
   plan.inside_tolerance = choice.inside;
-  if (!choice.inside) plan.beyond_tolerance = beyond_tolerance(choice, state_->tolerance_of(scene));
+  const auto missed_by = [&](const char* key, const physics::RungEstimate& model) {
+    return phrase(key, {plain(std::string(physics::name(model.model))),
+                        beyond_tolerance(model, state_->tolerance_of(scene), scene.tolerance.friction)});
+  };
+  if (!choice.inside) plan.beyond_tolerance = missed_by("problem.bound_beyond", choice.bound);
+  if (choice.cheaper) plan.cheaper = missed_by("problem.cheaper_beyond", *choice.cheaper);
   plan.error_bound_m = choice.bound.boundary_bound_m;
   plan.level_bound_dB = choice.bound.level_bound_dB;
   plan.amplitude_bound = choice.bound.amplitude_bound;
   plan.reason = choice.reason;
-  plan.cheaper = choice.cheaper;
   plan.uncertainty_m = solution.uncertainty_m;
   if (scene.boundary_m && !plan.boundary_m) plan.boundary_m = scene.boundary_m;
   std::vector<Tone> tones;

@@ -58,8 +58,8 @@ struct DrivePlan {
   double amplitude_bound = 0;     ///< upper limit of the model's relative error in the amplitude
   /// standard deviation of the boundary's position, from the standard deviations in the rig file
   double uncertainty_m = 0;
-  std::string reason;                            ///< why the planner chose this model
-  std::optional<physics::RungEstimate> cheaper;  ///< the most exact one of the cheaper models
+  std::string reason;    ///< why the planner chose this model
+  core::Phrase cheaper;  ///< the most exact one of the cheaper models, and which tolerances it would miss
   /// the plate theory used, if the surface is a plate
   physics::PlateTheory theory = physics::PlateTheory::kirchhoff;
   /// How far the boundary would move with the next more exact plate theory; empty for membranes.

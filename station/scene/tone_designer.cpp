@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "physics/centre_line.hpp"
 #include "physics/field.hpp"
 #include "station/core/limits.hpp"
 #include "station/core/number.hpp"
@@ -84,6 +85,27 @@ std::vector<ToneTarget> ToneDesigner::explicit_tones(const Scene& scene) {
   return tones;
 }
 
+/// Zones that differ in friction have tones of the same frequencies.
+physics::SolvedLines ToneDesigner::lines_of(const std::vector<physics::Tone>& tones) {
+  constexpr std::size_t most = 64;
+  if (lines_.size() + tones.size() > most) lines_.clear();
+  physics::SolvedLines lines;
+  for (const auto& tone : tones) {
+    auto& line = lines_[tone.frequency_Hz];
+    if (!line) line = physics::make_centre_line(surface, tone.frequency_Hz, physics::Model::mode);
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+double ToneDesigner::unit_drive_m(const physics::Tone& tone) {
+  const double frequency_Hz = on_grid(tone.frequency_Hz, kGridPerHz);
+  auto found = unit_drive_m_.find(frequency_Hz);
+  if (found == unit_drive_m_.end())
+    found = unit_drive_m_.emplace(frequency_Hz, physics::drive_amplitude_m(surface, frequency_Hz, 1)).first;
+  return found->second;
+}
+
 std::vector<ToneTarget> ToneDesigner::zone(const Scene& scene, DrivePlan& plan) {
   const auto& wanted = *scene.zone;
   const double designed_for = wanted.design_friction.value_or(wanted.friction);
@@ -100,17 +122,20 @@ std::vector<ToneTarget> ToneDesigner::zone(const Scene& scene, DrivePlan& plan) 
     request.fingertip_m = rig.friction.fingertip_m;
     request.band.low_Hz = lowest_frequency(rig, core::kAudible_Hz);
     request.band.high_Hz = highest_frequency(rig, core::kHighestShareOfRate * rig.output.rate_Hz);
-    DesignedZone designed{zones_.design(request), {}};
-    for (const auto& tone : designed.design.tones)
-      designed.unit_drive_m.push_back(
-          physics::drive_amplitude_m(surface, on_grid(tone.frequency_Hz, kGridPerHz), 1));
+    DesignedZone designed{zones_.design(request), {}, {}};
+    for (const auto& tone : designed.design.tones) designed.unit_drive_m.push_back(unit_drive_m(tone));
     found = designs_.emplace(key, std::move(designed)).first;
   }
-  const auto& [design, unit_drive_m] = found->second;
+  auto& [design, unit_drive_m, amplitude_m] = found->second;
   const auto& tones = design.tones;
   plan.boundary_m = design.boundary_m;
   double scale = 1;
-  if (wanted.friction != designed_for) scale = scale_to_friction(surface, friction, rig, tones, scene);
+  if (wanted.friction != designed_for) {
+    const auto x_m = physics::linspace_points(surface, profile_points);
+    if (amplitude_m.empty())
+      amplitude_m = physics::amplitude_profile(surface, tones, x_m, physics::Model::mode, lines_of(tones));
+    scale = scale_to_friction(x_m, amplitude_m, friction, rig, scene);
+  }
   scale *= std::pow(10.0, scene.rove_dB / 20);
   std::vector<ToneTarget> list;
   for (std::size_t i = 0; i < tones.size(); ++i)

@@ -32,7 +32,9 @@ class ToneDesigner {
         surface(other.surface),
         friction(other.friction),
         maps_(other.maps_),
-        designs_(other.designs_) {}
+        designs_(other.designs_),
+        unit_drive_m_(other.unit_drive_m_),
+        lines_(other.lines_) {}
 
   /// Returns the tones of a scene, all with a frequency; those that must place an edge have a boundary, too.
   /// The vibration model for the final plan is chosen later. If the scene is a zone of uniform friction, also
@@ -54,15 +56,21 @@ class ToneDesigner {
   std::vector<ToneTarget> single(const Scene& scene);
   std::vector<ToneTarget> explicit_tones(const Scene& scene);
   std::vector<ToneTarget> zone(const Scene& scene, DrivePlan& plan);
+  physics::SolvedLines lines_of(const std::vector<physics::Tone>& tones);
+  double unit_drive_m(const physics::Tone& tone);
 
   std::map<std::string, std::shared_ptr<const physics::BoundaryMap>> maps_;
   physics::ZoneDesigner zones_{surface, friction};
-  /// A zone, and the drive amplitude of each tone (frequency on the grid) for 1 m at its last maximum.
+  /// A zone, the drive amplitude of each tone (frequency on the grid) for 1 m at its last maximum, and the
+  /// amplitude of the zone at `profile_points` points; empty until it is needed.
   struct DesignedZone {
     physics::ZoneDesign design;
-    std::vector<double> unit_drive_m;
+    std::vector<double> unit_drive_m, amplitude_m;
   };
   std::map<std::string, DesignedZone> designs_;
+  std::map<double, double> unit_drive_m_;  ///< by frequency
+  /// the solutions of the first mode for the tones of the last zones, by frequency
+  std::map<double, std::shared_ptr<const physics::CentreLine>> lines_;
 };
 
 }  // namespace turnpoint::scene

@@ -6,6 +6,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "physics/centre_line.hpp"
 #include "physics/field.hpp"
 
 namespace turnpoint::scene {
@@ -196,7 +197,7 @@ std::optional<FingerShares> finger_shares(const rig::Rig& rig, const std::vector
   const auto finger = finger_of(rig);
   std::optional<FingerShares> shares;
   for (const double frequency_Hz : frequencies_Hz) {
-    const auto peak_m = physics::tone_info(surface, frequency_Hz).last_peak_m;
+    const auto peak_m = physics::make_centre_line(surface, frequency_Hz, physics::Model::mode)->last_peak_m();
     if (!peak_m) continue;
     const double share = physics::finger_load(surface, frequency_Hz, {*peak_m}, finger)[0].share(finger);
     if (!shares) shares = FingerShares{};

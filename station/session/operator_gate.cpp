@@ -84,7 +84,7 @@ void OperatorGate::keep(const std::function<void()>& write) {
     if (quitting_ || !space_again(detail))
       throw store::StoreError(
           store::ErrorKind::disk_full,
-          fmt::format("{}; the session ended before there was space: {} trials are stored, and later "
+          fmt::format("{}; the session ended before there was space; trials that are stored: {}; later "
                       "answers are lost; `turnpoint resume` continues the session",
                       detail, log_.session().trials));
   }

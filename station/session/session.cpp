@@ -92,6 +92,7 @@ core::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std::s
   start.conditions = setup.conditions;
   start.planned_session = planned_session;
   start.groups = protocol::group_names(setup.protocol);
+  start.assignment = protocol::assignment(setup.protocol);
   if (!setup.calibration_id.empty()) start.calibration_id = setup.calibration_id;
   start.calibration_text = setup.calibration_text;
   return start;

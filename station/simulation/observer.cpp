@@ -93,6 +93,49 @@ double share_right(double upper, const Question& q) {
   return std::max(0.0, chance + (1 - chance) * (2 * upper - 1));
 }
 
+/// share_right() at evenly spaced probabilities `upper` from 0 to 1.
+using ShareGrid = std::array<double, 257>;
+
+ShareGrid shares_of(Finding finding, int answers) {
+  Question question;
+  question.finding = finding, question.answers = answers;
+  ShareGrid shares{};
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    shares[i] = share_right(static_cast<double>(i) / static_cast<double>(shares.size() - 1), question);
+  return shares;
+}
+
+/// Returns the grid of a task whose share_right() takes long; null for the others.
+const ShareGrid* share_grid(const Question& q) {
+  if (q.finding == Finding::nearest) {
+    static const auto nearest = shares_of(Finding::nearest, 2);
+    return &nearest;
+  }
+  if (q.finding == Finding::largest && q.answers == 3) {
+    static const auto of_three = shares_of(Finding::largest, 3);
+    return &of_three;
+  }
+  if (q.finding == Finding::largest && q.answers == 4) {
+    static const auto of_four = shares_of(Finding::largest, 4);
+    return &of_four;
+  }
+  return nullptr;
+}
+
+/// Returns whether `share` is below share_right(). That function rises with `upper`, so its values at the
+/// ends of a cell of the grid bound it there, and it is computed only if `share` lies between these bounds.
+/// The margin is far above the rounding errors of all values.
+bool is_below_share_right(double share, double upper, const Question& q) {
+  constexpr double margin = 1e-12;
+  if (const auto* grid = share_grid(q)) {
+    const std::size_t cells = grid->size() - 1;
+    const auto cell = std::min(cells - 1, static_cast<std::size_t>(upper * static_cast<double>(cells)));
+    if (share < (*grid)[cell] - margin) return true;
+    if (share > (*grid)[cell + 1] + margin) return false;
+  }
+  return share < share_right(upper, q);
+}
+
 /// Averages a function of the drift over the drift's normal distribution, by the trapezoidal rule.
 template <class Function>
 double mean_over_drift(double drift, double sd, Function function) {
@@ -313,7 +356,7 @@ Reply Observer::answer(const Question& q) const {
     // that end at the upper boundary must give a wrong answer; their share is chosen such that the proportion
     // correct equals share_right().
     const double upper = this->upper(q, pull);
-    const bool found = passage.upper && u * upper < share_right(upper, q);
+    const bool found = passage.upper && is_below_share_right(u * upper, upper, q);
     const int right = q.correct.value_or(any);
     reply.choice = found ? right : (right + 1 + other) % q.answers;
     // All wrong answers are guesses, and of the right ones as many as guesses happen to find.

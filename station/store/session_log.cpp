@@ -74,8 +74,8 @@ void refuse(Database& database, ErrorKind kind, const std::string& what) {
 }
 
 /// Returns the participant's sequence index in the protocol's counterbalancing. A known participant keeps the
-/// index. A new one gets the lowest free place, so that withdrawals leave no gaps in the design.
-int enrol(Database& database, const SessionStart& start) {
+/// index. A new one gets a free place (next_place()), so that withdrawals leave no gaps in the design.
+int enrol(Database& database, const SessionStart& start, std::int64_t now_ns) {
   const Bearer bearer{start.station_id, start.participant};
   if (is_withdrawn(database, bearer))
     throw StoreError(
@@ -100,7 +100,7 @@ int enrol(Database& database, const SessionStart& start) {
     earlier.bind(start.protocol_id, one.station_id, one.code);
     if (earlier.step()) return static_cast<int>(earlier.integer(0));
   }
-  const auto place = next_place(database, start.protocol_id);
+  const auto place = next_place(database, start, now_ns);
   Statement(database, "INSERT OR IGNORE INTO participant VALUES (?)").bind(start.participant).run();
   Statement(database, "INSERT INTO enrolment VALUES (?,?,?,?)")
       .bind(start.station_id, start.protocol_id, start.participant, place)
@@ -143,10 +143,11 @@ int next_session_index(Database& database, const SessionStart& start) {
   return static_cast<int>(highest) + 1;
 }
 
-void insert_session(Database& database, const std::string& id, const SessionStart& start) {
+void insert_session(Database& database, const std::string& id, const SessionStart& start,
+                    std::int64_t now_ns) {
   SessionRecord session;
   session.start = start;
-  session.sequence_index = enrol(database, start);
+  session.sequence_index = enrol(database, start, now_ns);
   session.leased_place = is_leased(database, start, session.sequence_index);
   session.session_index = next_session_index(database, start);
   if (!start.groups.empty())
@@ -216,7 +217,7 @@ SessionLog SessionLog::begin(const std::string& path, const SessionStart& start,
   const auto id = system::new_uuid();
   SealedTransaction transaction(database);
   claim_station(database, start.station_id, segment.machine);
-  insert_session(database, id, start);
+  insert_session(database, id, start, segment.realtime_ns);
   insert_segment(database, id, 1, segment);
   impl->chain.emplace(database, id);
   impl->commit(transaction);

@@ -51,8 +51,8 @@ int Director::State::too_long(const TrialSpec& spec) const {
   }));
 }
 
-/// True if trials with these values, which come this many times, can follow `spec` in some order, with runs that are
-/// by `spare` shorter than allowed: no value may be left more often than the others can separate.
+/// True if trials with these values, which come this many times, can follow `spec` in some order, with runs
+/// that are by `spare` shorter than allowed: no value may be left more often than the others can separate.
 bool Director::State::can_follow(const std::map<std::string, int>& left, const std::string& key,
                                  const TrialSpec& spec, int spare) const {
   const auto& run = runs.at(key);
@@ -68,10 +68,9 @@ bool Director::State::can_follow(const std::map<std::string, int>& left, const s
   });
 }
 
-/// True if the rest of the orders of intervals, and of the lists of the procedures that may come next, can still
-/// be presented without too long runs if `spec` comes next.
+/// True if the rest of the orders of intervals, and of the lists of the procedures that may come next, can
+/// still be presented without too long runs if `spec` comes next.
 bool Director::State::leaves_order(const TrialSpec& spec, int spare) {
-  const auto orders = orders_of(protocol.task);
   return std::ranges::all_of(runs, [&](const auto& rule) {
     const auto& key = rule.first;
     if (key != procedure::kRightAnswer || orders.size() == 1) return leaves_lists(spec, key, spare);
@@ -84,8 +83,8 @@ bool Director::State::leaves_order(const TrialSpec& spec, int spare) {
   });
 }
 
-/// Counts the values in the lists of the procedures that may come next: those of their present repeats, and all. Only
-/// procedures whose lists set the factor with this key count.
+/// Counts the values in the lists of the procedures that may come next: those of their present repeats, and
+/// all. Only procedures whose lists set the factor with this key count.
 const Director::State::Left& Director::State::lists_left(const TrialSpec& spec, const std::string& key) {
   const bool mixed = now()->interleave != protocol::Interleave::none;
   const auto [found, is_new] = left_of_lists.try_emplace({mixed ? no_procedure : current_procedure, key});
@@ -95,9 +94,9 @@ const Director::State::Left& Director::State::lists_left(const TrialSpec& spec, 
     if (!mixed && current_procedure != no_procedure && static_cast<int>(i) != current_procedure) continue;
     if (!mixed && !all.empty()) break;
     if (!lists(from, key)) continue;
+    TrialSpec other;
+    other.factors = spec.factors;
     for (const auto& candidate : procedures[i]->candidates()) {
-      TrialSpec other;
-      other.factors = spec.factors;
       set_proposal(candidate.proposal, from, other.factors);
       other.correct = correct_choice(protocol.task, other.factors);
       const auto value = value_of(key, other);
@@ -127,7 +126,7 @@ bool Director::State::leaves_lists(const TrialSpec& spec, const std::string& key
 /// True if other draws can give a trial of the current procedure, or a catch trial, factors with other runs.
 bool Director::State::draws_factors(const TrialSpec& spec) const {
   if (current_procedure == no_procedure) return true;
-  const bool decides = runs.count(procedure::kRightAnswer) && !orders_of(protocol.task).front().correct;
+  const bool decides = runs.count(procedure::kRightAnswer) && !orders.front().correct;
   const auto& from = *specs[static_cast<std::size_t>(current_procedure)];
   const auto sets = [&](const std::string& name) {
     return name == from.level || (from.second && name == from.second->level) ||
@@ -135,8 +134,8 @@ bool Director::State::draws_factors(const TrialSpec& spec) const {
            now()->fixed.count(name) || std::ranges::find(from.balance, name) != from.balance.end();
   };
   return std::ranges::any_of(protocol.factors, [&](const auto& factor) {
-    return (decides || runs.count(factor.name)) && !sets(factor.name) && factor.draw != protocol::FactorDraw::without_repetition &&
-           spec.factors.count(factor.name);
+    return (decides || runs.count(factor.name)) && !sets(factor.name) &&
+           factor.draw != protocol::FactorDraw::without_repetition && spec.factors.count(factor.name);
   });
 }
 
@@ -158,20 +157,20 @@ std::optional<TrialSpec> Director::State::with_short_runs(const TrialSpec& first
     for (const int i : pass)
       if (i != first_procedure) others.push_back(i);
   // the first trials of this run of orders, or of the next one, that have different orders
-  std::vector<int> orders{trial};
-  if (orders_of(protocol.task).size() > 1)
+  std::vector<int> places{trial};
+  if (orders.size() > 1)
     for (int other = trial + 1; other < trial - trial % run_of_orders() + 2 * run_of_orders(); ++other) {
-      const auto its = presented_order(order_key(other));
-      if (std::ranges::none_of(orders, [&](int of) { return same(presented_order(order_key(of)), its); }))
-        orders.push_back(other);
+      const auto& its = presented_order(order_key(other));
+      if (std::ranges::none_of(places, [&](int of) { return same(presented_order(order_key(of)), its); }))
+        places.push_back(other);
     }
   const int draws = draws_factors(first) ? kMostRedraws : 1;
   int fewest = static_cast<int>(runs.size()) + 1;
   TrialSpec best;
   std::pair<int, Deviation> best_way;
-  // First look for a trial after which runs that are shorter than allowed by one could still be kept, because some
-  // trials may come again; then for one after which the allowed runs can be kept, and then for one that only fits
-  // here. A catch trial can be put off instead.
+  // First look for a trial after which runs that are shorter than allowed by one could still be kept, because
+  // some trials may come again; then for one after which the allowed runs can be kept, and then for one that
+  // only fits here. A catch trial can be put off instead.
   for (const int spare : {1, 0, -1}) {
     if (spare < 0 && first_procedure == no_procedure) return std::nullopt;
     if (spare < 0 && fewest > 0) break;
@@ -188,7 +187,7 @@ std::optional<TrialSpec> Director::State::with_short_runs(const TrialSpec& first
       if (other != no_procedure) items = procedures[static_cast<std::size_t>(other)]->candidates();
       for (int redraws = 0; redraws < draws; ++redraws)
         for (const auto& item : items)
-          for (const int order : orders) {
+          for (const int order : places) {
             deviation = {item.place, order, redraws};
             auto candidate = remake();
             if (good(candidate)) return candidate;

@@ -21,6 +21,7 @@ struct Director::State {
   procedure::Programs* programs;
   procedure::EarlierTrials earlier;
   std::vector<protocol::Block> blocks;
+  std::vector<IntervalOrder> orders;  ///< all that the task can have
   std::size_t block = 0;
   /// number of the current attempt at the block, and of the first attempt since the session was started or
   /// restarted
@@ -52,8 +53,8 @@ struct Director::State {
   std::map<std::string, Director::LongRun> long_runs;
   /// Trials of this block that present the intervals in the order of another trial, which has theirs.
   std::map<int, int> swapped_orders;
-  /// How the current trial differs from the one that would come without limits of runs. record() applies it, so
-  /// that a trial that is made twice is the same.
+  /// How the current trial differs from the one that would come without limits of runs. record() applies it,
+  /// so that a trial that is made twice is the same.
   struct Deviation {
     std::size_t place = 0;        ///< that of the procedure's list
     std::optional<int> order_of;  ///< the trial with which it changes orders of intervals
@@ -74,7 +75,8 @@ struct Director::State {
         seed(s),
         programs(starts),
         earlier(std::move(before)),
-        blocks(protocol::block_order(p, visit)) {
+        blocks(protocol::block_order(p, visit)),
+        orders(orders_of(p.task)) {
     enter_block();
   }
 
@@ -105,7 +107,7 @@ struct Director::State {
   std::optional<int> pick_procedure();
   bool catch_due() const;
   TrialSpec blank(core::TrialType type) const;
-  IntervalOrder presented_order(int key) const;
+  const IntervalOrder& presented_order(int key) const;
   void complete(TrialSpec& spec) const;
   std::optional<SliderSpan> slider(int key) const;
   TrialSpec warmup_trial() const;

@@ -124,14 +124,14 @@ TrialSpec Director::State::blank(core::TrialType type) const {
   return spec;
 }
 
-IntervalOrder Director::State::presented_order(int key) const {
-  return order_for(protocol.task, seed, static_cast<int>(block), attempt, key);
+const IntervalOrder& Director::State::presented_order(int key) const {
+  return order_for(orders, seed, static_cast<int>(block), attempt, key);
 }
 
 /// Fills in what follows from the level and the factors: order of intervals, right answer, roving, times.
 void Director::State::complete(TrialSpec& spec) const {
   const int key = spec.type == core::TrialType::warmup ? -1 - warmups_given : trial;
-  const auto order = presented_order(
+  const auto& order = presented_order(
       spec.type == core::TrialType::warmup ? warmups_given : order_key(deviation.order_of.value_or(trial)));
   spec.intervals = order.intervals;
   spec.correct = order.correct ? order.correct : correct_choice(protocol.task, spec.factors, order.intervals);

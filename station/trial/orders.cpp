@@ -105,8 +105,8 @@ std::vector<IntervalOrder> orders_of(const protocol::Task& task) {
 
 int run_of_orders() { return kRun; }
 
-IntervalOrder order_for(const protocol::Task& task, std::uint64_t seed, int block, int attempt, int trial) {
-  const auto orders = orders_of(task);
+const IntervalOrder& order_for(const std::vector<IntervalOrder>& orders, std::uint64_t seed, int block,
+                               int attempt, int trial) {
   if (orders.size() == 1) return orders.front();
   std::vector<std::size_t> run;
   for (int i = 0; i < kRun; ++i) run.push_back(static_cast<std::size_t>(i) % orders.size());

@@ -21,10 +21,11 @@ struct IntervalOrder {
 /// choice depends on the factors (tasks with one interval).
 std::vector<IntervalOrder> orders_of(const protocol::Task& task);
 
-/// Returns the order for a trial. Trials are divided into runs of equal length, and each run contains every
-/// order equally often. Each run is shuffled with random numbers whose key contains the run's number, so the
-/// order of trial k can be computed without computing the other runs.
-IntervalOrder order_for(const protocol::Task& task, std::uint64_t seed, int block, int attempt, int trial);
+/// Returns the order for a trial, one of orders_of(). Trials are divided into runs of equal length, and each
+/// run contains every order equally often. Each run is shuffled with random numbers whose key contains the
+/// run's number, so the order of trial k can be computed without computing the other runs.
+const IntervalOrder& order_for(const std::vector<IntervalOrder>& orders, std::uint64_t seed, int block,
+                               int attempt, int trial);
 
 /// Returns the number of trials in a run of order_for().
 int run_of_orders();

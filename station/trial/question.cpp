@@ -110,7 +110,7 @@ simulation::Question question_of(const TrialSpec& spec, const protocol::Protocol
   question.key = {seed, core::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
   const auto level = level_factor(spec, protocol);
   question.decibel = level.ends_with("_dB");
-  question.default_threshold = protocol::middle_level(protocol, level);
+  question.default_threshold = protocol::middle_level_of(protocol, level);
   set_second(spec, protocol, level, question);
   const auto& task = protocol.task;
   question.unsure = !task.unsure.empty();

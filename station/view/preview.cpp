@@ -54,25 +54,6 @@ std::optional<Knob> knob_of(const protocol::Factor& factor) {
   return knob;
 }
 
-/// The errors of the next cheaper model beside what the scene allows, so that a reader sees which of them
-/// decided.
-Phrase why_not_cheaper(const physics::RungEstimate& cheaper, const scene::Tolerance& allowed) {
-  Phrase why{"",
-             "",
-             {phrase("preview.cheaper_error", {plain(std::string(physics::name(cheaper.model))),
-                                               shown(1e3 * cheaper.boundary_bound_m, 3)})}};
-  if (allowed.boundary_m)
-    why.values.push_back(phrase("preview.allowed_mm", {shown(1e3 * *allowed.boundary_m, 3)}));
-  if (allowed.level_dB)
-    why.values.push_back(
-        phrase("preview.cheaper_level", {shown(cheaper.level_bound_dB, 3), shown(*allowed.level_dB, 3)}));
-  if (allowed.friction)
-    why.values.push_back(phrase("preview.cheaper_friction",
-                                {shown(100 * cheaper.amplitude_bound, 3), shown(*allowed.friction, 3)}));
-  if (!cheaper.usable) why.values.push_back(phrase("preview.cheaper_unusable", {plain(cheaper.reason)}));
-  return why;
-}
-
 void describe_plan(SceneLook& look) {
   const auto& plan = look.plan;
   const auto add = [&look](const char* label, Phrase value) {
@@ -83,7 +64,7 @@ void describe_plan(SceneLook& look) {
   add("preview.model", plain(std::string(physics::name(plan.model))));
   add("preview.error", phrase(plan.inside_tolerance ? "preview.at_most_mm" : "preview.beyond_tolerance",
                               {shown(1e3 * plan.error_bound_m, 3)}));
-  if (plan.cheaper) add("preview.cheaper", why_not_cheaper(*plan.cheaper, plan.scene.tolerance));
+  if (!plan.cheaper.empty()) add("preview.cheaper", plan.cheaper);
   Phrase uncertain{"", "", {phrase("preview.mm_sd", {shown(1e3 * plan.uncertainty_m, 3)})}};
   if (look.under.level) {
     uncertain.values.push_back(plain("; "));

@@ -8,6 +8,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "station/core/limits.hpp"
 #include "station/core/number.hpp"
@@ -317,6 +318,17 @@ report::SessionData report_data(const std::string& database, const std::string& 
   data.measured = measured_trials(stored.blocks);
   add_strip(database, stored, data);
   return data;
+}
+
+std::optional<protocol::Protocol> newest_protocol(const std::string& path, const std::string& protocol_id) {
+  auto database = store::open_reader(path);
+  const auto sessions = store::list_sessions(database, {"", "", protocol_id});
+  const auto newest = std::ranges::max_element(sessions, {}, [](const auto& session) {
+    return std::pair(session.last_activity_realtime_ns, session.session_id);
+  });
+  if (newest == sessions.end()) return std::nullopt;
+  const auto start = store::session_record(database, newest->session_id).start;
+  return protocol::parse(start.protocol_text, start.protocol_path);
 }
 
 std::string session_to_report(const std::string& database, const store::SessionFilter& filter) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,10 @@ void add_own_estimates(const std::string& database, const store::StoredSession& 
 /// Returns the friction along the strip as curves for a report, one for each direction in which there were
 /// strokes.
 std::vector<analysis::FrictionCurve> curves_of(const session::AlongStrip& along);
+
+/// Returns the protocol of the newest session with this protocol id; empty if there is no session.
+std::optional<protocol::Protocol> newest_protocol(const std::string& database,
+                                                  const std::string& protocol_id);
 
 /// Returns the session to report: the named one or, without a name, the newest session that matches the
 /// filter and has trials. Throws StoreError (missing) if there is none.

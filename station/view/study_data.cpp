@@ -11,6 +11,7 @@
 #include "station/protocol/answers.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/protocol.hpp"
+#include "station/protocol/visits.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/store/read.hpp"
 #include "station/view/report_data.hpp"
@@ -186,6 +187,13 @@ Counted counted(const std::vector<Found>& sessions, report::SessionCounts& count
   return result;
 }
 
+/// Returns how many different planned sessions these are.
+int sessions_done(const std::vector<Found>& sessions) {
+  std::set<int> numbers;
+  for (const auto& found : sessions) numbers.insert(found.session.start.planned_session.value_or(1));
+  return static_cast<int>(numbers.size());
+}
+
 report::Study head_of(const StudyChoice& choice, const std::vector<Found>& all, int copies) {
   report::Study study;
   const auto& start = all.front().session.start;
@@ -215,8 +223,9 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
   require_one_study(choice, all);
   auto study = head_of(choice, all, copies);
   const auto first = store::read_session(all.front().database, all.front().session.session_id);
-  const auto protocol =
-      report::by_group(protocol::parse(first.session.start.protocol_text, first.session.start.protocol_path));
+  const auto stored = protocol::parse(first.session.start.protocol_text, first.session.start.protocol_path);
+  study.design_rows = protocol::place_count(stored);
+  const auto protocol = report::by_group(stored);
   const auto rules = protocol.exclusion.value_or(protocol::Exclusion{});
   study.rules = report::rules_in_words(rules);
   const auto people = by_person(std::move(all));
@@ -240,6 +249,8 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
     result.estimates = std::move(estimates);
     result.early_ends = std::move(early_ends);
     result.group = sessions.front().session.start.group;
+    result.row = sessions.back().session.sequence_index % study.design_rows;
+    result.completed = sessions_done(used.sessions) >= protocol::session_count(stored);
     sink(result, data);
     study.persons.push_back(std::move(result));
     data.trials.clear();

@@ -785,6 +785,13 @@ class Report(Folder):
             self.assertEqual([one["value"] is None for one in document["scales"][0]["stimuli"]], [guessed] * len(document["scales"][0]["stimuli"]))
             self.assertEqual([one["code"] for one in document["scales"][0]["statements"]], ["no-range"] if guessed else [])
 
+    def test_counts_of_places_have_the_recorded_shape(self):
+        self.add_sessions()
+        document = json.loads(run(["sessions", "--db", "lab.sqlite", "--places", "--json"], self.folder)[1])
+        self.assertEqual(is_like(document, SHAPES["sessions places"]), "")
+        self.assertEqual([one["places"][0]["started"] for one in document][:1], [document[0]["places"][0]["completed"]])
+        self.refused(["sessions", "--db", "lab.sqlite", "--places", "--participant", "P01"], "leave out --session and --participant")
+
     def test_an_estimator_is_found_by_a_relative_path(self):
         self.add_sessions()
         os.mkdir(os.path.join(self.folder, "programs"))

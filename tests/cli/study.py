@@ -346,6 +346,43 @@ class Sessions(unittest.TestCase):
         self.assertEqual([people[p]["presented"] for p in ("P01", "P03")], [10, 10])
         self.assertTrue(people["P03"]["incomplete"])
 
+    def places(self, assignment):
+        """A study with two groups, in which the second participant stops in the middle."""
+        with open(os.path.join(SOURCE, "protocols/demo.toml"), encoding="utf-8") as file:
+            text = file.read() + '\n[[factor]]\nname = "team"\nlevels = ["red", "blue"]\ndraw = "per-participant"\n' + assignment
+        with open(os.path.join(self.folder, "teams.toml"), "w", encoding="utf-8") as file:
+            file.write(text)
+        check = json.loads(self.call("check", "teams.toml", "--sessions", "1", "--json"))
+        self.assertEqual(check["different_places"], 2)
+        for person, status in (("P01", "completed"), ("P02", "stopped"), ("P03", "completed")):
+            self.call("run", "teams.toml", "--participant", person, "--db", "lab.sqlite", "--observer", "sim", "--seed", "1")
+            with sqlite3.connect(os.path.join(self.folder, "lab.sqlite")) as database:
+                database.execute("UPDATE session SET status = ? WHERE participant = ?", (status, person))
+        self.sessions = {s["participant"]: s for s in json.loads(self.call("sessions", "--db", "lab.sqlite", "--json"))}
+        self.listed = json.loads(self.call("sessions", "--db", "lab.sqlite", "--places", "--json"))
+        self.study_json = json.loads(self.call("report", "--study", "--db", "lab.sqlite", "--json"))
+        return check
+
+    def test_the_next_participant_gets_the_group_of_a_dropout(self):
+        check = self.places("[assignment]\ndropout_after_h = 1e-6\n")  # 3.6 ms
+        self.assertEqual(check["dropout_after_h"], 1e-6)
+        self.assertEqual({p: (s["sequence_index"], s["group"]) for p, s in self.sessions.items()},
+                         {"P01": (0, "red"), "P02": (1, "blue"), "P03": (3, "blue")})
+        self.assertEqual(self.listed, [{
+            "protocol_id": "demo", "run_mode": "simulated", "different_places": 2, "dropout_after_h": 1e-6,
+            "places": [{"place": 0, "started": 1, "completed": 1, "expected": 0, "dropped_out": 0},
+                       {"place": 1, "started": 2, "completed": 1, "expected": 0, "dropped_out": 1}]}])
+        self.assertEqual(self.study_json["places"], [{"place": 0, "started": 1, "completed": 1, "used": 1},
+                                                     {"place": 1, "started": 2, "completed": 1, "used": 1}])
+        self.assertRegex(self.call("sessions", "--db", "lab.sqlite", "--places"), r"\n +1 +2 +1 +0 +1\n")
+
+    def test_without_assignment_the_places_follow_each_other(self):
+        check = self.places("")
+        self.assertIsNone(check["dropout_after_h"])
+        self.assertEqual({p: s["sequence_index"] for p, s in self.sessions.items()}, {"P01": 0, "P02": 1, "P03": 2})
+        self.assertEqual([row["expected"] for row in self.listed[0]["places"]], [0, 1])
+        self.assertEqual([row["completed"] for row in self.study_json["places"]], [2, 0])
+
 
 class OwnEstimates(unittest.TestCase):
     """What adaptive procedures estimate themselves, session by session."""

@@ -1,12 +1,21 @@
+#include <algorithm>
+#include <map>
+#include <random>
 #include <set>
+#include <thread>
 
 #include "station/collector/fetch.hpp"
 #include "station/collector/push.hpp"
 #include "station/collector/received.hpp"
 #include "station/core/number.hpp"
+#include "station/store/open.hpp"
+#include "station/store/people.hpp"
 #include "station/store/places.hpp"
 #include "station/store/read.hpp"
+#include "station/store/withdraw.hpp"
+#include "station/system/clocks.hpp"
 #include "tests/collector/postgres_server.hpp"
+#include "tests/collector/proxy.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
 
@@ -124,4 +133,250 @@ TEST_CASE("the example queries run for a reader, and count what was recorded", "
   // Every fifth trial of the sample is a timeout, so 2 of 10 are.
   CHECK(sample::contains(answers, "|10|2|0\n"));
   CHECK(sample::contains(answers, "|2023-02-28|366\n"));
+}
+
+namespace {
+
+constexpr std::int64_t hour_ns = 3'600'000'000'000;
+
+const core::Assignment kFourRows{48, 4, 1, false};
+
+/// Records a session that began some hours ago. Its trials, if it has any, are of now. Returns the
+/// participant's place.
+int live(const std::string& db, const std::string& station, const std::string& participant, double hours_ago,
+         store::SessionStatus status = store::SessionStatus::completed,
+         const std::optional<core::Assignment>& assignment = kFourRows, std::optional<int> planned = {},
+         store::RunMode mode = store::RunMode::live, int trials = 0) {
+  auto start = at_station(station, participant);
+  start.run_mode = mode;
+  if (mode != store::RunMode::simulated) start.observer = "";
+  start.assignment = assignment;
+  start.planned_session = planned;
+  auto segment = sample::segment();
+  segment.realtime_ns =
+      system::realtime_ns() - static_cast<std::int64_t>(hours_ago * static_cast<double>(hour_ns));
+  auto log = store::SessionLog::begin(db, start, segment);
+  log.begin_block(sample::block());
+  for (int i = 0; i < trials; ++i) log.presented(i, 1), log.append(sample::answered(i));
+  log.finish(status, "");
+  return log.session().sequence_index;
+}
+
+/// Sends the sessions of a station, and leases places until it has this many free ones.
+void lease(const std::string& db, const std::string& to, std::int64_t count,
+           const std::optional<core::Assignment>& assignment = kFourRows) {
+  collector::PushOptions options{db, to, "", "", {{kProtocol, count}}, {}};
+  if (assignment) options.assignments.emplace(kProtocol, *assignment);
+  REQUIRE(collector::push(options).complete());
+}
+
+}  // namespace
+
+TEST_CASE("a station replaces the dropouts of another", "[collector]") {
+  const PostgresServer postgres;
+  const TemporaryFolder folder;
+  const auto a = folder / "a.sqlite", b = folder / "b.sqlite";
+  const auto to_a = postgres.as("station_a"), to_b = postgres.as("station_b");
+  sample::session(a, 1, at_station("bench-a", "S")), sample::session(b, 1, at_station("bench-b", "S"));
+  store::withdraw(a, {"S", "", "", ""}), store::withdraw(b, {"S", "", "", ""});
+  lease(a, to_a, 2), lease(b, to_b, 2);
+  CHECK(live(a, "bench-a", "A0", 100) == 0);
+  CHECK(live(a, "bench-a", "A1", 100, store::SessionStatus::stopped) == 1);
+  CHECK(live(b, "bench-b", "B0", 100) == 2);
+  CHECK(live(b, "bench-b", "B1", 100) == 3);
+  collector::push({a, to_a, "", "", {}, {}});
+  SECTION("without the rule, it gets the lowest place") {
+    lease(b, to_b, 1, std::nullopt);
+    CHECK(live(b, "bench-b", "B2", 0) == 4);
+  }
+  SECTION("with it, it gets one in the row of the dropout") {
+    lease(b, to_b, 1);
+    CHECK(live(b, "bench-b", "B2", 0) == 5);
+    SECTION("and if the dropout comes back, the next ones go to the other rows") {
+      CHECK(live(a, "bench-a", "A1", 0) == 1);
+      lease(a, to_a, 3);
+      lease(b, to_b, 1);
+      std::set<int> places;
+      for (const auto* code : {"A2", "A3", "A4"}) places.insert(live(a, "bench-a", code, 0));
+      CHECK(places == std::set<int>{4, 6, 7});
+      CHECK(live(b, "bench-b", "B3", 0) == 8);
+    }
+  }
+  SECTION("while a dropout is expected, the row is not given again") {
+    const core::Assignment patient{200, 4, 1, false};
+    lease(b, to_b, 1, patient);
+    CHECK(live(b, "bench-b", "B2", 0, store::SessionStatus::completed, patient) == 4);
+  }
+}
+
+TEST_CASE("the server counts and chooses as a station does", "[collector]") {
+  const PostgresServer postgres;
+  const TemporaryFolder folder;
+  std::mt19937 random(46);
+  const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+  using store::SessionStatus;
+  for (const auto& [station, role] : {std::pair("bench-a", "station_a"), {"bench-b", "station_b"}}) {
+    const auto db = folder / (std::string(station) + ".sqlite");
+    // places that neither the one nor the other has, so that the server need not lease any
+    std::vector<std::int64_t> mine;
+    for (int i = 0; i < 60; ++i)
+      if (const bool of_a = i % 3 == 0; of_a == (std::string(station) == "bench-a")) mine.push_back(i);
+    for (int i = 0; i < 30; ++i) {
+      const auto code = "P" + std::to_string(below(14));
+      const auto status =
+          std::vector{SessionStatus::completed, SessionStatus::completed, SessionStatus::stopped,
+                      SessionStatus::interrupted}[static_cast<std::size_t>(below(4))];
+      live(db, station, code, below(400), status, kFourRows,
+           below(5) == 0 ? std::nullopt : std::optional(1 + below(3)),
+           below(6) == 0 ? store::RunMode::pilot : store::RunMode::live, below(4) == 0 ? 1 : 0);
+      if (i == 0) store::set_leased_places(db, kProtocol, mine);
+    }
+    if (const auto codes = store::participants(db); std::string(station) == "bench-a")
+      store::join(db, codes[0], codes[1]);
+    REQUIRE(collector::push({db, postgres.as(role), "", "", {}, {}}).complete());
+  }
+  auto admin = postgres.admin();
+  const auto people = admin.query(
+      "SELECT a.participant, b.participant FROM turnpoint.enrolment a, turnpoint.enrolment b WHERE "
+      "a.station_id"
+      " = 'bench-a' AND b.station_id = 'bench-b' ORDER BY 1, 2 LIMIT 1");
+  admin.query("SELECT turnpoint.join('bench-a', $1, 'bench-b', $2)", {people.text(0, 0), people.text(0, 1)});
+  const collector::ReadableDatabase fetched(postgres.address("reader"));
+  auto reader = store::open_reader(fetched.path());
+  int held = 0, gone = 0;
+  for (int run = 0; run < 60; ++run) {
+    const core::Assignment rule{static_cast<double>(1 + below(400)), 1 + below(7), 1 + below(3),
+                                below(2) == 1};
+    const auto json = "{\"dropout_after_h\":" + core::number(rule.dropout_after_h) +
+                      ",\"rows\":" + std::to_string(rule.rows) +
+                      ",\"sessions\":" + std::to_string(rule.sessions) +
+                      ",\"incomplete_count\":" + (rule.incomplete_count ? "true" : "false") + "}";
+    INFO(json);
+    std::multiset<std::int64_t> here, there;
+    std::map<std::int64_t, std::int64_t> rows;
+    for (const auto& one :
+         store::participations(reader, kProtocol, store::RunMode::live, rule, system::realtime_ns())) {
+      if (one.progress == store::Progress::dropped_out) {
+        ++gone;
+        continue;
+      }
+      here.insert(one.place), ++rows[one.place % rule.rows], ++held;
+    }
+    const auto found = admin.query("SELECT * FROM turnpoint.held_places($1, $2)", {kProtocol, json});
+    for (int i = 0; i < found.count(); ++i) there.insert(found.integer(i, 0));
+    REQUIRE(here == there);
+    // The server leases several places as one after the other would be chosen here.
+    collector::Connection b(postgres.as("station_b"));
+    const collector::ServerTransaction undone(b);
+    const auto leased = [&](int more) {
+      std::set<std::int64_t> places;
+      const auto list =
+          b.query("SELECT turnpoint.lease_places($1, $2, $3)", {kProtocol, std::to_string(more), json});
+      for (int i = 0; i < list.count(); ++i) places.insert(list.integer(i, 0));
+      return places;
+    };
+    auto used = store::used_places(reader, kProtocol);
+    std::set<std::int64_t> expected;
+    for (int step = 0; step < 2; ++step) {  // the second time, the places of the first are leased and free
+      const int more = below(12);
+      for (int i = 0; i < more; ++i) {
+        const auto place = *store::choose_place(used, std::nullopt, rows, rule.rows);
+        expected.insert(place), ++rows[place % rule.rows];
+        used.insert(std::lower_bound(used.begin(), used.end(), place), place);
+      }
+      REQUIRE(leased(more) == expected);
+    }
+  }
+  CHECK(held > 100);
+  CHECK(gone > 100);
+}
+
+TEST_CASE("two stations that enrol at the same time get different places, and rows even out", "[collector]") {
+  const PostgresServer postgres;
+  const TemporaryFolder folder;
+  const auto enrol = [&](const std::string& letter, int count, int seed, int leaving_percent) {
+    std::mt19937 random(static_cast<unsigned>(seed));
+    const auto db = folder / (letter + ".sqlite");
+    for (int i = 0; i < count; ++i) {
+      const bool leaves = static_cast<int>(random() % 100) < leaving_percent;
+      collector::PushOptions options{db, postgres.as("station_" + letter), "", "", {{kProtocol, 1}}, {}};
+      options.assignments.emplace(kProtocol, kFourRows);
+      for (int attempt = 0;; ++attempt) {
+        try {
+          if (std::filesystem::exists(db)) collector::push(options);
+          break;
+        } catch (const collector::ServerError& error) {
+          if (attempt == 5) throw;
+        }
+      }
+      live(db, "bench-" + letter, letter + std::to_string(seed) + "-" + std::to_string(i), 100,
+           leaves ? store::SessionStatus::stopped : store::SessionStatus::completed);
+    }
+    collector::push({db, postgres.as("station_" + letter), "", "", {}, {}});
+  };
+  const auto both = [&](int count, int seed, int leaving_percent) {
+    std::jthread a([&] { enrol("a", count, seed, leaving_percent); });
+    std::jthread b([&] { enrol("b", count, seed + 1, leaving_percent); });
+  };
+  // The first participant of each station comes before any lease: both have place 0.
+  both(1, 10, 0);
+  both(14, 20, 30);
+  const auto count = [&](const std::string& what) {
+    return postgres.admin().query("SELECT " + what + " FROM turnpoint.enrolment").integer(0, 0);
+  };
+  CHECK(count("count(*)") == 30);
+  CHECK(count("count(DISTINCT sequence_index)") == 29);
+  const auto difference = [&] {
+    const auto rows = postgres.admin().query(
+        "SELECT count(s.session_id) FROM generate_series(0, 3) r LEFT JOIN turnpoint.session s"
+        " ON s.sequence_index % 4 = r AND s.status = 'completed' GROUP BY r ORDER BY 1");
+    return rows.integer(3, 0) - rows.integer(0, 0);
+  };
+  CAPTURE(difference());
+  // Without dropouts, four more of each station even out what the last dropouts left.
+  both(4, 30, 0);
+  CHECK(difference() <= 1);
+}
+
+TEST_CASE("a lease that is cut at any place is completed by the next push", "[collector]") {
+  const PostgresServer postgres;
+  const TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  live(db, "bench-a", "A0", 100, store::SessionStatus::stopped);
+  std::mt19937 random(7);
+  int failures = 0;
+  for (int i = 0; i < 16; ++i) {
+    Trouble trouble;
+    (i % 2 == 0 ? trouble.cut_sent : trouble.cut_received) = 600 + random() % 3000;
+    const auto connections = [&] { return trouble; };
+    const Proxy proxy(postgres.socket(), connections);
+    collector::PushOptions options{db,
+                                   "host=127.0.0.1 port=" + std::to_string(proxy.port()) +
+                                       " dbname=turnpoint user=station_a sslmode=disable",
+                                   "",
+                                   "",
+                                   {{kProtocol, 2}},
+                                   {}};
+    options.assignments.emplace(kProtocol, kFourRows);
+    try {
+      collector::push(options);
+    } catch (const collector::ServerError&) {
+      ++failures;
+    }
+    lease(db, postgres.as("station_a"), 2);
+    const auto list = postgres.admin().query("SELECT sequence_index FROM turnpoint.lease ORDER BY 1");
+    auto here = sample::raw(db);
+    CHECK(
+        here.text("SELECT group_concat(sequence_index) FROM (SELECT * FROM lease ORDER BY sequence_index)") ==
+        [&] {
+          std::string text;
+          for (int row = 0; row < list.count(); ++row) text += (row > 0 ? "," : "") + list.text(row, 0);
+          return text;
+        }());
+    live(db, "bench-a", "A" + std::to_string(i + 1), 100);
+    // never more free places than were asked for, whatever was cut
+    CHECK(here.integer("SELECT count(*) FROM lease WHERE sequence_index NOT IN"
+                       " (SELECT sequence_index FROM enrolment)") == 1);
+  }
+  CHECK(failures > 4);
 }

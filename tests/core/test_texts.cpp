@@ -174,6 +174,80 @@ TEST_CASE("what the operator's pages show is never a sentence in their sources, 
   }
 }
 
+TEST_CASE("one thing has one word on the screen, on the command line and in the pages", "[texts]") {
+  const std::string root = TURNPOINT_SOURCE_DIR;
+  // the words that are not used, from the glossary's second table
+  std::string words;
+  static const std::regex row("\n\\| ([^|\n]+) \\| [^|\n]+ \\|"), comma(", ");
+  const auto glossary = core::read_file(root + "/station/glossary.md");
+  const auto listed = glossary.substr(glossary.find("## Words that are not used"));
+  for (std::sregex_iterator found(listed.begin(), listed.end(), row), end; found != end; ++found)
+    if ((*found)[1] != "instead of")
+      words += (words.empty() ? "" : "|") + std::regex_replace((*found)[1].str(), comma, "|");
+  REQUIRE(words.starts_with("subject|testee|"));
+  const std::regex unused("\\b(" + words + ")s?\\b", std::regex::icase);
+  const auto in = [&](const std::string& text) {
+    std::smatch found;
+    return std::regex_search(text, found, unused) ? found.str() : "";
+  };
+  CHECK(in("All Subjects sit down") == "Subjects");
+  CHECK(in("the subjective point").empty());
+
+  for (const auto& [key, said] : core::catalogue("en")) {
+    INFO(key << ": " << said);
+    CHECK(in(said).empty());
+    const bool for_participants = key.find('.') == std::string::npos || key.starts_with("fault.");
+    CHECK((for_participants || said.find("xperimenter") == std::string::npos));
+  }
+  static const std::regex quoted("\"([A-Za-z-][^\"\n]* [^\"\n]*)\""),
+      address("\\(?(https?|file):[^ )]*|`[^`]*`");
+  for (const auto* folder : {"station", "protocols", "deploy", "physics"})
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root + "/" + folder)) {
+      const auto path = entry.path().string();
+      INFO(path);
+      if (path.ends_with(".md") && !path.ends_with("glossary.md"))
+        CHECK(in(std::regex_replace(core::read_file(path), address, "")).empty());
+      if (path.find("/station/cli/") == std::string::npos || !path.ends_with(".cpp")) continue;
+      const auto source = core::read_file(path);
+      for (std::sregex_iterator found(source.begin(), source.end(), quoted), end; found != end; ++found)
+        CHECK(in((*found)[1]).empty());
+    }
+}
+
+TEST_CASE("who is asked to slide reads that it is on the surface, not on the glass of the screen",
+          "[texts]") {
+  const std::map<std::string, std::string> surface{{"ar", "\u0627\u0644\u0633\u0637\u062d"},
+                                                   {"de", "Oberfl\u00e4che"},
+                                                   {"en", "surface"},
+                                                   {"es", "superficie"},
+                                                   {"ja", "\u8868\u9762"},
+                                                   {"zh", "\u8868\u9762"}};
+  for (const auto& language : core::languages())
+    for (const char* key : {"slide_here", "slide_now", "stroke_now", "training_text", "measuring_text"}) {
+      INFO(language << " " << key << ": " << core::text(key, language));
+      CHECK(core::text(key, language).find(surface.at(language)) != std::string::npos);
+    }
+}
+
+TEST_CASE("a number that can be one stands behind its noun", "[texts]") {
+  static const std::regex many(
+      "%[0-9] (points|days|sessions|files|copies|tones|trials|participants|answers|pages|studies)\\b");
+  // these numbers are at least 2: a shorter time is said in hours, an export has several files
+  const std::set<std::string> never_one{"backup_old", "backup_days", "operator.ago_days",
+                                        "operator.exported"};
+  int seen = 0;
+  for (const auto& [key, said] : core::catalogue("en")) {
+    const auto table = key.substr(0, key.find('.'));
+    if (key != table && table != "operator" && table != "state" && table != "live" && table != "design")
+      continue;
+    INFO(key << ": " << said);
+    const bool found = std::regex_search(said, many);
+    seen += found ? 1 : 0;
+    CHECK((!found || never_one.contains(key)));
+  }
+  CHECK(seen == static_cast<int>(never_one.size()));
+}
+
 TEST_CASE("every text is used, and every text that the program requests exists", "[texts]") {
   const auto source = quoted();
   const auto keys = keys_of("en");
@@ -365,6 +439,22 @@ TEST_CASE("a language is known to be spoken or not, and to have been read by a n
   CHECK(core::translation("de-CH") == core::Translation::participant_read);
   CHECK(core::translation("ar") == core::Translation::unread);
   CHECK(core::translation("fi") == core::Translation::none);
+}
+
+TEST_CASE("what a participant reads of a fault has no path and no error code", "[texts]") {
+  // a path, what SQLite or the C library says of an error, and names of errors
+  static const std::regex raw(
+      "/|\\\\|sqlite|SQL|errno|[Nn]o "
+      "such|Input/output|\\bE[A-Z]{3,}\\b|[A-Z]\\w*(Error|Exception)\\b|0x[0-9a-f]|status [0-9]");
+  CHECK(std::regex_search("/srv/lab.db: SQLITE_FULL", raw));
+  for (const auto& language : core::languages())
+    for (const auto kind : core::fault_kinds) {
+      const auto text = core::fault_text(kind, language);
+      for (const auto& said : {text.happened, text.safe, text.to_do}) {
+        INFO(language << " " << core::name(kind) << ": " << said);
+        CHECK_FALSE(std::regex_search(said, raw));
+      }
+    }
 }
 
 TEST_CASE("every fault says what happened, what is safe and what to do in each language", "[texts]") {

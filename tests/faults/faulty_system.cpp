@@ -6,6 +6,7 @@
 //   FAULT_KIND=KIND      kill: the process is killed before the call, or in the middle of a write
 //                        EIO: this call fails
 //                        ENOSPC: this call and all later ones that need space fail, as on a full disk
+//   HANGS_WHEN=FILE      calls that need space do not return once this file exists, as on a disk that hangs
 //   FAULT_LOG=FILE       gets a line "N CALL r|w|a PATH" for each call: r reads, w needs space, a changes
 //                        something else
 //   NOT_OFFERED=ERRNO    the folder's file system offers neither chmod nor chown nor fsync of a folder nor
@@ -44,7 +45,7 @@ namespace {
 }
 
 struct Settings {
-  std::string under;
+  std::string under, hangs_when;
   long at = 0;
   bool kills = false, fills = false;
   int log = -1, not_offered = 0;
@@ -59,6 +60,7 @@ std::string variable(const char* name) {
 Settings read_settings() {
   Settings settings;
   settings.under = variable("FAULT_UNDER");
+  settings.hangs_when = variable("HANGS_WHEN");
   settings.at = std::atol(variable("FAULT_AT").c_str());
   settings.kills = variable("FAULT_KIND") == "kill";
   settings.fills = variable("FAULT_KIND") == "ENOSPC";
@@ -126,6 +128,9 @@ bool fails(const char* call, Effect effect, const std::string& path, Torn torn) 
     const auto line = std::to_string(number) + " " + call + letter + path + "\n";
     ::syscall(SYS_write, set.log, line.data(), line.size());
   }
+  if (writes && !set.hangs_when.empty() &&
+      ::syscall(SYS_faccessat, AT_FDCWD, set.hangs_when.c_str(), F_OK) == 0)
+    for (;;) ::pause();
   if (full && writes) return errno = ENOSPC, true;
   if (number != set.at) return false;
   if (set.kills) {

@@ -2,8 +2,10 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <set>
 
 #include "station/core/draws.hpp"
+#include "station/procedure/limits.hpp"
 #include "station/procedure/psychometric.hpp"
 #include "station/procedure/trace.hpp"
 #include "tests/support/catch.hpp"
@@ -271,6 +273,37 @@ TEST_CASE("limits: on a scale of ratios, steps and midpoints are geometric", "[p
   CHECK(*result.estimates.at("threshold").sd == Approx(std::log(10.0) / 2));
   spec.step = {1e6};  // such a step is refused, but makes no level overflow or become 0
   CHECK(validate(spec).size() == 1);
+}
+
+TEST_CASE("limits: the levels that are listed are those that sessions present", "[procedure][limits]") {
+  auto spec = series_of(12);
+  spec.ascending.values = {-8, -9.5}, spec.descending.values = {8, 9};
+  SECTION("on a straight scale") {}
+  SECTION("on a scale of ratios, whose last step would pass the limit") {
+    spec.scale = Scale::dB, spec.min = 0.1, spec.max = 9.5;
+    spec.ascending.values = {0.1, 0.25}, spec.descending.values = {9, 8}, spec.step = {3};
+  }
+  std::set<double> presented;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const rnd::DrawKey key{seed, rnd::Stream::level_order, 0, 0, 0};
+    auto procedure = make_procedure(spec, {}, key);
+    rnd::Draws answers({seed, rnd::Stream::observer, 0, 0, 0});
+    const double likely = answers.uniform();
+    while (const auto proposal = procedure->next()) {
+      presented.insert(proposal->level);
+      procedure->record(answers.uniform() < likely ? Answer::one : Answer::zero);
+    }
+  }
+  const auto listed = levels_of_series(spec, 60);
+  REQUIRE(listed.size() == presented.size());
+  std::size_t i = 0;
+  for (const double level : presented) CHECK(listed[i++] == Approx(level).epsilon(1e-12).margin(1e-12));
+  CHECK(levels_of_series(spec, listed.size() - 1).empty());
+  auto impossible = spec;
+  impossible.scale = Scale::log10, impossible.min = -10;
+  CHECK(levels_of_series(impossible, 60).empty());
+  spec.ascending.uniform = {-8, -6};
+  CHECK(levels_of_series(spec, 60).empty());
 }
 
 TEST_CASE("limits: the state hash differs with every answer, and is that of the same answers",

@@ -182,3 +182,60 @@ TEST_CASE("a questionnaire of the last session is asked only there", "[protocol]
   second.insert(protocol.interludes.front().name);
   CHECK(second == asked(1));
 }
+
+TEST_CASE("places that differ by the number of different places have the same blocks, and no others do",
+          "[protocol]") {
+  const auto plan = [](const protocol::Protocol& protocol, int place) {
+    std::string words;
+    for (int session = 1; session <= protocol::session_count(protocol); ++session)
+      for (const auto& block : block_order(protocol, {place, session})) {
+        words += block.name;
+        for (const auto& [factor, level] : block.fixed) words += " " + std::get<std::string>(level);
+        words += ";";
+      }
+    return words;
+  };
+  const auto period = [&](const protocol::Protocol& protocol) {
+    std::vector<std::string> plans;
+    for (int place = 0; place < 120; ++place) plans.push_back(plan(protocol, place));
+    for (std::size_t length = 1; length < 60; ++length)
+      if (std::equal(plans.begin() + static_cast<std::ptrdiff_t>(length), plans.end(), plans.begin()))
+        return static_cast<int>(length);
+    return 0;
+  };
+  for (const int levels : {2, 3, 4, 5, 6})
+    for (const int groups : {1, 2, 3}) {
+      INFO(levels << " levels, " << groups << " groups");
+      const auto one = square(levels, 1, "all", groups);
+      CHECK(protocol::place_count(one) == period(one));
+      const auto several = square(levels, levels, "one", groups);
+      CHECK(protocol::place_count(several) == period(several));
+    }
+  // two squares together repeat only when both do
+  auto text = shipped("demo");
+  text.erase(text.find("[[block]]"));
+  put(text, "[task]",
+      "[[factor]]\nname = \"surface\"\nlevels = [\"a\", \"b\", \"c\", \"d\"]\n[[factor]]\nname = "
+      "\"hand\"\nlevels = [\"x\", \"y\", \"z\"]\n");
+  for (const auto* factor : {"surface", "hand"})
+    text += std::string("[[sequence]]\nname = \"over-") + factor +
+            "\"\ndesign = \"latin-square\"\nover = \"" + factor +
+            "\"\nblock = { procedures = [\"levels\"] }\n";
+  const auto protocol = protocol::parse(text, "p.toml");
+  CHECK(protocol::place_count(protocol) == 12);
+  CHECK(period(protocol) == 12);
+}
+
+TEST_CASE("[assignment] says when a participant is replaced, and without it nobody is", "[protocol]") {
+  auto text = shipped("friction-training");
+  CHECK_FALSE(protocol::assignment(protocol::parse(text, "p.toml")));
+  text += "\n[assignment]\ndropout_after_h = 336\n";
+  const auto assignment = protocol::assignment(protocol::parse(text, "p.toml"));
+  REQUIRE(assignment);
+  CHECK(assignment->dropout_after_h == 336);
+  CHECK(assignment->rows == 2);
+  CHECK(assignment->sessions == 3);
+  CHECK_FALSE(assignment->incomplete_count);
+  text.replace(text.find("\"repeat\""), 8, "\"count\"");
+  CHECK(protocol::assignment(protocol::parse(text, "p.toml"))->incomplete_count);
+}

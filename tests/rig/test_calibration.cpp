@@ -146,9 +146,9 @@ TEST_CASE("a calibration expires, belongs to one rig file, and says why it must 
   CHECK(days_left(calibration, "2026-03-29") == 0);
   CHECK(problems(calibration, "abc", "2026-03-29").empty());
   CHECK(core::say(problems(calibration, "abc", "2026-03-30").at(0), "en") ==
-        "the calibration of 2026-02-27 expired 1 days ago");
+        "the calibration of 2026-02-27 has expired; days since then: 1");
   CHECK(core::say(problems(calibration, "abc", "2026-03-30").at(0), "de") ==
-        "die Kalibrierung vom 2026-02-27 ist seit 1 Tagen abgelaufen");
+        "die Kalibrierung vom 2026-02-27 ist abgelaufen; Tage seitdem: 1");
   CHECK(problems(calibration, "abd", "2026-03-01").size() == 1);
   CHECK(problems(calibration, "abc", "2026-02-01").size() == 1);
   CHECK_THROWS_AS(days_left(calibration, "2026-02-30"), core::UsageError);

@@ -18,6 +18,7 @@
 #include "station/maintenance/calibrate.hpp"
 #include "station/maintenance/panel_latency.hpp"
 #include "station/rig/apply.hpp"
+#include "station/session/places.hpp"
 #include "station/session/planned_session.hpp"
 #include "station/session/prepare.hpp"
 #include "station/store/export.hpp"
@@ -83,13 +84,23 @@ void StationRoom::reopenEmpty(const QString& code) {
 }
 
 void StationRoom::start(const view::OperatorCode& code, Begins begins) {
+  start_with({path("protocols"), path("rig.toml"), path("lab.sqlite"), begins == Begins::locked}, code);
+}
+
+void StationRoom::openNew() {
   close();
-  const bool locked = begins == Begins::locked;
-  operating_ = std::make_unique<OperatorController>(
-      session::StationRequest{path("protocols"), path("rig.toml"), path("lab.sqlite"), locked});
+  folder_ = std::make_unique<QTemporaryDir>();
+  start_with({session::shipped("protocols"), session::shipped("deploy/rigs") + "/simulated.toml",
+              path("lab.sqlite")},
+             view::OperatorCode());
+}
+
+void StationRoom::start_with(const session::StationRequest& request, const view::OperatorCode& code) {
+  close();
+  operating_ = std::make_unique<OperatorController>(request);
   station_ = std::make_unique<StationWindow>(
       StationWindow::Place{5.9, QSize(1280, 800), false},
-      StationWindow::Operator{operating_.get(), code, locked, disks(), path("operator-code")},
+      StationWindow::Operator{operating_.get(), code, request.locked, disks(), path("operator-code")},
       path("lab.sqlite"));
   Q_EMIT opened();
 }
@@ -136,6 +147,20 @@ void StationRoom::planSessions() {
   store::SessionLog::begin(path("lab.sqlite"), start, {}).finish(core::SessionStatus::completed, "");
 }
 
+void StationRoom::recordSessions() {
+  core::SegmentStart segment;
+  using Visit = std::pair<const char*, const char*>;
+  for (const auto& [person, study] :
+       {Visit{"P02", "bands"}, Visit{"P01", "short"}, Visit{"P02", "short"}, Visit{"P01", "bands"}}) {
+    core::SessionStart start;
+    start.participant = person, start.protocol_id = study, start.protocol_version = "1.0.0";
+    start.run_mode = core::RunMode::pilot;
+    start.station_id = store::suggested_station_name(), start.started_local = session::local_time();
+    segment.realtime_ns += 60'000'000'000;  // a minute after the one before
+    store::SessionLog::begin(path("lab.sqlite"), start, segment).finish(core::SessionStatus::completed, "");
+  }
+}
+
 QString StationRoom::askedUdisks() const {
   QFile file(folder_->filePath("asked"));
   return file.open(QIODevice::ReadOnly) ? QString::fromUtf8(file.readAll()).trimmed() : QString();
@@ -165,6 +190,8 @@ void StationRoom::releaseKey(int key) { QTest::keyRelease(&station_->window(), s
 void StationRoom::addMistaken() {
   write(path("protocols/mistaken.toml"), "format = \"friction-protocol/1\"\nprotocl = 3\ntitel = \"x\"\n");
 }
+
+void StationRoom::damageDatabase() { write(path("lab.sqlite"), "rubbish " + std::string(5000, 'x')); }
 
 void StationRoom::close() {
   second_ = nullptr;
@@ -301,7 +328,8 @@ QStringList StationRoom::read(const std::string& database, const QString& file, 
                               const QString& where, const QString& is) const {
   const QTemporaryDir out;
   store::export_data(database, out.path().toStdString(), {});
-  QFile csv(out.filePath("short/" + file));
+  const auto study = QDir(out.path()).entryList(QDir::Dirs | QDir::NoDotAndDotDot).value(0);
+  QFile csv(out.filePath(study + "/" + file));
   if (!csv.open(QIODevice::ReadOnly)) return {"no " + file};
   const auto header = QString(csv.readLine()).trimmed().split(',');
   QStringList values;

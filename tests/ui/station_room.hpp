@@ -69,10 +69,18 @@ class StationRoom : public QObject {
   Q_INVOKABLE void reopenBuiltIn();
   /// Writes a protocol file with two mistakes into the folder of protocols.
   Q_INVOKABLE void addMistaken();
+  /// Writes rubbish over the database, or over a new file in its place.
+  Q_INVOKABLE void damageDatabase();
+  /// Starts the program as on a new machine: an empty folder, the shipped protocols and simulated rig, and
+  /// the built-in code.
+  Q_INVOKABLE void openNew();
 
   /// Plans two sessions for each participant, with a day between them, and stores that T1 had the first one
   /// today.
   Q_INVOKABLE void planSessions();
+
+  /// Stores sessions of two people in two studies: P02 in bands, P01 in short, P02 in short, P01 in bands.
+  Q_INVOKABLE void recordSessions();
 
   /// The text of a shipped protocol, and the canonical form of a protocol's text.
   Q_INVOKABLE QString shipped(const QString& protocol) const;
@@ -119,6 +127,7 @@ class StationRoom : public QObject {
  private:
   enum class Begins { open, locked };
   void start(const view::OperatorCode& code, Begins begins);
+  void start_with(const session::StationRequest& request, const view::OperatorCode& code);
   QStringList read(const std::string& database, const QString& file, const QString& name,
                    const QString& where, const QString& is) const;
   maintenance::DiskSources disks() const;

@@ -1,7 +1,7 @@
 // stopped_session PROTOCOL RIG DATABASE: runs a session on the screen in the same way as the program. The
 // simulated participant gives the second answer in the first trial. In the middle of the second trial's
 // stimulus, the process sends itself SIGTERM. With a fourth argument, it first writes this file until the
-// disk is full.
+// disk is full, or only makes this file if the variable HANGS_WHEN names it.
 #include <signal.h>
 
 #include <QGuiApplication>
@@ -10,6 +10,7 @@
 #include <QTimer>
 #include <cstdio>
 #include <exception>
+#include <fstream>
 #include <utility>
 
 #include "station/core/records.hpp"
@@ -39,7 +40,10 @@ void take_part(ui::SessionBridge& bridge) {
   if (page->trials_done() >= 1) {
     static bool stopped = false;  // a second signal would end the process
     if (std::exchange(stopped, true)) return;
-    if (!filling.empty()) SmallDisk::fill(filling);
+    if (qEnvironmentVariable("HANGS_WHEN").toStdString() == filling)
+      std::ofstream(filling) << "hangs";
+    else if (!filling.empty())
+      SmallDisk::fill(filling);
     return void(::raise(SIGTERM));
   }
   // answers count only after a page has been shown for a while

@@ -18,6 +18,7 @@
 #include "station/ui/shared/operator_screen.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/simulated_run.hpp"
+#include "tests/support/small_disk.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/ui/event_loop.hpp"
 
@@ -90,10 +91,10 @@ struct StartPage {
   }
   ~StartPage() { checks.let_go(); }
 
-  void open() {
+  void open() { open(folder / "lab.sqlite"); }
+  void open(const std::string& database) {
     page = std::make_unique<OperatorController>(
-        session::StationRequest{folder.path, kSource + "/tests/support/thin_plate.toml",
-                                folder / "lab.sqlite"},
+        session::StationRequest{folder.path, kSource + "/tests/support/thin_plate.toml", database},
         [this](const std::string& protocol, const std::string&, const std::stop_token& stop) {
           return checks(protocol, stop);
         });
@@ -116,6 +117,19 @@ struct StartPage {
     return "";
   }
 };
+
+/// The words of phrases as the pages get them.
+std::string to_text(const QVariant& phrases) {
+  std::string all;
+  if (phrases.typeId() == QMetaType::QString) return phrases.toString().toStdString();
+  for (const auto& one : phrases.toList()) all += to_text(one) + " ";
+  if (const auto map = phrases.toMap(); map.contains("key")) {
+    if (const auto key = map["key"].toString().toStdString(); !key.empty())
+      all += core::text(key, "en") + " ";
+    all += to_text(map["values"]);
+  }
+  return all;
+}
 
 }  // namespace
 
@@ -246,6 +260,63 @@ TEST_CASE("a database of another machine is asked about, and either answer lets 
     CHECK(start.page->station() == "bench-2");
     CHECK(store::read_station(path).database_id != id);
     CHECK(start.comes([&] { return start.page->may_begin(); }));
+  }
+}
+
+TEST_CASE("while the database can record nothing, Begin is disabled and the page says why", "[start]") {
+  StartPage start;
+  std::filesystem::copy_file(kSource + "/protocols/friction-training.toml", start.folder / "0.toml");
+  SmallDisk disk(24);
+  const auto database = disk / "lab.sqlite";
+  core::SessionStart session;
+  session.participant = "P01", session.station_id = store::suggested_station_name();
+  store::SessionLog::begin(database, session, {}).finish(core::SessionStatus::completed, "");
+  start.open(database);
+  start.checks.let_go();
+  REQUIRE(start.comes([&] { return start.page->may_begin(); }));
+  const auto says = [&](const char* sign, const char* reason) {
+    start.page->refresh();
+    const auto shown = [&] {
+      for (const auto& one : start.page->signs())
+        if (const auto map = one.toMap(); map["name"] == "database")
+          return map["says"].toMap()["key"].toString().toStdString();
+      return std::string();
+    };
+    REQUIRE(start.comes([&] { return shown() == sign; }));
+    CHECK_FALSE(start.page->may_begin());
+    const auto problems = to_text(start.page->problems());
+    CAPTURE(problems);
+    CHECK(problems.find(reason) != std::string::npos);
+    int chosen = 0;
+    QObject::connect(start.page.get(), &OperatorController::chosen, [&](const auto&) { ++chosen; });
+    start.page->begin();
+    CHECK_FALSE(start.page->preparing());
+    CHECK(chosen == 0);
+  };
+  const auto is_mended = [&] {
+    start.page->refresh();
+    return start.comes([&] { return start.page->may_begin(); });
+  };
+  SECTION("damaged") {
+    std::filesystem::rename(database, database + ".good");
+    std::ofstream(database) << "rubbish" << std::string(5000, 'x');
+    says("state.database_damaged", "not a database");
+    std::filesystem::rename(database + ".good", database);
+    CHECK(is_mended());
+  }
+  if (!disk.mounted) {
+    WARN("full and write-protected disks are not tested: needs the right to mount a file system");
+    return;
+  }
+  SECTION("full") {
+    SmallDisk::fill(disk / "filling");
+    says("state.database_full", "free some space, then begin again");
+    std::filesystem::remove(disk / "filling");
+    CHECK(is_mended());
+  }
+  SECTION("write-protected") {
+    REQUIRE(disk.protect());
+    says("state.database_read_only", "cannot be written");
   }
 }
 

@@ -123,13 +123,39 @@ TEST_CASE("on a full disk, a session ends within three seconds of the signal and
   REQUIRE(child.ends_within(3000));
   CAPTURE(child.said());
   CHECK(child.outcome() == 1);
-  CHECK(child.said().find("1 trials are stored") != std::string::npos);
+  CHECK(child.said().find("trials that are stored: 1;") != std::string::npos);
   CHECK(child.said().find("turnpoint resume") != std::string::npos);
   std::filesystem::remove(disk / "filling");
   const auto sessions = turnpoint::store::list_sessions(disk / "db");
   REQUIRE(sessions.size() == 1);
   CHECK(sessions[0].trials == 1);
 }
+
+#ifdef FAULTY_SYSTEM
+TEST_CASE("on a disk that hangs, a session ends within three seconds of the signal and says what was kept",
+          "[stop]") {
+  const TemporaryFolder folder, data;
+  auto environment = without_screen(folder);
+  for (const auto& setting : {std::string("LD_PRELOAD=" FAULTY_SYSTEM), "FAULT_UNDER=" + data.path,
+                              "HANGS_WHEN=" + (folder / "hangs")})
+    environment.push_back(setting);
+  Child child({STOPPED_SESSION, kSource + "/tests/ui/short.toml", kSource + "/tests/support/thin_plate.toml",
+               data / "db", folder / "hangs"},
+              environment);
+  for (int waited_ms = 0; !std::filesystem::exists(folder / "hangs") && waited_ms < kPatience_ms;
+       waited_ms += 10)
+    REQUIRE_FALSE(child.ends_within(10));
+  REQUIRE(child.ends_within(3000));
+  CAPTURE(child.said());
+  CHECK(child.outcome() == 1);
+  CHECK(child.said().find("a disk that does not answer") != std::string::npos);
+  CHECK(child.said().find("trials of the session that are stored: 1;") != std::string::npos);
+  CHECK(child.said().find("turnpoint resume") != std::string::npos);
+  const auto sessions = turnpoint::store::list_sessions(data / "db");
+  REQUIRE(sessions.size() == 1);
+  CHECK(sessions[0].trials == 1);
+}
+#endif
 
 TEST_CASE(
     "once stop signals are handled, the first one ends the event loop and the second one ends the process",

@@ -283,7 +283,7 @@ Item {
             tap("section-scenes")
             const scene = designPage().design.groups[0].name
             tap("feel-" + scene)
-            tryVerify(() => says(room.screen, "there is nothing to feel: 1.5 s, "), 20000)
+            tryVerify(() => says(room.screen, "there is nothing to feel: 1.5 s; "), 20000)
             compare(designPage().design.feeling.playing, "")
             verify(designPage().design.feeling.tones > 0 && designPage().design.feeling.peakPercent > 0)
         }

@@ -100,6 +100,26 @@ Item {
             tap(keyboard, "letterな")
             compare(stage.typed, "Ööカナ")
         }
+        function test_words_with_accents_are_typed_by_taps_in_each_language_data() {
+            return [{ tag: "en", word: "Café naïve" }, { tag: "de", word: "Übergröße à Ça" }, { tag: "es", word: "¿Qué niño, pingüino Ñ?" },
+                    { tag: "ja", word: "がっこうで、ぱん" }, { tag: "zh", word: "nǐ，hǎo！" }, { tag: "ar", word: "أسئلة؟" }]
+        }
+        function test_words_with_accents_are_typed_by_taps_in_each_language(row) {
+            const codes = Array.from(OperatorScreen.languages, language => language.code)
+            for (let i = 0; i < codes.length && keyboard.layout !== row.tag; ++i) tap(keyboard, "layout")
+            compare(keyboard.layout, row.tag)
+            let taps = 0
+            for (const letter of row.word) {
+                const small = letter.toLowerCase()
+                if (small !== letter) { tap(keyboard, "capitals"); ++taps }
+                if (!find(keyboard, "letter" + small)) { tap(keyboard, "accents"); ++taps }
+                wait(0)
+                tap(keyboard, "letter" + small)
+                ++taps
+            }
+            compare(stage.typed, row.word)
+            verify(taps <= 2.2 * row.word.length, taps)
+        }
         function test_numbers_have_a_pad_of_their_own() {
             keyboard.numbers = true
             wait(0)

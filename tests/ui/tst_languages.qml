@@ -63,6 +63,13 @@ Item {
             const bar = findChild(view, "progressDone")
             compare(bar.x + bar.width, bar.parent.width)
         }
+        function test_values_are_isolated_in_texts_that_are_read_from_right_to_left() {
+            words.language = "ar"
+            for (const said of [words.fill("operator.found", 3, 7), words.say({ key: "operator.found", values: ["3", "7"] })])
+                verify(said.includes("\u20683\u2069") && said.includes("\u20687\u2069"), said)
+            words.language = "en"
+            compare(words.fill("operator.found", 1, 7), "Sessions found: 1 of 7")
+        }
         function test_fonts_of_languages_data() {
             return [{ tag: "en", family: "Inter" }, { tag: "ja", family: "Inter" }, { tag: "ar", family: "Inter" },
                     { tag: "ko", family: "Noto Sans CJK KR" }, { tag: "zh", family: "Noto Sans CJK SC" },

@@ -194,6 +194,21 @@ Item {
             }
         }
 
+        // A picture of an explanation is large enough to be seen, and a long form has room beside its answers.
+        function test_pictures_and_long_forms_have_room_data() { return rows(["-pilot"], panels.slice(0, 2)) }
+        function test_pictures_and_long_forms_have_room(row) {
+            resize(row.panel)
+            show("explanation-picture" + row.name, "de")
+            const picture = shownItem(view, "picture")
+            verify(picture.paintedWidth >= 18 * row.panel.mm, "picture of " + picture.paintedWidth / row.panel.mm + " mm")
+            show("consent-form-long" + row.name, "de")
+            const form = shownItem(view, "questionText"), answer = shownItem(view, "answer0")
+            verify(form.height >= 0.35 * row.panel.height, "text of " + form.height)
+            verify(answer.height >= 11.9 * row.panel.mm, "answers of " + answer.height / row.panel.mm + " mm")
+            verify(form.contentHeight > form.height)
+            fuzzyCompare(form.height / form.line, Math.round(form.height / form.line), 0.05)      // no line is cut in half
+        }
+
         // A tall screen has room for keys that a finger hits.
         function test_the_keys_for_a_code_on_a_tall_screen_are_large_targets_data() {
             return participantsPanels.filter(panel => panel.height > panel.width).map(panel => ({ tag: panel.width + "x" + panel.height + " " + panel.mm, panel: panel }))

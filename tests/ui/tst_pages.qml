@@ -330,6 +330,73 @@ Item {
 
         SignalSpy { id: arming; target: view; signalName: "armingWanted" }
 
+        // What a device, the system or the database reports is for the operator.
+        function test_no_notice_shows_a_participant_a_path_or_an_error_code() {
+            const raw = /[a-z.]\/|\/[a-z]|sqlite|SQL|errno|no such|input\/output|database|status \d|\b[A-Z]\w*Error\b|0x[0-9a-f]/i
+            const raws = () => all(view, item => typeof item.text === "string" && raw.test(item.text)).map(item => item.text)
+            const notices = script.pages.filter(name => /^(fault|failed|paused|end)/.test(name))
+            verify(notices.length > 25, notices)
+            for (const language of ["en", "de", "es", "ja", "zh", "ar"])
+                for (const name of notices) {
+                    const before = shownPages.count
+                    script.show(name, language)
+                    tryCompare(shownPages, "count", before + 1)
+                    compare(raws(), [], language + " " + name)
+                }
+            // negative control: the operator, who has typed the code, reads it
+            show("fault-program")
+            view.armable = true
+            verify(raws().length > 0)
+            view.armable = false
+        }
+        SignalSpy { id: shownPages; target: script.bridge; signalName: "shown" }
+
+        function test_an_empty_bar_of_the_progress_looks_empty_and_a_full_one_full() {
+            const strip = bar.createObject(stage, { width: 400, y: 20 })
+            /// Where the bar is dark, by the pixels on the screen: the share of its length.
+            const dark = () => {
+                wait(30)
+                const picture = grabImage(strip), middle = Math.round(strip.height / 2)
+                const track = find(strip, "progressDone").parent
+                let count = 0, all = 0
+                for (let x = 4; x < track.width - 4; x += 2) {
+                    ++all
+                    const seen = picture.pixel(x, middle), paper = Qt.color("#f6f4ee")
+                    const light = c => 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b
+                    if (light(seen) < 0.5) ++count
+                    else verify(Math.abs(light(seen) - light(paper)) < 0.1, "the track is as light as the page: " + seen)
+                }
+                return count / all
+            }
+            compare(dark(), 0)
+            for (const done of [20, 40, 80]) {
+                strip.done = done
+                fuzzyCompare(dark(), done / 80, 0.04)
+            }
+            compare(texts(strip).filter(text => /min left/.test(text)), [])
+            strip.minutes = 4
+            verify(says(strip, "about \u20684\u2069 min left"))
+            strip.destroy()
+        }
+        Component {
+            id: bar
+            Rectangle {
+                id: strip
+                property int done: 0
+                property int minutes: -1
+                height: 40
+                color: "#f6f4ee"
+                ProgressStrip {
+                    anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter }
+                    theme: Theme { width: 800; height: 480; pixelsPerMm: 5.2 }
+                    texts: Texts { language: "en" }
+                    done: strip.done
+                    total: 80
+                    minutes: strip.minutes
+                }
+            }
+        }
+
         function test_the_left_handed_layout_moves_the_buttons_of_the_hand_but_no_answer() {
             show("explore")
             const pause = visibleItem("pause")

@@ -86,7 +86,7 @@ Item {
             verify(shown("session0"))
             tap("search")
             tap("letterx")
-            tryVerify(() => says(room.screen, "0 of 1 sessions"), 1000)   // while it is typed
+            tryVerify(() => says(room.screen, "Sessions found: 0 of 1"), 1000)   // while it is typed
             tap("keepEntry")
             tryVerify(() => says(room.screen, "No session matches the search."), 1000)
             tap("clearSearch")
@@ -128,6 +128,41 @@ Item {
             tryVerify(() => says(room.screen, "can be unplugged now"), 5000)
             compare(room.askedUdisks(), "mount unmount power-off")
             verify(!shown("eject1"))
+        }
+
+        function test_sessions_are_ordered_by_study_and_by_participant_and_a_study_is_exported_alone() {
+            room.recordSessions()
+            goTo("sessions")
+            tryVerify(() => shown("session3"), 5000)
+            const lines = () => find(room.screen, "sessionsPage").sessions.sessions.map(line => (line.heading ? "[" + line.heading + "] " : "") + line.person + " " + line.protocol.split(" ")[0])
+            compare(lines(), ["P01 bands", "P02 short", "P01 short", "P02 bands"])          // newest first
+            tap("byStudy")
+            compare(lines(), ["[bands] P01 bands", "P02 bands", "[short] P02 short", "P01 short"])
+            tap("byParticipant")
+            compare(lines(), ["[P01] P01 bands", "P01 short", "[P02] P02 short", "P02 bands"])
+            // each heading stands above the first of its sessions, on the page as well
+            const top = name => find(room.screen, name).mapToItem(room.screen, 0, 0).y
+            const heading = text => all(find(room.screen, "sessions"), item => item.text === text)[0].mapToItem(room.screen, 0, 0).y
+            verify(heading("P01") < top("session0") && top("session1") < heading("P02") && heading("P02") < top("session2"))
+            tap("search")
+            type("p02")
+            compare(lines(), ["[P02] P02 short", "P02 bands"])
+            tap("byStudy")
+            compare(lines(), ["[bands] P02 bands", "[short] P02 short"])
+
+            tap("session0")                                                                  // of bands, while only P02 is shown
+            room.plugIn()
+            tap("export")
+            tap("exportStudy")
+            tap("place1")
+            tryVerify(() => says(room.screen, "files were written to"), 20000)
+            const files = room.filesIn("stick")
+            verify(files.some(file => /\/bands\/sessions\.csv$/.test(file)), files.join(" "))
+            verify(!files.some(file => /short/.test(file)), files.join(" "))
+            // the study, with the sessions that the search hides
+            const rows = room.startOf("stick", "bands/sessions.csv", 100000).trim().split("\n")
+            compare(rows.length, 3)
+            verify(rows.some(row => row.includes("P01")) && rows.some(row => row.includes("P02")))
         }
 
         function test_a_backup_is_never_written_to_a_disk_that_is_only_a_folder() {

@@ -17,6 +17,7 @@ Item {
         pixelsPerMm: 5.2
     }
 
+    Texts { id: words; language: "en" }
     RoomTest {
         name: "Station"
         when: windowShown
@@ -355,6 +356,104 @@ Item {
             room.pressKey(Qt.Key_Enter)
             tryVerify(() => !shown("codeChoice") && !shown("codeOffer"), 20000)
             verify(!says(room.screen, "2468"))
+        }
+
+        // A new machine: no code was chosen, nothing was recorded, and no rig was described. Somebody who taps once a second
+        // chooses a code and a language, takes part in the demo, and reads its report.
+        function test_from_an_empty_machine_to_the_report_of_the_demo_in_three_minutes() {
+            room.openNew()
+            const begun = Date.now()
+            let taps = 0
+            const touch = name => { ++taps; tap(name) }
+            const typeCode = code => { for (const digit of code) touch("digit" + digit); touch("digitOK") }
+            appears("operatorPage")
+            verify(!shown("gate"))
+            verify(says(find(room.screen, "codeOffer"), "2468"))
+            touch("chooseCode")
+            appears("codeChoice")
+            typeCode("7391")
+            tryVerify(() => !shown("codeChoice") && !shown("codeOffer"), 20000)
+
+            touch("bar-rig")
+            appears("rigPage")
+            touch("screen-de")
+            verify(says(room.screen, "Sitzungen"))
+            touch("screen-en")
+            verify(says(room.screen, "Sessions"))
+            verify(says(find(room.screen, "rigPage"), "simulated"))
+
+            touch("bar-run")
+            appears("operatorPage")
+            touch("protocol" + operating.protocols.findIndex(protocol => protocol.id === "demo"))
+            tryVerify(() => operating.mayBegin, 20000)
+            compare(operating.problems, [])
+            touch("begin")
+            appears("languagePage")
+            touch("language0")
+            appears("codePage")
+            for (const key of "P1") touch("key" + key)
+            touch("accept")
+            tryCompare(page, "kind", PageModel.Instructions, 20000)
+            touch("proceed")
+            while (page.trialsDone < page.trialsTotal) {
+                ++taps
+                const done = page.trialsDone
+                answer(done % 2)
+                tryVerify(() => page.trialsDone > done, 20000)
+            }
+            ends()
+            touch("results")
+            verify(!says(room.screen, "2468"))
+            typeCode("7391")
+            appears("reportPage")
+            tryVerify(() => says(find(room.screen, "reportPage"), "P1"), 20000)
+            const seconds = (Date.now() - begun) / 1000 + taps
+            console.log("first hour: " + taps + " taps, " + seconds.toFixed(0) + " s")
+            verify(seconds < 180, seconds)
+            verify(taps <= 40, taps)
+            compare(room.column("sessions.csv", "status"), ["completed"])
+        }
+
+        function test_a_larger_screen_shows_more_protocols_and_not_larger_ones() {
+            room.openNew()
+            const rows = (width, height) => {
+                room.resize(width, height)
+                tryCompare(find(room.screen, "operatorPage"), "height", find(room.screen, "operatorPage").parent.height)
+                wait(100)
+                const list = find(room.screen, "protocols")
+                return all(list, item => /^protocol\d+$/.test(item.objectName)).filter(card => {
+                    const y = card.mapToItem(list, 0, 0).y
+                    return y >= 0 && y + card.height <= list.height
+                })
+            }
+            const small = rows(1280, 800), height = small[0].height, count = small.length
+            const large = rows(1920, 1080)
+            verify(count >= 5, count)
+            verify(large.length >= count + 2, large.length + " rows instead of " + count)
+            verify(large[0].height <= height, large[0].height + " instead of " + height)
+        }
+
+        // The database is damaged after the operator has pressed Begin, so the participant is there when it is found.
+        function test_a_damaged_database_is_for_the_operator_and_not_for_the_participant() {
+            room.open("7391")
+            tryVerify(() => operating.mayBegin, 20000)
+            tap("begin")
+            appears("languagePage")
+            tap("language0")
+            appears("codePage")
+            room.damageDatabase()
+            for (const key of "T1") tap("key" + key)
+            tap("accept")
+            tryCompare(page, "kind", PageModel.Failed, 20000)
+            const said = texts(room.screen).join("\n")
+            verify(said.length > 20 && !/sqlite|database|\/|code \d/i.test(said), said)
+            tap("proceed")
+            type("7391")
+            appears("operatorPage")
+            tryVerify(() => says(find(room.screen, "stationLine"), "Database: damaged"), 20000)
+            compare(find(room.screen, "begin").enabled, false)
+            verify(operating.problems.length > 0)
+            for (const problem of operating.problems) verify(says(room.screen, words.say(problem)), words.say(problem))
         }
 
         function test_an_empty_folder_says_what_to_do() {

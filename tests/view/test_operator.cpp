@@ -142,6 +142,9 @@ TEST_CASE("the live view follows a session trial by trial and draws what is on t
   told.wait(lock, [&] { return news == 2 * summary.trials; });
   CHECK(value_of(state.course, "Trials") == std::to_string(summary.trials));
   CHECK(state.heading.find("Block main, trial 10") == 0);
+  // why no cheaper model was chosen: the tolerance that it would miss, and no other
+  CHECK(value_of(state.scene, "Next cheaper model")
+            .starts_with("mode would miss the scene's tolerance: level up to "));
   REQUIRE(state.surfaces.size() == 1);
   report::Svg drawn;
   state.surfaces.front()(drawn, 600, 120);

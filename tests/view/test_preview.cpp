@@ -123,6 +123,38 @@ TEST_CASE("the plan and the cues of a scene are said in the language of the scre
   CHECK(view::spectrum_figure(look, "de").charts.front().title == "Ansteuerung");
 }
 
+TEST_CASE("the tolerance that a cheaper model would miss is named with both figures, and no other",
+          "[preview]") {
+  const auto cheaper = [](const protocol::Tolerance& tolerance, const char* language) {
+    auto protocol = protocol::load(kSource + "/protocols/demo.toml");
+    protocol.scenes.at("edge").tolerance = tolerance;
+    view::Preview preview(protocol, rig::load(kSource + "/tests/support/thin_plate.toml"));
+    const auto look = preview.look("edge", factors(preview, {"offset_mm=9"}));
+    for (const auto& [label, value] : look.facts)
+      if (label.key == "preview.cheaper") return core::say(value, language);
+    return std::string();
+  };
+  const auto has = [](const std::string& text, const char* word) {
+    return text.find(word) != std::string::npos;
+  };
+  // the model "mode" places the boundary to 0.014 mm, and misses the level by 1.5 dB
+  const auto by_level = cheaper({0.5, 0.3, {}}, "en");
+  CAPTURE(by_level);
+  CHECK(by_level.starts_with("mode would miss the scene's tolerance: level up to 1."));
+  CHECK(by_level.ends_with(" dB, tolerance 0.3 dB"));
+  const auto by_boundary = cheaper({0.01, 3, {}}, "en");
+  CAPTURE(by_boundary);
+  CHECK(has(by_boundary, "boundary up to 0.0"));
+  CHECK(by_boundary.ends_with(" mm, tolerance 0.01 mm"));
+  CHECK_FALSE(has(by_boundary, "level"));
+  const auto by_friction = cheaper({{}, {}, 0.05}, "en");
+  CAPTURE(by_friction);
+  CHECK(has(by_friction, "amplitude up to "));
+  CHECK(by_friction.ends_with(" % (friction 0.05)"));
+  CHECK(has(cheaper({0.5, 0.3, {}}, "de"), "verfehlt die Toleranz der Szene: Pegel bis zu 1."));
+  CHECK(cheaper({}, "en").empty());
+}
+
 TEST_CASE("what a rig cannot present is reported as a problem of the preview, in words", "[preview]") {
   auto preview = preview_of("demo");
   const auto look = preview.look("edge", factors(preview, {"mark_mm=290"}));

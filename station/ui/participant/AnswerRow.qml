@@ -13,6 +13,8 @@ Item {
     required property int pressed
     /// The height that the page can spare for the answers.
     property real most: height
+    /// The height that a button has if there is room.
+    property real best: theme.targetMin
     readonly property alias buttons: grid
     readonly property int count: answers.length
     readonly property bool captioned: captions.some(caption => caption !== "")
@@ -22,7 +24,7 @@ Item {
     /// must be smaller than the smallest size)}. Large targets come first, and then few rows.
     readonly property var plan: {
         if (count === 0) return { columns: 1, rows: 1, gap: 2, target: theme.targetLeast, listed: false }
-        const targets = [theme.targetMin, Math.round(0.8 * theme.targetMin), theme.targetLeast]
+        const targets = [theme.targetMin, Math.round(0.8 * theme.targetMin), theme.targetLeast].filter(target => target <= best)
         const gaps = captioned ? [theme.unit, 2] : [theme.targetGap, Math.min(theme.targetGap, Math.round(2 * theme.pixelsPerMm)), 2]
         // The points of a scale stand in one row if they can, because its order is seen at a glance. Other answers stand in
         // several rows before they become smaller.

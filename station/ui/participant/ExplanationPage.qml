@@ -12,6 +12,9 @@ Item {
     readonly property PageModel page: bridge.page
     readonly property bool illustrated: page.picture !== ""
     readonly property bool feels: page.answers.length > 0
+    /// A picture that would be small above its text stands beside it.
+    readonly property real share: feels ? 0.4 : 0.58
+    readonly property bool beside: illustrated && width > height && share * upper.height < 20 * theme.pixelsPerMm
 
     Item {
         id: upper
@@ -23,8 +26,9 @@ Item {
             id: picture
             objectName: "picture"
             visible: root.illustrated
-            anchors { left: parent.left; right: parent.right; top: parent.top }
-            height: root.illustrated ? (root.feels ? 0.4 : 0.58) * parent.height : 0
+            anchors { left: parent.left; top: parent.top }
+            width: Math.round((root.beside ? 0.42 : 1) * parent.width)
+            height: root.illustrated ? Math.round((root.beside ? 1 : root.share) * parent.height) : 0
             source: root.page.picture
             fillMode: Image.PreserveAspectFit
             mirror: false
@@ -34,7 +38,10 @@ Item {
             theme: root.theme
             texts: root.texts
             armed: root.armed
-            anchors { left: parent.left; right: parent.right; top: picture.bottom; bottom: parent.bottom; topMargin: root.illustrated ? root.theme.unit : 0 }
+            anchors {
+                left: root.beside ? picture.right : parent.left; leftMargin: root.beside ? root.theme.unit : 0; right: parent.right
+                top: root.beside ? parent.top : picture.bottom; topMargin: root.illustrated && !root.beside ? root.theme.unit : 0; bottom: parent.bottom
+            }
             text: root.page.playing ? root.texts.slideNow : root.texts.phrased(root.page.text)
             size: Math.round((root.page.playing ? 1.5 : 1.1) * root.theme.textBody)
             weight: root.page.playing ? Font.Bold : Font.Normal

@@ -16,8 +16,11 @@ Item {
         objectName: "questionText"
         anchors {
             left: parent.left; right: parent.right; top: parent.top
-            bottom: answers.top; bottomMargin: root.theme.unit
+            bottom: answers.top; bottomMargin: root.theme.unit + (words.wordy && words.implicitHeight > room ? room % line : 0)
         }
+        // a text that scrolls shows whole lines
+        readonly property real room: answers.y - root.theme.unit
+        readonly property real line: words.implicitHeight / Math.max(1, words.lineCount)
         contentHeight: Math.max(height, words.implicitHeight)
         clip: true
         boundsBehavior: Flickable.StopAtBounds
@@ -43,7 +46,9 @@ Item {
     AnswerRow {
         id: answers
         anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
-        height: Math.max(leastHeight, Math.min(Math.round(0.3 * parent.height), rows * 18 * root.theme.unit))
+        // A long text, such as the form of a consent, needs the room more than its answers, which nobody gives in a hurry.
+        best: words.wordy && words.implicitHeight > 0.6 * root.height ? root.theme.targetLeast : root.theme.targetMin
+        height: best < root.theme.targetMin ? leastHeight : Math.max(leastHeight, Math.min(Math.round(0.3 * parent.height), rows * 18 * root.theme.unit))
         most: Math.round(0.75 * parent.height)
         theme: root.theme
         answers: root.page.answers

@@ -1,7 +1,7 @@
 #include "station/ui/participant/page_model.hpp"
 
 #include <QUrl>
-#include <chrono>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -12,10 +12,6 @@ namespace turnpoint::ui {
 
 namespace {
 
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 /// A pace is known after so many trials.
 constexpr int kTrialsForPace = 5;
 
@@ -24,7 +20,7 @@ constexpr int kTrialsForPace = 5;
 int PageModel::minutes_left() const {
   const int done = page_.trials_done - began_with_, left = page_.trials_total - page_.trials_done;
   if (done < kTrialsForPace || left <= 0) return -1;
-  return static_cast<int>(std::ceil((now_s() - began_s_) / done * left / 60));
+  return std::max(1, static_cast<int>(std::ceil((now_s() - began_s_) / done * left / 60)));
 }
 
 void PageModel::set(session::Page page) {

@@ -4,6 +4,9 @@
 #include <QString>
 #include <QStringList>
 #include <QVariantList>
+#include <cstdint>
+#include <functional>
+#include <utility>
 
 #include "station/session/page.hpp"
 #include "station/ui/participant/surface_drawing.hpp"
@@ -99,7 +102,9 @@ class PageModel : public QObject {
   enum class Verdict { Message, Right, Wrong };
   Q_ENUM(Verdict)
 
-  using QObject::QObject;
+  /// The clock (ns) tells the pace of the session.
+  explicit PageModel(std::function<std::int64_t()> clock, QObject* parent = nullptr)
+      : QObject(parent), clock_(std::move(clock)) {}
   void set(session::Page page);
   void guide(const session::Guidance& guidance);
   const session::Page& page() const { return page_; }
@@ -170,6 +175,9 @@ class PageModel : public QObject {
   void barsMoved();  ///< Emitted when bars have moved.
 
  private:
+  double now_s() const { return 1e-9 * static_cast<double>(clock_()); }
+
+  std::function<std::int64_t()> clock_;
   session::Page page_;
   /// when the first page of the session was shown (s), and how many trials were done then
   double began_s_ = 0;

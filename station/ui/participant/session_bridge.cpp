@@ -13,7 +13,7 @@ namespace turnpoint::ui {
 namespace input = session::input;
 
 SessionBridge::SessionBridge(Clock clock, Sink sink, QObject* parent)
-    : QObject(parent), clock_(std::move(clock)), sink_(std::move(sink)), page_(this) {
+    : QObject(parent), clock_(std::move(clock)), sink_(std::move(sink)), page_(clock_, this) {
   flush_.setSingleShot(true);
   flush_.setInterval(static_cast<int>(core::kTouchToAnswer_ns / 1'000'000) + 1);
   connect(&flush_, &QTimer::timeout, this, &SessionBridge::flush);

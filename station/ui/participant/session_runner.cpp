@@ -1,5 +1,7 @@
 #include "station/ui/participant/session_runner.hpp"
 
+#include <fmt/format.h>
+
 #include <QScreen>
 #include <filesystem>
 #include <utility>
@@ -17,6 +19,21 @@ namespace {
 /// Interval at which the page reports that its event loop is running. After two seconds without such a
 /// report, the amplifier guard switches the amplifier off.
 constexpr int kLife_ms = 250;
+
+/// The operator's view of a session, which also counts the trials that are stored.
+class CountingView final : public view::LiveView {
+ public:
+  template <class... Arguments>
+  explicit CountingView(std::shared_ptr<std::atomic<int>> stored, Arguments&&... arguments)
+      : LiveView(std::forward<Arguments>(arguments)...), stored_(std::move(stored)) {}
+  void trial_ended(const trial::TrialSpec& spec, const core::TrialRow& row) override {
+    ++*stored_;
+    LiveView::trial_ended(spec, row);
+  }
+
+ private:
+  std::shared_ptr<std::atomic<int>> stored_;
+};
 
 /// True for pages on which a late frame would matter, so that late frames are counted.
 bool is_trial(PageModel::Kind kind) {
@@ -78,9 +95,10 @@ void SessionRunner::begin(session::Setup setup, const std::string& language) {
   empty.run_mode = store::name(setup_.run_mode);
   bridge_.show(empty);
   live_.take(std::optional<view::FingerGauges>{});
-  view_ = std::make_unique<view::LiveView>(
-      setup_.protocol, setup_.rig, [this](view::LiveState state) { live_.take(std::move(state)); }, language_,
-      [this](view::FingerGauges gauges) { live_.take(std::optional(std::move(gauges))); });
+  *stored_ = 0;
+  view_ = std::make_unique<CountingView>(
+      stored_, setup_.protocol, setup_.rig, [this](view::LiveState state) { live_.take(std::move(state)); },
+      language_, [this](view::FingerGauges gauges) { live_.take(std::optional(std::move(gauges))); });
   inputs_.page_alive(system::monotonic_ns());
   life_.start(kLife_ms);
   thread_ = std::jthread([this] { run(); });
@@ -97,7 +115,7 @@ void SessionRunner::run() {
   }
   over_ = true;
   try {
-    if (summary_ && summary_->trials > 0)
+    if (summary_ && summary_->trials > 0 && !leaving_)
       report_.take(view::report_pages(summary_->database, summary_->session_id, language_));
   } catch (const std::exception& error) {
     // The session is complete and stored, even if its report cannot be made.
@@ -145,7 +163,18 @@ void SessionRunner::ask_to_stop() {
                 session::input::Stop{"the program was stopped by a signal, or its window was closed"}});
 }
 
+std::function<std::string()> SessionRunner::kept() const {
+  return [stored = stored_] {
+    if (*stored < 0) return std::string("no session was running");
+    return fmt::format(
+        "trials of the session that are stored: {}; later answers are lost; `turnpoint resume` continues the "
+        "session",
+        stored->load());
+  };
+}
+
 std::optional<session::Summary> SessionRunner::finish() {
+  leaving_ = true;
   ask_to_stop();
   if (thread_.joinable()) thread_.join();
   if (failure_) std::rethrow_exception(failure_);

@@ -38,6 +38,7 @@ void stop_in_order(const Application& application, const QQuickWindow& window) {
 /// Like the function above, but a stop signal already ends the event loop from the beginning of a session,
 /// even if no page has been shown yet.
 void stop_in_order(const Application& application, StationWindow& window) {
+  application.stop_signals().say_if_held_up(window.runner().kept());
   stop_in_order(application, window.window());
   QObject::connect(&window, &StationWindow::beginning, &application.stop_signals(), &StopSignals::take_over);
 }

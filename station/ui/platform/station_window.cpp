@@ -20,9 +20,14 @@ namespace turnpoint::ui {
 
 namespace {
 
+/// False also if the database cannot be read: that is said when the session begins, and to the operator.
 bool is_known(const std::string& database, const QString& code) {
-  const auto known = view::known_participants(database);
-  return std::find(known.begin(), known.end(), code.toStdString()) != known.end();
+  try {
+    const auto known = view::known_participants(database);
+    return std::find(known.begin(), known.end(), code.toStdString()) != known.end();
+  } catch (const std::exception&) {
+    return false;
+  }
 }
 
 /// Keeps the operator's choices of language, theme and text size in a file beside the database.

@@ -17,8 +17,8 @@ QtObject {
     readonly property bool dark: dense && OperatorScreen.dark
     readonly property real textScale: dense ? OperatorScreen.textPercent / 100 : 1
 
-    /// On the operator's pages a unit is at most 3 mm: a larger screen shows more, not larger letters.
-    readonly property real unit: Math.max(1, Math.floor(Math.min(width / 80, height / 48, dense ? 3 * pixelsPerMm : Infinity)))
+    /// On the operator's pages a unit is at most 2.5 mm: a larger screen shows more, not larger letters.
+    readonly property real unit: Math.max(1, Math.floor(Math.min(width / 80, height / 48, dense ? 2.5 * pixelsPerMm : Infinity)))
     readonly property real margin: Math.round((dense ? 1.6 : 3) * unit)
     readonly property real targetMin: Math.ceil(20 * pixelsPerMm)
     /// The smallest target on a panel that has no room for larger ones; long answers may be three quarters as high.
