@@ -43,6 +43,7 @@ struct Points {
 struct Span {
   double low = 0, high = 0, at = 0;
   int series = 0;
+  bool of_marker = false;  ///< the interval of a marker of its series at this height
 };
 
 /// The area between two curves.

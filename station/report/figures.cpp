@@ -666,7 +666,7 @@ std::optional<Figure> macro_figure(const Summary& summary) {
     const int own = series++;
     if (!entry.d_prime || !entry.median_s) continue;
     const auto &time = *entry.median_s, &height = *entry.d_prime;
-    const Span across{time.interval.low, time.interval.high, height.value, own};
+    const Span across{time.interval.low, time.interval.high, height.value, own, true};
     Points point;
     point.add(time.value, height.value, height.interval.low, height.interval.high);
     point.series = own;

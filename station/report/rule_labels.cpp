@@ -132,7 +132,8 @@ void shift_along(std::vector<double>& x, const Axis& axis, double share) {
 
 /// True if a horizontal interval is that of one of these points.
 bool belongs(const Span& span, const Points& dots) {
-  return span.series == dots.series && std::find(dots.y.begin(), dots.y.end(), span.at) != dots.y.end();
+  return span.of_marker && span.series == dots.series &&
+         std::find(dots.y.begin(), dots.y.end(), span.at) != dots.y.end();
 }
 
 void move_points(std::vector<Layer>& layers, const Frame& frame) {

@@ -267,7 +267,7 @@ std::optional<Figure> group_trade_figure(const Study& study) {
         accuracy = mean_of(analysis::kCorrect, condition);
         time && accuracy) {
       mean.add(time->value, accuracy->value, accuracy->interval.low, accuracy->interval.high);
-      means.push_back(Span{time->interval.low, time->interval.high, accuracy->value, mean.series});
+      means.push_back(Span{time->interval.low, time->interval.high, accuracy->value, mean.series, true});
       means.push_back(mean);
       times.insert(times.end(), {time->interval.low, time->interval.high});
       accuracies.push_back(accuracy->interval.low);
@@ -333,7 +333,7 @@ std::optional<Chart> course_chart(const Study& study, const std::string& heights
         if (time.measure != wanted || time.condition != condition || !time.mean) continue;
         const auto &x = *time.mean, &y = *height.mean;
         points.add(x.value, y.value, y.interval.low, y.interval.high);
-        chart.layers.push_back(Span{x.interval.low, x.interval.high, y.value, points.series});
+        chart.layers.push_back(Span{x.interval.low, x.interval.high, y.value, points.series, true});
         xs.insert(xs.end(), {x.interval.low, x.interval.high});
         ys.insert(ys.end(), {y.interval.low, y.interval.high});
       }

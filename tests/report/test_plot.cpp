@@ -437,7 +437,7 @@ TEST_CASE("A horizontal interval stays on its marker when it is moved", "[plot]"
     const double x = 2 + 0.01 * series, y = 1 + 0.01 * series;
     chart.layers.push_back(
         Points{{x}, {y}, {y - 0.5}, {y + 0.5}, {}, {}, series, "c" + std::to_string(series)});
-    chart.layers.push_back(Span{x - 1, x + 1, y, series});
+    chart.layers.push_back(Span{x - 1, x + 1, y, series, true});
   }
   const auto svg = render(one_chart(chart));
   std::vector<std::pair<double, double>> crossings;
@@ -460,6 +460,22 @@ TEST_CASE("A horizontal interval stays on its marker when it is moved", "[plot]"
   CHECK(has_moved(one_chart(chart)));
   chart.layers.resize(2);
   CHECK(!has_moved(one_chart(chart)));
+}
+
+TEST_CASE("A marker stays where it is when the interval of a threshold at its height is moved", "[plot]") {
+  auto chart = two_conditions(0.3, 0.7);
+  const auto middle = [&chart](int series) {
+    const auto circles = svg_geometry::elements(render(one_chart(chart)), "circle");
+    std::vector<double> heights;
+    for (const auto& circle : circles)
+      if (svg_geometry::attribute(circle, "fill") == style(series).colour)
+        heights.push_back(svg_geometry::number(circle, "cy"));
+    return heights;
+  };
+  const auto before = middle(0);
+  REQUIRE(!before.empty());
+  for (const int series : {0, 1}) chart.layers.push_back(Span{1.5, 2.5, 0.5, series});
+  CHECK(middle(0) == before);
 }
 
 TEST_CASE(
