@@ -147,7 +147,10 @@ void move_points(std::vector<Layer>& layers, const Frame& frame) {
       clash.push_back(dots);
   if (clash.size() < 2) return;
   const auto count = static_cast<double>(clash.size());
-  const double step_px = std::clamp(0.6 * closest_px(clash, frame) / count, kLeastBeside_px, kBeside_px);
+  const double closest = closest_px(clash, frame);
+  // between levels that are close to each other there is no room for the least distance
+  const double least_px = closest < count * kLeastBeside_px ? 0 : kLeastBeside_px;
+  const double step_px = std::clamp(0.6 * closest / count, least_px, kBeside_px);
   for (std::size_t i = 0; i < clash.size(); ++i) {
     const double share = (static_cast<double>(i) - (count - 1) / 2) * step_px / frame.width;
     for (auto& layer : layers)

@@ -273,6 +273,20 @@ TEST_CASE("Intervals of two conditions at one level stand beside each other, and
   CHECK(bars_of(kept, 0) == bars_of(kept, 1));
 }
 
+TEST_CASE("Intervals beside each other stay nearer to their level than to the next", "[plot]") {
+  Chart chart;
+  chart.x = {"Level", 0, 60};
+  chart.y = {"Proportion", 0, 1};
+  for (int series = 0; series < 4; ++series)
+    chart.layers.push_back(
+        Points{{30, 31}, {0.5, 0.5}, {0.3, 0.3}, {0.7, 0.7}, {}, {}, series, std::to_string(series)});
+  const auto svg = render(one_chart(chart));
+  const auto first = bars_of(svg, 0), last = bars_of(svg, 3);
+  REQUIRE((first.size() == 2 && last.size() == 2));
+  CHECK(last[0] > first[0]);
+  CHECK(last[0] < first[1]);
+}
+
 TEST_CASE("A line through the same points moves with them", "[plot]") {
   auto chart = two_conditions(0.3, 0.7);
   chart.layers.push_back(Line{{1, 2, 3}, {0.3, 0.5, 0.7}, 0, ""});
