@@ -522,6 +522,7 @@ std::optional<Figure> quantile_probability_figure(const Summary& summary) {
   }
   if (figure.charts.empty()) return std::nullopt;
   for (auto& chart : figure.charts) {
+    chart.beside = false;  // a marker off its probability would look like a misfit
     chart.x = {"Probability of answer (0 to 1)", -0.03, 1.03};
     chart.y = report::fitted("Response time (s)", times, 0.06);
   }
