@@ -66,15 +66,17 @@ std::size_t persons_of(const Study& study) {
                                                 [](const auto& person) { return person.excluded.empty(); }));
 }
 
-/// The levels of an analysis that participants who count had; in one condition, or in all.
+/// The levels of an analysis that participants who count had; in one condition, or in all; of one person, or
+/// of all.
 std::vector<double> levels_of(const Study& study, std::size_t part,
-                              const std::optional<std::string>& condition = {}) {
+                              const std::optional<std::string>& condition = {},
+                              const std::optional<std::string>& only = {}) {
   std::vector<double> levels;
   for (const auto& person : study.persons)
     for (const auto& named : person.fits)
       for (const auto& point : named.fit.data)
         if (named.part == part && person.excluded.empty() && point.level != analysis::kNoise &&
-            (!condition || named.name == *condition))
+            (!condition || named.name == *condition) && (!only || person.person == *only))
           levels.push_back(point.level);
   return levels;
 }
@@ -113,8 +115,12 @@ Chart group_chart(const Study& study, const GroupFit& group) {
     if (!person.threshold) continue;
     auto alone = whole;
     alone.parameters = person.parameters, alone.series = kNeutral, alone.name = "participants";
-    add_curve(chart, alone, *first, *last, {*first, *last});
-    if (auto* line = std::get_if<Line>(&chart.layers.back())) line->faint = true;
+    const auto own = levels_of(study, group.part, group.condition, person.person);
+    if (own.empty()) continue;
+    const auto [own_first, own_last] = std::minmax_element(own.begin(), own.end());
+    auto i = chart.layers.size();
+    add_curve(chart, alone, *first, *last, {*own_first, *own_last});
+    for (; i < chart.layers.size(); ++i) std::get<Line>(chart.layers[i]).faint = true;
   }
   auto named = whole;
   named.name = "group";
@@ -189,8 +195,9 @@ Chart thresholds_chart(const Study& study, const GroupFit& group) {
   const auto& fit = *group.result.fit;
   const auto& part = analysis_of(group, study.settings);
   Chart chart;
-  Points alone, pooled;
+  Points alone, without_interval, pooled;
   alone.name = "alone", alone.series = report::kNeutral;
+  without_interval = alone;
   pooled.name = "partial pooling";
   std::vector<double> all{fit.threshold->interval.low, fit.threshold->interval.high};
   double number = 0;
@@ -209,9 +216,12 @@ Chart thresholds_chart(const Study& study, const GroupFit& group) {
         const double at = named.fit.parameters->threshold;
         const auto& interval = named.intervals.threshold;
         // the axis cuts what a fit of few answers leaves open
-        alone.add(number + apart, at, interval ? interval->interval.low : at,
-                  interval ? interval->interval.high : at);
-        alone.open.push_back(true), all.push_back(at);
+        auto& own = interval ? alone : without_interval;
+        if (interval)
+          own.add(number + apart, at, interval->interval.low, interval->interval.high);
+        else
+          own.x.push_back(number + apart), own.y.push_back(at);
+        own.open.push_back(true), all.push_back(at);
       }
   }
   chart.title = group.condition;
@@ -224,7 +234,9 @@ Chart thresholds_chart(const Study& study, const GroupFit& group) {
                        {interval.high, interval.high},
                        kNeutral,
                        ""},
-                  Rule{Rule::Direction::horizontal, fit.threshold->value, ""}, alone, pooled};
+                  Rule{Rule::Direction::horizontal, fit.threshold->value, ""}};
+  for (auto* points : {&alone, &without_interval, &pooled})
+    if (!points->x.empty()) chart.layers.push_back(std::move(*points));
   return chart;
 }
 

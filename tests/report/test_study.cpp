@@ -112,7 +112,8 @@ TEST_CASE("The figures of a group name the criterion of the threshold and the ch
     CHECK(chart.y.scale == report::AxisScale::log10);  // as the fit
     bool band = false;
     for (const auto& layer : chart.layers) {
-      if (const auto* dots = std::get_if<report::Points>(&layer)) CHECK(dots->low.size() == dots->x.size());
+      if (const auto* dots = std::get_if<report::Points>(&layer))
+        for (std::size_t i = 0; i < dots->low.size(); ++i) CHECK(dots->low[i] < dots->high[i]);
       band = band || std::holds_alternative<report::Band>(layer);
     }
     CHECK(band);  // the interval of the group
