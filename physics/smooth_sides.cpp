@@ -114,10 +114,10 @@ std::vector<Node> fit(const MonotoneCubic& table, const std::vector<Stretch>& st
 
 // Makes the sides fall everywhere, although what is left of noise may let them rise here and there. They stay
 // as wide as the end of the table, which a cubic fitted to a steep end may undershoot, even below zero.
-TabulatedTaper falling(const std::vector<Stretch>& stretches, const std::vector<Node>& nodes, double end) {
+TabulatedTaper falling(const std::vector<Stretch>& stretches, const std::vector<Node>& nodes, double least) {
   TabulatedTaper table;
   std::vector<double> lowest, highest;
-  for (const Node& node : nodes) lowest.push_back(std::max(node[0], end));
+  for (const Node& node : nodes) lowest.push_back(std::max(node[0], least));
   highest = lowest;
   std::partial_sum(lowest.begin(), lowest.end(), lowest.begin(),
                    [](double a, double b) { return std::min(a, b); });
