@@ -66,11 +66,13 @@ double gently_narrowing(const Taper& taper, double x, double h) {
   return h;
 }
 
-// Elements end at the points of a table, where the curvature jumps.
-double element_end(const std::vector<Cubic>& pieces, double x) {
+// Elements end at the points of a table, where the curvature jumps, and where the surface ends. The last
+// point may be short of that by a rounding error.
+double element_end(const Taper& taper, double x) {
+  const std::vector<Cubic>& pieces = taper.table().pieces();
   const auto next = std::partition_point(pieces.begin(), pieces.end(),
                                          [x](const Cubic& p) { return p.x0 <= x * (1 + 1e-12); });
-  return next == pieces.end() ? pieces.back().x1 : next->x0;
+  return next == pieces.end() ? taper.length_m() : std::min(next->x0, taper.length_m());
 }
 
 // Throws std::domain_error if the two-dimensional field would take too long: if the cubes of the elements'
@@ -85,8 +87,8 @@ void require_work(const Surface& surface, double f) {
   const int per_function = surface.theory == PlateTheory::kirchhoff ? 8 : 18;
   double work = 0, end = 0;
   for (double x = 0; x < surface.length_m; x = end) {
-    const double piece =
-        taper.table().pieces().empty() ? surface.length_m : element_end(taper.table().pieces(), x) - x;
+    end = element_end(taper, x);
+    const double piece = end - x;
     const double panels = std::ceil(100 * piece / surface.length_m), panel = piece / panels;
     for (int i = 0; i < panels; ++i) {
       const double w = taper.half_width_m(x + panel * (i + 0.5));
@@ -94,7 +96,6 @@ void require_work(const Surface& surface, double f) {
           std::max(1 / panels, panel / std::min(usual.radians / k, widths_per_element * w));
       work += elements * std::pow((functions_for(k * w, plate) + spare) * per_function, 3);
     }
-    end = x + piece;
   }
   if (work > most_work)
     throw std::domain_error(
@@ -162,13 +163,11 @@ std::vector<ModalElement> make_modal_elements(const ModalSetup& s, const ModalRe
   match_m = s.taper.length_m();
   const double w0 = s.taper.half_width_m(0);
   const bool single = s.across.count() == 1;
-  const std::vector<Cubic>& knots = s.taper.table().pieces();
   while (x < s.taper.length_m() && decay < ln_domain_end) {
     const double w = s.taper.half_width_m(x);
     double h = std::min(resolution.radians / s.k, widths_per_element * w);
     if (!single && elements.size() < 2) h = std::min(h, (elements.empty() ? 0.15 : 0.35) * w0);
-    double end = s.taper.length_m();
-    if (!knots.empty()) end = std::min(end, element_end(knots, x));
+    const double end = element_end(s.taper, x);
     if (!s.equation.plate()) h = gently_narrowing(s.taper, x, std::min(h, end - x));
     if (x + 1.5 * h > end) h = x + h >= end ? end - x : 0.5 * (end - x);
     if (!(h > 1e-9 * w0)) break;  // the apex is reached

@@ -112,11 +112,12 @@ std::vector<Node> fit(const MonotoneCubic& table, const std::vector<Stretch>& st
   return nodes;
 }
 
-// Makes the sides fall everywhere, although what is left of noise may let them rise here and there.
-TabulatedTaper falling(const std::vector<Stretch>& stretches, const std::vector<Node>& nodes) {
+// Makes the sides fall everywhere, although what is left of noise may let them rise here and there. They stay
+// as wide as the end of the table, which a cubic fitted to a steep end may undershoot, even below zero.
+TabulatedTaper falling(const std::vector<Stretch>& stretches, const std::vector<Node>& nodes, double least) {
   TabulatedTaper table;
   std::vector<double> lowest, highest;
-  for (const Node& node : nodes) lowest.push_back(node[0]);
+  for (const Node& node : nodes) lowest.push_back(std::max(node[0], least));
   highest = lowest;
   std::partial_sum(lowest.begin(), lowest.end(), lowest.begin(),
                    [](double a, double b) { return std::min(a, b); });
@@ -145,7 +146,7 @@ Surface smooth_sides(const Surface& surface) {
   const std::vector<Stretch> stretches = divide(taper.table());
   if (std::ranges::all_of(stretches, &Stretch::kept)) return surface;
   Surface smooth = surface;
-  smooth.taper = falling(stretches, fit(taper.table(), stretches));
+  smooth.taper = falling(stretches, fit(taper.table(), stretches), table->points.back().half_width_m);
   return smooth;
 }
 

@@ -6,6 +6,7 @@
 
 #include "station/analysis/quantile.hpp"
 #include "station/analysis/student.hpp"
+#include "station/analysis/trade.hpp"
 
 namespace turnpoint::analysis {
 
@@ -80,7 +81,7 @@ std::vector<GroupMean> group_means(const std::vector<PersonMeasure>& measures) {
   for (const auto& sample : samples_of(measures)) {
     const auto values = sample.numbers();
     GroupMean mean{sample.measure, sample.unit, sample.condition, static_cast<int>(values.size()), {}, {}};
-    mean.mean = student_mean(values);
+    mean.mean = is_proportion(sample.measure) ? student_proportion(values) : student_mean(values);
     if (mean.mean) mean.sd = std::sqrt(variance(values));
     means.push_back(std::move(mean));
   }

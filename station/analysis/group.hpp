@@ -19,8 +19,9 @@ struct PersonMeasure {
 struct GroupMean {
   std::string measure, unit, condition;
   int persons = 0;
-  std::optional<Estimate> mean;  ///< 95 % interval by Student's t; empty with fewer than 3 participants
-  std::optional<double> sd;      ///< between participants; empty with fewer than 3 participants
+  /// 95 % interval by Student's t, of a proportion on the logit scale; empty with fewer than 3 participants
+  std::optional<Estimate> mean;
+  std::optional<double> sd;  ///< between participants; empty with fewer than 3 participants
 };
 
 /// The effect of a condition on a measure: the mean of the participants' own differences, second minus first.

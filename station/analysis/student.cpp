@@ -16,8 +16,9 @@ double average(const std::vector<double>& values) {
 Estimate student(double value, double error, double degrees) {
   const boost::math::students_t student(degrees);
   const double half = boost::math::quantile(student, 0.975) * error;
-  const double p = error > 0 ? 2 * boost::math::cdf(boost::math::complement(student, std::fabs(value) / error))
-                             : (value == 0 ? 1 : 0);
+  const double p = error > 0
+                       ? 2 * boost::math::cdf(boost::math::complement(student, std::fabs(value) / error))
+                       : (value == 0 ? 1 : 0);
   return {value, {value - half, value + half, 0.95}, p};
 }
 
@@ -29,6 +30,16 @@ std::optional<Estimate> student_mean(const std::vector<double>& values) {
   double squares = 0;
   for (const double value : values) squares += (value - mean) * (value - mean);
   return student(mean, std::sqrt(squares / (n - 1) / n), n - 1);
+}
+
+std::optional<Estimate> student_proportion(const std::vector<double>& values) {
+  auto estimate = student_mean(values);
+  if (!estimate || estimate->value <= 0 || estimate->value >= 1) return estimate;
+  const double mean = estimate->value, logit = std::log(mean / (1 - mean));
+  const double half = (estimate->interval.high - mean) / (mean * (1 - mean));
+  const auto back = [](double at) { return 1 / (1 + std::exp(-at)); };
+  estimate->interval = {back(logit - half), back(logit + half), 0.95};
+  return estimate;
 }
 
 std::optional<Estimate> student_difference(const std::vector<double>& a, const std::vector<double>& b) {

@@ -8,6 +8,10 @@ namespace turnpoint::analysis {
 
 /// Estimates with 95 % intervals and p values by Student's t. Empty with fewer than 3 values.
 std::optional<Estimate> student_mean(const std::vector<double>& values);
+/// The mean of proportions, with an interval by Student's t on the logit scale (delta method), which stays
+/// between 0 and 1 (Korn & Graubard 1998, Surv. Methodol. 24:193-201). If all values are 0, or all are 1, it
+/// has no width. Empty with fewer than 3 values.
+std::optional<Estimate> student_proportion(const std::vector<double>& values);
 /// The difference of the means, a - b, of two samples that may differ in variance (Welch 1947). Empty if one
 /// of the samples has fewer than 3 values, or if all values of both are equal.
 std::optional<Estimate> student_difference(const std::vector<double>& a, const std::vector<double>& b);

@@ -17,6 +17,10 @@
 
 namespace turnpoint::analysis {
 
+bool is_proportion(const std::string& measure) {
+  return measure == kCorrect || measure == kRocArea || measure.starts_with(kBinMeasure);
+}
+
 namespace {
 
 constexpr double kMisfit = 0.05;  // a smaller share of as bad sessions is said to be a misfit
@@ -166,8 +170,8 @@ Group collect(const std::vector<TrialRecord>& trials, const TradeOptions& option
   for (const auto& trial : trials) {
     if (trial.type != TrialType::experimental || trial.instruction != result.instruction) continue;
     if (trial.outcome == Outcome::fault || trial.outcome == Outcome::aborted) continue;  // void
-    result.deadline_s = result.presented == 0 || result.deadline_s == trial.deadline_s ? trial.deadline_s
-                                                                                       : std::nullopt;
+    result.deadline_s =
+        result.presented == 0 || result.deadline_s == trial.deadline_s ? trial.deadline_s : std::nullopt;
     ++result.presented;
     result.timeouts += trial.outcome == Outcome::timeout;
     result.anticipations += trial.outcome == Outcome::anticipation;
@@ -247,8 +251,8 @@ std::optional<Estimate> late_boundary(const Group& group, int stream, const Trad
   how.confidence = options.confidence;
   std::vector<double> gaps;
   for (const int late : {0, 1}) {
-    const auto fit = fit_diffusion(halves[late], group.difficulty.size(), options.seed,
-                                   100 * (late + 1) + stream, how);
+    const auto fit =
+        fit_diffusion(halves[late], group.difficulty.size(), options.seed, 100 * (late + 1) + stream, how);
     if (!fit.estimates) return std::nullopt;
     gaps.resize(fit.estimates->draws.size());
     for (std::size_t i = 0; i < gaps.size(); ++i)
@@ -299,9 +303,8 @@ void fill_cells(Group& group, InstructionResult& result, int stream, const Trade
     result.statements.push_back(
         {"timeouts",
          core::phrase("statement.timeouts",
-                       {core::plain(core::number(100.0 * result.timeouts / result.presented, 3))})});
-  if (result.caf.empty())
-    result.statements.push_back({"caf-too-few", core::phrase("statement.caf_too_few")});
+                      {core::plain(core::number(100.0 * result.timeouts / result.presented, 3))})});
+  if (result.caf.empty()) result.statements.push_back({"caf-too-few", core::phrase("statement.caf_too_few")});
 }
 
 void set_estimates(InstructionResult& result, const Measures& values,
@@ -392,9 +395,9 @@ void add_differences(const Sessions& sessions, const std::vector<Group>& groups,
       for (int which = 0; which < measures; ++which) {
         auto difference = sessions.difference(a, b, which, options);
         if (which == accuracy && difference && !first.times_s.empty() && !second.times_s.empty())
-          difference = proportion_difference(proportion(first.correct, static_cast<int>(first.times_s.size())),
-                                             proportion(second.correct, static_cast<int>(second.times_s.size())),
-                                             options.confidence);
+          difference = proportion_difference(
+              proportion(first.correct, static_cast<int>(first.times_s.size())),
+              proportion(second.correct, static_cast<int>(second.times_s.size())), options.confidence);
         trade.differences.push_back(
             {first.instruction, second.instruction, kNames[which].name, kNames[which].unit, difference});
         if (which == median)

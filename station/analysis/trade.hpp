@@ -41,11 +41,11 @@ struct InstructionResult {
   /// points a trial, and points a minute of trials with their pauses, from all trials that are not void
   std::optional<Estimate> points, points_per_minute;
   std::optional<double> effective_draws;  ///< how many independent draws the numbers of the model rest on
-  std::optional<Estimate> drift;         ///< mean of the drifts over the condition's difficulties
-  std::optional<DiffusionCheck> check;   ///< what the fit predicts, for each of `difficulties`
-  std::vector<double> difficulties;      ///< ascending
-  std::optional<Estimate> post_error_s;  ///< post_error_slowing()
-  std::optional<Estimate> repetition;    ///< repetition()
+  std::optional<Estimate> drift;          ///< mean of the drifts over the condition's difficulties
+  std::optional<DiffusionCheck> check;    ///< what the fit predicts, for each of `difficulties`
+  std::vector<double> difficulties;       ///< ascending
+  std::optional<Estimate> post_error_s;   ///< post_error_slowing()
+  std::optional<Estimate> repetition;     ///< repetition()
   /// boundary of the diffusion in the second half of each block minus that in the first half (`late_half`);
   /// each half has a fit of its own
   std::optional<Estimate> late_boundary;
@@ -59,7 +59,10 @@ inline constexpr const char *kCorrect = "proportion correct", *kMedianTime = "me
                             *kNondecision = "time outside the decision", *kDrift = "drift", *kLisas = "LISAS",
                             *kInverseEfficiency = "inverse efficiency", *kPoints = "points a trial",
                             *kPointsPerMinute = "points a minute",
-                            *kBinMeasure = "proportion correct in time bin ";
+                            *kBinMeasure = "proportion correct in time bin ",
+                            *kRocArea = "area under the ROC";
+/// True for measures that lie between 0 and 1.
+bool is_proportion(const std::string& measure);
 
 /// The difference between two conditions, second minus first.
 struct Difference {
@@ -71,7 +74,8 @@ struct Difference {
   /// with a p value. Of a bootstrap or a posterior it is twice the smaller share of draws on one side of 0;
   /// with fewer than ten draws there, by the normal distribution
   std::optional<Estimate> estimate;
-  std::optional<double> corrected_p = {};  ///< after Holm's correction (holm()); empty if it was not asked for
+  std::optional<double> corrected_p =
+      {};  ///< after Holm's correction (holm()); empty if it was not asked for
 };
 
 struct Trade {
@@ -99,8 +103,8 @@ struct TradeOptions {
 /// Analyses speed and accuracy by condition. The diffusion model is fitted to all difficulties of a condition
 /// together, with one boundary and one Ter (diffusion.hpp); intervals of its parameters and of their
 /// differences come from its posterior distribution. The difference of drifts is the mean over the
-/// difficulties that both conditions have. Differences of proportions have Newcombe's hybrid interval (1998), those in bins of time as well: they
-/// compare the first, second, ... fifth of the answers of two conditions.
+/// difficulties that both conditions have. Differences of proportions have Newcombe's hybrid interval (1998),
+/// those in bins of time as well: they compare the first, second, ... fifth of the answers of two conditions.
 /// Other intervals are percentiles of a bootstrap that resamples answers within condition and difficulty, and
 /// excludes times from each replicate as from the session. If more than 5 % of the replicates have no number,
 /// both the number and its interval are empty. LISAS uses the standard deviations over all trials of the

@@ -92,9 +92,10 @@ std::pair<std::string, std::int64_t> place_option(const std::string& word) {
 void push(Options given, Context& context) {
   auto& options = given.push;
   for (const auto& word : given.places) options.places.insert(place_option(word));
-  for (const auto& [protocol_id, count] : options.places)
-    if (const auto protocol = view::newest_protocol(options.database, protocol_id))
-      if (const auto rule = protocol::assignment(*protocol)) options.assignments.emplace(protocol_id, *rule);
+  options.assignment = [&](const std::string& protocol_id, const std::set<std::string>& stations) {
+    const auto protocol = view::newest_protocol(options.database, protocol_id, core::RunMode::live, stations);
+    return protocol ? protocol::assignment(*protocol) : std::nullopt;
+  };
   if (!options.return_places.empty() && (!options.received.empty() || !options.places.empty()))
     throw UsageError("--return-places cannot be combined with --places or --received");
   const auto report = collector::push(options);

@@ -80,7 +80,7 @@ struct Design {
 };
 
 Design design_of(const std::string& path, const std::string& protocol_id, core::RunMode mode) {
-  const auto protocol = view::newest_protocol(path, protocol_id);
+  const auto protocol = view::newest_protocol(path, protocol_id, mode);
   Design design{protocol_id, mode, {}, {}};
   if (!protocol) return design;
   auto counted = *protocol;

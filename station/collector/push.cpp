@@ -227,31 +227,46 @@ PushedSession push_session(Database& database, const store::SessionRecord& sessi
 }
 
 /// Returns the rule by which the server chooses places; empty if it leases the lowest ones.
-std::optional<std::string> rule_of(const PushOptions& options, const std::string& protocol_id) {
-  const auto found = options.assignments.find(protocol_id);
-  if (found == options.assignments.end()) return std::nullopt;
-  const auto& rule = found->second;
-  return nlohmann::json{{"dropout_after_h", rule.dropout_after_h},
-                        {"rows", rule.rows},
-                        {"sessions", rule.sessions},
-                        {"incomplete_count", rule.incomplete_count}}
+std::optional<std::string> rule_of(const PushOptions& options, const std::string& protocol_id,
+                                   const std::set<std::string>& stations) {
+  const auto rule = options.assignment ? options.assignment(protocol_id, stations) : std::nullopt;
+  if (!rule) return std::nullopt;
+  return nlohmann::json{{"dropout_after_h", rule->dropout_after_h},
+                        {"rows", rule->rows},
+                        {"sessions", rule->sessions},
+                        {"incomplete_count", rule->incomplete_count}}
       .dump();
+}
+
+/// Asks the server for more places. Returns all that are leased to this station.
+Rows query_places(Connection& server, const std::string& protocol_id, std::int64_t more,
+                  const std::optional<std::string>& rule) {
+  try {
+    return server.query("SELECT place FROM turnpoint.lease_places($1, $2, $3) place",
+                        {protocol_id, std::to_string(more), rule});
+  } catch (const ServerError& error) {
+    if (error.state() != "42883") throw;  // there is no function with these parameters
+    throw ServerError(
+        "collector: the server is older than this station; the sessions were sent, but no places of " +
+            protocol_id + " were leased; update the server first: deploy/collector upgrade",
+        error.state());
+  }
 }
 
 /// Leases places in the counterbalancing until this station has as many free ones as the options want.
 /// Returns all places that are leased to this station.
 std::vector<std::int64_t> lease_places(Database& database, const std::string& protocol_id,
-                                       const PushOptions& options, Connection& server, PushReport& report) {
+                                       const PushOptions& options, const std::set<std::string>& stations,
+                                       Connection& server, PushReport& report) {
   const auto wanted = options.places.at(protocol_id);
-  const auto rule = rule_of(options, protocol_id);
+  const auto rule = rule_of(options, protocol_id, stations);
   const auto used = store::used_places(database, protocol_id);
   std::vector<std::int64_t> leased;
   // The server's first answer lists the places in the counterbalancing that this station already has, even if
   // an earlier answer was lost on the way. The server may lease a place that is in use here, because it does
   // not know that participant yet. In that case, ask for a few more places.
   for (std::int64_t more = 0, free = 0;; more = wanted - free) {
-    const auto rows = server.query("SELECT place FROM turnpoint.lease_places($1, $2, $3) place",
-                                   {protocol_id, std::to_string(more), rule});
+    const auto rows = query_places(server, protocol_id, more, rule);
     if (more > 0 && rows.count() <= static_cast<int>(leased.size()))
       throw ServerError("collector: the server leases no more places of " + protocol_id, "");
     leased.clear();
@@ -377,7 +392,7 @@ PushReport push(const PushOptions& options) {
   // Lease places in the counterbalancing after sending the sessions, because the sessions tell the server
   // which places are taken.
   for (const auto& [protocol_id, wanted] : options.places)
-    received.places[protocol_id] = lease_places(snapshot, protocol_id, options, server, report);
+    received.places[protocol_id] = lease_places(snapshot, protocol_id, options, stations, server, report);
   if (!received.places.empty()) use(received, options, report);
   return_places(options, server);
   return report;

@@ -1,6 +1,9 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,8 +22,12 @@ struct PushOptions {
   std::map<std::string, std::int64_t> places;
   /// protocols whose leased places are given back; this station then assigns places by itself again
   std::vector<std::string> return_places;
-  /// for each protocol that replaces dropouts: how. The server leases the lowest places of others.
-  std::map<std::string, core::Assignment> assignments = {};
+  /// Says how a protocol replaces dropouts, from its sessions at these stations. The server leases the lowest
+  /// places if it does not, or without this function. Called after the sessions have been sent; push() passes
+  /// on what it throws.
+  std::function<std::optional<core::Assignment>(const std::string& protocol_id,
+                                                const std::set<std::string>& stations)>
+      assignment = {};
 };
 
 struct PushedSession {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <regex>
 #include <stdexcept>
 #include <tuple>
@@ -323,13 +324,23 @@ bool TableReader::boolean(const std::string& key, const char* fallback) {
   return false;
 }
 
+namespace {
+
+/// A pattern of a key is compiled once: compiling takes longer than reading the rest of a file.
+const std::regex& compiled(const std::string& pattern) {
+  thread_local std::map<std::string, std::regex> known;
+  return known.try_emplace(pattern, pattern).first->second;
+}
+
+}  // namespace
+
 std::optional<std::string> TableReader::maybe_string(const std::string& key) {
   const auto* value = take(key);
   if (!value) return std::nullopt;
   if (value->kind == Value::Kind::string && !value->string.empty()) {
     if (keys_ == nullptr) return value->string;
     const auto& known = declared(key);
-    if (!known.pattern.empty() && !std::regex_match(value->string, std::regex(known.pattern)))
+    if (!known.pattern.empty() && !std::regex_match(value->string, compiled(known.pattern)))
       findings_->add(value->place, phrase("\"%1\" is \"%2\"", {plain(key), plain(value->string)}),
                      phrase("allowed: %1", {plain(known.form)}));
     return value->string;

@@ -24,7 +24,8 @@ Factors group_of(const Protocol& protocol, int place);
 std::vector<std::string> group_names(const Protocol& protocol);
 
 /// Number of different places: participants whose places differ by a multiple of it have the same group and
-/// the same orders of blocks in all sessions.
+/// the same orders of blocks in all sessions. This can be more than needed if a sequence with one level per
+/// session has more levels than there are sessions.
 int place_count(const Protocol& protocol);
 
 /// How the protocol replaces participants who drop out; empty if it does not.

@@ -14,6 +14,8 @@ namespace {
 /// Two numbers whose relative difference is below this are treated as equal. Such a difference is a rounding
 /// error, and dividing it into ticks would give an enormous number of them.
 constexpr double kRounding = 1e-9;
+/// With fewer labels than these, nobody can see that an axis is logarithmic.
+constexpr std::size_t kFewestLogTicks = 3;
 
 bool differ(double low, double high) {
   return high - low > kRounding * std::max(std::abs(low), std::abs(high));
@@ -63,23 +65,38 @@ std::string power_of_ten(int exponent) {
   return result;
 }
 
-std::vector<Tick> log_ticks(const Axis& axis, int wanted) {
+/// The ticks of a log axis at these multiples of each decade.
+std::vector<Tick> decade_ticks(const Axis& axis, const std::vector<double>& multiples, int wanted) {
   const int first = static_cast<int>(std::floor(std::log10(axis.low)));
   const int last = static_cast<int>(std::ceil(std::log10(axis.high)));
-  const bool decades_only = 2 * (last - first) > wanted;
+  const bool decades_only = multiples.size() == 1;
   const bool powers = decades_only && (first < -4 || last > 4);
   // Over many decades, each decade gets a tick, but only every second, third, ... tick gets a label.
-  const int labelled = (last - first) / std::max(1, 2 * wanted) + 1;
+  const int labelled = decades_only ? (last - first) / std::max(1, 2 * wanted) + 1 : 1;
   std::vector<Tick> result;
   for (int decade = first; decade <= last; ++decade)
-    for (const double mantissa : {1.0, 2.0, 5.0}) {
-      if (decades_only && mantissa > 1) continue;
-      const double value = mantissa * std::pow(10.0, decade);
+    for (const double multiple : multiples) {
+      const double value = multiple * std::pow(10.0, decade);
       if (value < axis.low * (1 - 1e-9) || value > axis.high * (1 + 1e-9)) continue;
-      const bool quiet = decades_only && decade % labelled != 0;
+      const bool quiet = decade % labelled != 0;
       result.push_back({value, quiet ? "" : powers ? power_of_ten(decade) : label(value)});
     }
-  return result.size() >= 2 ? result : linear_ticks(axis, wanted);
+  return result;
+}
+
+std::vector<Tick> log_ticks(const Axis& axis, int wanted) {
+  static const std::vector<std::vector<double>> multiples{
+      {1}, {1, 2, 5}, {1, 1.5, 2, 3, 5, 7}, {1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9}};
+  const bool many_decades =
+      2 * (std::ceil(std::log10(axis.high)) - std::floor(std::log10(axis.low))) > wanted;
+  for (std::size_t i = many_decades ? 0 : 1; i < multiples.size(); ++i) {
+    auto result = decade_ticks(axis, multiples[i], wanted);
+    const auto labels =
+        std::count_if(result.begin(), result.end(), [](const Tick& tick) { return !tick.label.empty(); });
+    if (labels >= static_cast<std::ptrdiff_t>(kFewestLogTicks)) return result;
+  }
+  for (int more = wanted;; ++more)
+    if (auto result = linear_ticks(axis, more); result.size() >= kFewestLogTicks) return result;
 }
 
 }  // namespace

@@ -14,6 +14,8 @@ struct Axis {
   bool counts = false;  ///< true if only whole numbers get a tick; for a linear axis
   /// Names of the places 1, 2, 3, ... of the axis, such as participants' codes. They are its only ticks.
   std::vector<std::string> names = {};
+
+  bool operator==(const Axis&) const = default;
 };
 
 struct Tick {
@@ -25,7 +27,8 @@ struct Tick {
 /// - Linear axis: ticks at multiples of 1, 2 or 5 times a power of ten, with as many decimals as the step
 ///   needs.
 /// - log10 axis: ticks at 1, 2 and 5 of each decade. Over many decades, only the decades have ticks, labelled
-///   as powers of ten; some labels may be missing.
+///   as powers of ten; some labels may be missing. At least three ticks have labels: a narrow axis has more
+///   of them in each decade, and a very narrow one those of a linear axis.
 /// Throws std::invalid_argument unless low < high, both limits are finite, and both are positive on a log10
 /// axis.
 std::vector<Tick> ticks(const Axis& axis, int wanted = 6);

@@ -33,6 +33,10 @@ struct LegendEntry {
 /// to be told from.
 std::vector<LegendEntry> legend_of(const Chart& chart);
 
+/// Returns the legend that all charts of the figure share; none if one of them has an entry that the chart
+/// with most entries does not have.
+std::vector<LegendEntry> shared_legend(const Figure& figure);
+
 /// Draws the legend between title and data, in rows that fit the width (px). Returns its height in px.
 /// Without a canvas it draws nothing.
 double draw_legend(Canvas* canvas, const std::vector<LegendEntry>& entries, double left, double top,
@@ -90,6 +94,28 @@ std::vector<LegendEntry> legend_of(const Chart& chart) {
   }
   if (entries.size() == 1) entries.clear();
   return entries;
+}
+
+std::vector<LegendEntry> shared_legend(const Figure& figure) {
+  if (figure.charts.size() < 2) return {};
+  std::vector<std::vector<LegendEntry>> all;
+  for (const auto& chart : figure.charts) all.push_back(legend_of(chart));
+  auto most = *std::max_element(all.begin(), all.end(),
+                                [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  int charts = 0;
+  for (const auto& entries : all) {
+    charts += entries.empty() ? 0 : 1;
+    for (const auto& entry : entries) {
+      const auto same = std::find_if(most.begin(), most.end(), [&](const LegendEntry& other) {
+        return other.name == entry.name && other.series == entry.series;
+      });
+      if (same == most.end()) return {};
+      for (const auto what : {&LegendEntry::line, &LegendEntry::faint_line, &LegendEntry::points,
+                              &LegendEntry::open_points, &LegendEntry::area})
+        (*same).*what = (*same).*what || entry.*what;
+    }
+  }
+  return charts > 1 ? most : std::vector<LegendEntry>();
 }
 
 double draw_legend(Canvas* canvas, const std::vector<LegendEntry>& entries, double left, double top,
@@ -167,17 +193,16 @@ struct Draw {
   /// Draws only the rule's line. Its label is drawn after everything else, in a free place.
   void operator()(const Rule& rule) const {
     if (!is_shown(rule, frame)) return;
-    const bool flat = rule.direction == Rule::Direction::horizontal;
-    const auto from = flat ? frame.at(frame.across->low, rule.at) : frame.at(rule.at, frame.up->low);
-    const auto to = flat ? frame.at(frame.across->high, rule.at) : frame.at(rule.at, frame.up->high);
-    canvas.line(from, to, {kSoft, "", 1, "3 3", 1});
+    const auto [from, to] = ends_of(rule, frame);
+    canvas.line(from, to, {rule.series == kNeutral ? kSoft : style(rule.series).colour, "", 1, "3 3", 1});
   }
 
   void operator()(const Line& curve) const {
     check(curve.x.size() == curve.y.size(),
           "line \"" + curve.name + "\": the lists of x and y must have the same length");
     const auto look = style(curve.series);
-    const report::Paint paint{look.colour, "", curve.faint ? 1.0 : 2.0, look.dash, curve.faint ? 0.4 : 1};
+    const report::Paint paint{look.colour, "", curve.faint || curve.beyond ? 1.0 : 2.0,
+                              curve.beyond ? "3 3" : look.dash, curve.faint ? 0.4 : 1};
     std::vector<Point> run;
     const auto flush = [&] {
       if (run.size() > 1) canvas.polyline(run, paint);
@@ -290,14 +315,21 @@ double turned_names_px(const Axis& axis, double width) {
   return longest + 4 - kText_px;
 }
 
+/// The area of one chart, and which labels of its axes it shows.
+struct Place {
+  double left = 0, top = 0, width = 0, height = 0;
+  bool left_labels = true, bottom_labels = true;
+  double below = 0;  ///< room in px for the labels below the data
+};
+
 void draw_axes(Canvas& canvas, const Frame& frame, const std::vector<Tick>& across,
-               const std::vector<Tick>& up) {
+               const std::vector<Tick>& up, const Place& place) {
   const double bottom = frame.y + frame.height;
   double free_below = 1e9;
   for (const auto& tick : up) {
     const double y = frame.at(frame.across->low, tick.value).second;
     canvas.line({frame.x, y}, {frame.x + frame.width, y}, {kGrid, "", 1, "", 1});
-    if (y > free_below) continue;  // skip labels that would touch the one below
+    if (!place.left_labels || y > free_below) continue;  // skip labels that would touch the one below
     free_below = y - 1.1 * kText_px;
     canvas.text({frame.x - kTick - 3, y + 4}, tick.label, kText_px, Anchor::end, kInk);
   }
@@ -306,6 +338,7 @@ void draw_axes(Canvas& canvas, const Frame& frame, const std::vector<Tick>& acro
   for (const auto& tick : across) {
     const double x = frame.at(tick.value, frame.up->low).first;
     canvas.line({x, bottom}, {x, bottom + kTick}, {kInk, "", 1, "", 1});
+    if (!place.bottom_labels) continue;
     if (turned_px > 0) {
       if (x - kText_px / 2 < free_from) continue;
       canvas.text({x + 4, bottom + kTick + 4}, tick.label, kText_px, Anchor::end, kInk, 400, 90);
@@ -318,8 +351,9 @@ void draw_axes(Canvas& canvas, const Frame& frame, const std::vector<Tick>& acro
     free_from = x + half + 6;
   }
   canvas.line({frame.x, bottom}, {frame.x + frame.width, bottom}, {kInk, "", 1, "", 1});
-  canvas.text({frame.x + frame.width / 2, bottom + 37 + turned_px}, frame.across->label, kText_px,
-              Anchor::middle, kInk);
+  if (place.bottom_labels)
+    canvas.text({frame.x + frame.width / 2, bottom + 37 + turned_px}, frame.across->label, kText_px,
+                Anchor::middle, kInk);
 }
 
 /// Returns those ticks of the horizontal axis whose labels fit. On a log axis, some ticks have no label.
@@ -328,10 +362,6 @@ std::vector<Tick> ticks_with_room(const Axis& axis, double width) {
     if (const auto some = ticks(axis, wanted); have_room(some, axis, width)) return some;
   return ticks(axis, axis.scale == AxisScale::linear ? 2 : 7);
 }
-
-struct Place {
-  double left = 0, top = 0, width = 0, height = 0;
-};
 
 /// How a chart's area is divided among title, legend and data.
 struct Division {
@@ -342,18 +372,29 @@ struct Division {
   Labelled labelled;
 };
 
-Division divided(const Chart& chart, const Place& place, VerticalLabels where, int wanted_ticks) {
+constexpr double kRightRoom = kPad + 6;
+
+/// The room in px for the labels at the left of the data.
+double left_room(const std::vector<Tick>& up) {
+  double labels = 0;
+  for (const auto& tick : up) labels = std::max(labels, text_width(tick.label, kText_px));
+  return kPad + 18 + labels + kTick + 3;
+}
+
+/// The room in px for the labels below data of this width.
+double room_below(const Axis& axis, double width) { return kPad + 38 + turned_names_px(axis, width); }
+
+Division divided(const Chart& chart, const Place& place, const std::vector<LegendEntry>& entries,
+                 VerticalLabels where, int wanted_ticks) {
   Division d;
   d.up = ticks(chart.y, wanted_ticks);
-  double labels = 0;
-  for (const auto& tick : d.up) labels = std::max(labels, text_width(tick.label, kText_px));
-  d.left = place.left + kPad + 18 + labels + kTick + 3;
-  d.width = place.left + place.width - kPad - 6 - (heat_map(chart) ? 72 : 0) - d.left;
+  d.left = place.left + (place.left_labels ? left_room(d.up) : kPad);
+  d.width = place.left + place.width - kRightRoom - (heat_map(chart) ? 72 : 0) - d.left;
   d.legend_top = place.top + kPad + (chart.title.empty() ? 4 : 26);
-  d.entries = legend_of(chart);
+  d.entries = entries;
   Frame frame{d.left, d.legend_top, d.width, 0, &chart.x, &chart.y};
   frame.y += draw_legend(nullptr, d.entries, d.left, 0, d.width);
-  frame.height = place.top + place.height - kPad - 38 - turned_names_px(chart.x, frame.width) - frame.y;
+  frame.height = place.top + place.height - place.below - frame.y;
   d.layers = beside(chart, frame);
   Chart moved;
   moved.layers = d.layers;
@@ -363,9 +404,10 @@ Division divided(const Chart& chart, const Place& place, VerticalLabels where, i
 
 /// Divides a chart's area among title, legend and data. The vertical axis gets as many ticks as fit with a
 /// distance of one and a half lines of text.
-Division divided(const Chart& chart, const Place& place, VerticalLabels where) {
+Division divided(const Chart& chart, const Place& place, const std::vector<LegendEntry>& entries,
+                 VerticalLabels where) {
   for (int wanted = 5;; --wanted) {
-    auto d = divided(chart, place, where, wanted);
+    auto d = divided(chart, place, entries, where, wanted);
     const double needed = 1.5 * kText_px * static_cast<double>(d.up.size() - 1);
     if (wanted == 2 || needed <= d.labelled.frame.height) return d;
   }
@@ -386,26 +428,27 @@ void draw_chart(Canvas& canvas, const Chart& chart, const Place& place, const Di
   const auto& frame = d.labelled.frame;
   draw_title(canvas, chart.title, place, d.left);
   draw_legend(&canvas, d.entries, d.left, d.legend_top, d.width);
-  draw_axes(canvas, frame, ticks_with_room(chart.x, frame.width), d.up);
-  canvas.text({place.left + kPad + 10, frame.y + frame.height / 2}, chart.y.label, kText_px, Anchor::middle,
-              kInk, 400, 90);
+  draw_axes(canvas, frame, ticks_with_room(chart.x, frame.width), d.up, place);
+  if (place.left_labels)
+    canvas.text({place.left + kPad + 10, frame.y + frame.height / 2}, chart.y.label, kText_px, Anchor::middle,
+                kInk, 400, 90);
   const auto clip = drawn_in(frame);
   canvas.begin_clip({clip.left, clip.top}, clip.right - clip.left, clip.bottom - clip.top);
   for (const auto& layer : d.layers) std::visit(Draw{canvas, frame}, layer);
   canvas.end_clip();
   for (const auto& label : d.labelled.labels)
-    canvas.text(label.at, label.text, kLabelText_px, label.anchor, kSoft);
+    canvas.text(label.at, label.text, kLabelText_px, label.anchor,
+                label.series == kNeutral ? kSoft : style(label.series).colour);
   if (const auto* map = heat_map(chart)) draw_colour_bar(canvas, frame, d.left + d.width, *map);
 }
 
-/// Charts side by side must have data areas of the same height: if one chart has a label above its data, all
-/// charts leave room for one.
-VerticalLabels labels_of(const std::vector<Chart>& charts, const std::vector<Place>& places) {
-  for (std::size_t i = 0; i < charts.size(); ++i)
-    for (const auto& label : divided(charts[i], places[i], VerticalLabels::beside).labelled.labels)
-      if (label.anchor == Anchor::middle) return VerticalLabels::above;
-  return VerticalLabels::beside;
-}
+/// Where everything of a figure stands.
+struct Layout {
+  std::vector<LegendEntry> legend;  ///< of all charts; empty if each has its own
+  double legend_height = 0;
+  std::vector<Place> places;
+  std::vector<Division> divisions;
+};
 
 /// Breaks the caption into lines that fit the width.
 std::vector<std::string> caption_lines(const std::string& caption, double width) {
@@ -420,21 +463,72 @@ std::vector<std::string> caption_lines(const std::string& caption, double width)
   return lines;
 }
 
-std::vector<Place> places_of(const Figure& figure) {
+std::pair<int, int> columns_and_rows(const Figure& figure) {
   const int count = static_cast<int>(figure.charts.size()), columns = std::min(figure.columns, count);
+  return {columns, (count + columns - 1) / columns};
+}
+
+bool all_have(const Figure& figure, Axis Chart::*axis) {
+  return std::all_of(figure.charts.begin(), figure.charts.end(),
+                     [&](const Chart& chart) { return chart.*axis == figure.charts.front().*axis; });
+}
+
+/// The places of the charts below a legend of this height. All charts get data areas of the same size if they
+/// share an axis.
+std::vector<Place> places_of(const Figure& figure, double legend_height) {
+  const auto [columns, rows] = columns_and_rows(figure);
+  const auto count = static_cast<int>(figure.charts.size());
+  const auto& first = figure.charts.front();
+  const bool shares_x = rows > 1 && all_have(figure, &Chart::x);
+  const bool shares_y = columns > 1 && all_have(figure, &Chart::y);
+  const double extra_left = shares_y ? left_room(ticks(first.y, 5)) - kPad : 0;
+  const double width = (columns * figure.chart_width_px - extra_left) / columns;
+  const auto below = [&](const Chart& chart) {
+    return room_below(chart.x, width - kRightRoom - (shares_y ? kPad : left_room(ticks(chart.y, 5))));
+  };
+  const double extra_below = shares_x ? below(first) - kPad : 0;
+  const double height = (rows * figure.chart_height_px - legend_height - extra_below) / rows;
   std::vector<Place> places;
-  for (int i = 0; i < count; ++i)
-    places.push_back({i % columns * figure.chart_width_px, i / columns * figure.chart_height_px,
-                      figure.chart_width_px, figure.chart_height_px});
+  for (int i = 0; i < count; ++i) {
+    const int column = i % columns, row = i / columns;
+    const bool leftmost = column == 0, last = row == rows - 1;
+    Place place;
+    place.left = column * width + (leftmost ? 0 : extra_left);
+    place.top = legend_height + row * height;
+    place.width = width + (leftmost ? extra_left : 0);
+    place.height = height + (last ? extra_below : 0);
+    place.left_labels = leftmost || !shares_y;
+    place.bottom_labels = i + columns >= count || !shares_x;
+    place.below = last || !shares_x ? below(figure.charts[static_cast<std::size_t>(i)]) : kPad;
+    places.push_back(place);
+  }
   return places;
 }
 
-std::vector<Division> divided(const Figure& figure, const std::vector<Place>& places) {
-  const auto where = labels_of(figure.charts, places);
-  std::vector<Division> divisions;
-  for (std::size_t i = 0; i < places.size(); ++i)
-    divisions.push_back(divided(figure.charts[i], places[i], where));
-  return divisions;
+/// Charts side by side must have data areas of the same height: if one chart has a label above its data, all
+/// charts leave room for one.
+Layout laid_out_charts(const Figure& figure) {
+  Layout layout;
+  layout.legend = shared_legend(figure);
+  const auto [columns, rows] = columns_and_rows(figure);
+  const double width = columns * figure.chart_width_px - 4 * kPad;
+  layout.legend_height = layout.legend.empty() ? 0 : kPad + draw_legend(nullptr, layout.legend, 0, 0, width);
+  layout.places = places_of(figure, layout.legend_height);
+  const auto divide = [&](VerticalLabels where) {
+    layout.divisions.clear();
+    for (std::size_t i = 0; i < layout.places.size(); ++i) {
+      const auto& chart = figure.charts[i];
+      const auto entries = layout.legend.empty() ? legend_of(chart) : std::vector<LegendEntry>();
+      layout.divisions.push_back(divided(chart, layout.places[i], entries, where));
+    }
+  };
+  divide(VerticalLabels::beside);
+  const bool above = std::any_of(layout.divisions.begin(), layout.divisions.end(), [](const Division& d) {
+    return std::any_of(d.labelled.labels.begin(), d.labelled.labels.end(),
+                       [](const RuleLabel& label) { return label.anchor == Anchor::middle; });
+  });
+  if (above) divide(VerticalLabels::above);
+  return layout;
 }
 
 }  // namespace
@@ -442,16 +536,17 @@ std::vector<Division> divided(const Figure& figure, const std::vector<Place>& pl
 void draw(Canvas& canvas, const Figure& figure) {
   check(!figure.charts.empty(), "a figure needs a chart");
   check(figure.columns > 0, "the number of columns must be at least 1");
-  const auto places = places_of(figure);
-  const auto divisions = divided(figure, places);
-  for (std::size_t i = 0; i < places.size(); ++i)
-    check(has_room(divisions[i]), "chart \"" + figure.charts[i].title + "\" leaves no room for its data");
+  const auto layout = laid_out_charts(figure);
+  for (std::size_t i = 0; i < layout.places.size(); ++i)
+    check(has_room(layout.divisions[i]),
+          "chart \"" + figure.charts[i].title + "\" leaves no room for its data");
   const auto [width, height] = size_px(figure);
   const auto caption = caption_lines(figure.caption, width - 4 * kPad);
   canvas.begin(width, height, figure.title);
   canvas.rectangle({0, 0}, width, height, {"", "#ffffff", 0, "", 1});
-  for (std::size_t i = 0; i < places.size(); ++i)
-    draw_chart(canvas, figure.charts[i], places[i], divisions[i]);
+  draw_legend(&canvas, layout.legend, 2 * kPad, kPad, width - 4 * kPad);
+  for (std::size_t i = 0; i < layout.places.size(); ++i)
+    draw_chart(canvas, figure.charts[i], layout.places[i], layout.divisions[i]);
   double y = height - caption_height_px(figure) + kText_px;
   for (const auto& line : caption) {
     canvas.text({2 * kPad, y}, line, kText_px, Anchor::start, kSoft);
@@ -459,9 +554,53 @@ void draw(Canvas& canvas, const Figure& figure) {
   }
 }
 
+bool has_moved(const Figure& figure) {
+  const auto layout = laid_out_charts(figure);
+  for (std::size_t i = 0; i < figure.charts.size(); ++i)
+    for (std::size_t n = 0; n < figure.charts[i].layers.size(); ++n) {
+      const auto &given = figure.charts[i].layers[n], &drawn = layout.divisions[i].layers[n];
+      if (const auto* dots = std::get_if<Points>(&given))
+        if (const auto& moved = std::get<Points>(drawn); moved.x != dots->x || moved.y != dots->y)
+          return true;
+      if (const auto* span = std::get_if<Span>(&given))
+        if (std::get<Span>(drawn).at != span->at) return true;
+    }
+  return false;
+}
+
+int columns_for(const Figure& figure, double width_px) {
+  const int count = static_cast<int>(figure.charts.size());
+  constexpr double smallest_title = 10;
+  int best = 1, fewest = count;
+  for (int columns = std::min(3, count); columns > 1; --columns) {
+    const double width = width_px / columns;
+    const bool fits = width >= kLeastWidth &&
+                      std::all_of(figure.charts.begin(), figure.charts.end(), [&](const Chart& chart) {
+                        return text_width(chart.title, smallest_title) <= width - 2 * kPad &&
+                               text_width(chart.x.label, kText_px) <= width;
+                      });
+    const int empty = (columns - count % columns) % columns;
+    if (fits && empty < fewest) fewest = empty, best = columns;
+  }
+  return best;
+}
+
+Figure on_page(Figure figure, double chart_height_px) {
+  constexpr double one_px = 620, all_px = 800;
+  figure.columns = columns_for(figure, all_px);
+  figure.chart_width_px = figure.columns == 1 ? one_px : all_px / figure.columns;
+  figure.chart_height_px = chart_height_px;
+  return figure;
+}
+
+double least_data_px(const Figure& figure) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& d : laid_out_charts(figure).divisions) least = std::min(least, d.labelled.frame.height);
+  return least;
+}
+
 Point size_px(const Figure& figure) {
-  const int count = static_cast<int>(figure.charts.size()), columns = std::min(figure.columns, count);
-  const int rows = (count + columns - 1) / columns;
+  const auto [columns, rows] = columns_and_rows(figure);
   return {columns * figure.chart_width_px, rows * figure.chart_height_px + caption_height_px(figure)};
 }
 
@@ -509,7 +648,7 @@ Figure laid_out_to_scroll(Figure figure, double width_px, double height_px) {
   // a caption leaves the charts four fifths of the height, or else stands below what is seen first
   if (caption_px <= 0.2 * height_px) height_px -= caption_px;
   const auto all_has_room = [](const Figure& placed) {
-    const auto divisions = divided(placed, places_of(placed));
+    const auto divisions = laid_out_charts(placed).divisions;
     for (std::size_t i = 0; i < divisions.size(); ++i) {
       const auto& label =
           placed.charts[i].y.label;  // reaches beyond the data, as far as the numbers below it

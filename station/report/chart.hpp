@@ -18,8 +18,9 @@ constexpr int kNeutral = -1;
 struct Line {
   std::vector<double> x, y;
   int series = 0;
-  std::string name;    ///< name in the legend; "" leaves it out
-  bool faint = false;  ///< true for one of many curves, such as a participant's behind the group's
+  std::string name;     ///< name in the legend; "" leaves it out
+  bool faint = false;   ///< true for one of many curves, such as a participant's behind the group's
+  bool beyond = false;  ///< true for the part of a curve beyond the data: it is thin and dashed
 };
 
 /// Markers. If `low` and `high` are given (one value per point), each marker has a vertical error bar.
@@ -42,6 +43,7 @@ struct Points {
 struct Span {
   double low = 0, high = 0, at = 0;
   int series = 0;
+  bool of_marker = false;  ///< the interval of a marker of its series at this height
 };
 
 /// The area between two curves.
@@ -68,11 +70,14 @@ struct HeatMap {
 };
 
 /// A thin dashed line across the chart with a small label, for example at the chance level, a deadline or a
-/// threshold.
+/// threshold. That of one series has its colour.
 struct Rule {
   enum class Direction { horizontal, vertical } direction = Direction::horizontal;
   double at = 0;
   std::string label;
+  int series = kNeutral;
+  std::optional<double> until =
+      {};  ///< of a vertical rule: the height at which it ends, such as that of a curve
 };
 
 using Layer = std::variant<Band, Histogram, HeatMap, Rule, Line, Points, Span>;
@@ -86,7 +91,10 @@ struct Chart {
   bool beside = true;
 };
 
-/// A figure of one or more charts, arranged in rows of `columns` charts.
+/// A figure of one or more charts, arranged in rows of `columns` charts. Charts below each other that have
+/// the same horizontal axis show its labels once, below them; charts beside each other that have the same
+/// vertical axis show its labels once, at the left. A legend that is the same for all charts stands once,
+/// above them.
 struct Figure {
   std::string title;  ///< title of the document; screen readers read it aloud
   std::vector<Chart> charts;
@@ -94,6 +102,19 @@ struct Figure {
   double chart_width_px = 420, chart_height_px = 300;
   std::string caption;  ///< text below the charts, broken into lines; "" for none
 };
+
+/// True if intervals of the figure that would lie on each other are drawn beside each other.
+bool has_moved(const Figure& figure);
+
+/// The largest number of columns, up to three, in which the charts leave the fewest places empty, and in
+/// which their titles and axes have room within a width (px).
+int columns_for(const Figure& figure, double width_px);
+
+/// Arranges charts of a page, whose width they fill.
+Figure on_page(Figure figure, double chart_height_px);
+
+/// The height of the lowest data area of the figure, in px.
+double least_data_px(const Figure& figure);
 
 /// Draws the figure. Where an axis cuts an interval, an arrow points to the end that is not shown. A legend
 /// appears only if there are several entries. Throws std::invalid_argument for lists of different lengths,

@@ -55,7 +55,9 @@ void Document::table(Table added) {
 }
 
 void Document::figure(const std::string& file, std::optional<Figure> drawn) {
-  if (drawn) parts.push_back(NamedFigure{file, std::move(*drawn)});
+  if (!drawn) return;
+  if (has_moved(*drawn)) drawn->caption += " " + Words(language)("figure.caption_beside");
+  parts.push_back(NamedFigure{file, std::move(*drawn)});
 }
 
 std::vector<NamedFigure> figures_of(const Document& document) {

@@ -105,6 +105,7 @@ struct Document {
   std::string name;   ///< of the whole document: the title, and whose data it shows
   Text about;         ///< the line below the title
   std::string run_mode;
+  std::string language = "en";  ///< of the figures
   using Part = std::variant<Heading, Paragraph, analysis::Statement, List, Table, NamedFigure>;
   std::vector<Part> parts;
 
@@ -124,6 +125,7 @@ struct Document {
     for (const auto& [what, value] : facts) list.rows.push_back({head(what), brief(Cell(value))});
     table(std::move(list));
   }
+  /// Adds a figure. Its caption says if intervals are drawn beside each other.
   void figure(const std::string& file, std::optional<Figure> drawn);
 };
 

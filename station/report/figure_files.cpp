@@ -12,6 +12,9 @@ namespace turnpoint::report {
 namespace {
 
 constexpr double kPixelsPerMm = 96 / 25.4;
+/// A figure of several rows is not made higher than this, unless legends and labels need it: a page of a
+/// journal is about 230 mm high, with the caption.
+constexpr double kHighest_mm = 180;
 
 /// Writes the rows of one chart.
 struct Rows {
@@ -33,26 +36,30 @@ struct Rows {
     };
     for (std::size_t i = 0; i < dots.x.size(); ++i)
       row("marker", dots.name,
-          {csv_number(dots.x[i]), "", "", csv_number(dots.y[i]), at(dots.low, i), at(dots.high, i), at(dots.weight, i),
+          {csv_number(dots.x[i]), "", "", csv_number(dots.y[i]), at(dots.low, i), at(dots.high, i),
+           at(dots.weight, i),
            i >= dots.open.size() ? ""
            : dots.open[i]        ? "1"
                                  : "0"});
   }
   void operator()(const Band& band) const {
     for (std::size_t i = 0; i < band.x.size(); ++i)
-      row("band", band.name, {csv_number(band.x[i]), "", "", "", csv_number(band.low[i]), csv_number(band.high[i]), "", ""});
+      row("band", band.name,
+          {csv_number(band.x[i]), "", "", "", csv_number(band.low[i]), csv_number(band.high[i]), "", ""});
   }
   void operator()(const Histogram& bars) const {
     for (std::size_t i = 0; i < bars.heights.size(); ++i)
       row("bar", bars.name,
-          {"", csv_number(bars.edges[i]), csv_number(bars.edges[i + 1]), csv_number(bars.heights[i]), "", "", "", ""});
+          {"", csv_number(bars.edges[i]), csv_number(bars.edges[i + 1]), csv_number(bars.heights[i]), "", "",
+           "", ""});
   }
   void operator()(const HeatMap& map) const {
     const std::size_t columns = map.x_edges.size() - 1;
     for (std::size_t i = 0; i < map.values.size(); ++i)
       row("cell", map.name,
           {"", csv_number(map.x_edges[i % columns]), csv_number(map.x_edges[i % columns + 1]), "",
-           csv_number(map.y_edges[i / columns]), csv_number(map.y_edges[i / columns + 1]), csv_number(map.values[i]), ""});
+           csv_number(map.y_edges[i / columns]), csv_number(map.y_edges[i / columns + 1]),
+           csv_number(map.values[i]), ""});
   }
   void operator()(const Rule& rule) const {
     if (rule.direction == Rule::Direction::horizontal)
@@ -61,7 +68,8 @@ struct Rows {
       row("rule", rule.label, {csv_number(rule.at), "", "", "", "", "", "", ""});
   }
   void operator()(const Span& span) const {
-    row("interval", "", {"", csv_number(span.low), csv_number(span.high), csv_number(span.at), "", "", "", ""});
+    row("interval", "",
+        {"", csv_number(span.low), csv_number(span.high), csv_number(span.at), "", "", "", ""});
   }
 };
 
@@ -73,7 +81,8 @@ std::string data_csv(const Figure& figure) {
   for (const auto& chart : figure.charts) {
     ++number;
     const auto title = chart.title.empty() ? std::to_string(number) : chart.title;
-    const auto start = csv_field(title) + "," + csv_field(chart.x.label) + "," + csv_field(chart.y.label) + ",";
+    const auto start =
+        csv_field(title) + "," + csv_field(chart.x.label) + "," + csv_field(chart.y.label) + ",";
     for (const auto& layer : chart.layers) std::visit(Rows{start, csv}, layer);
     for (std::size_t i = 0; i < chart.x.names.size(); ++i)
       Rows{start, csv}.row("name", chart.x.names[i], {std::to_string(i + 1), "", "", "", "", "", "", ""});
@@ -86,15 +95,19 @@ std::string data_csv(const Figure& figure) {
 Figure for_paper(Figure figure, double width_mm) {
   figure.caption.clear();
   const double width_px = width_mm * kPixelsPerMm;
-  const int columns = width_mm < 120 ? 1 : std::min(2, static_cast<int>(figure.charts.size()));
-  const int charts = static_cast<int>(figure.charts.size());
-  const int rows = (charts + columns - 1) / columns;
-  const double chart_px = width_px / columns;
-  const double shape = std::clamp(figure.chart_height_px / figure.chart_width_px, 0.35, 1.0);
-  figure.columns = columns;
-  figure.chart_width_px = chart_px;
+  const bool narrow = width_mm < 120;
+  const double shape = std::clamp(figure.chart_height_px / figure.chart_width_px, 0.62, 1.0);
+  figure.columns = narrow ? 1 : columns_for(figure, width_px);
+  figure.chart_width_px = width_px / figure.columns;
+  const auto charts = static_cast<int>(figure.charts.size());
+  const int rows = (charts + figure.columns - 1) / figure.columns;
   // titles, legends and axes take as much height in a narrow chart as in a wide one
-  figure.chart_height_px = chart_px * std::max(shape, rows > 2 ? 0.5 : 0.62) + (chart_px < 400 ? 50 : 0);
+  const double wanted_px = figure.chart_width_px * shape + (figure.chart_width_px < 400 ? 50 : 0);
+  const double share_px = kHighest_mm * kPixelsPerMm / rows;
+  figure.chart_height_px = rows > 1 ? std::min(wanted_px, share_px) : wanted_px;
+  // legends and labels never leave less than this to the data
+  const double least_px = std::min(0.45 * figure.chart_width_px, 0.5 * share_px);
+  for (int i = 0; i < 40 && least_data_px(figure) < least_px; ++i) figure.chart_height_px += 10;
   return figure;
 }
 

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/quantile.hpp"
 #include "station/core/number.hpp"
+#include "station/report/psychometric_parts.hpp"
 #include "station/report/words.hpp"
 
 namespace turnpoint::report {
@@ -31,23 +33,29 @@ Points observed(const NamedFit& named, int series, const std::string& name) {
   return points;
 }
 
-Line curve(const NamedFit& named, int series, const Axis& axis, const std::string& name) {
-  Line line;
-  line.series = series;
-  line.name = name;
+DrawnFunction drawn_of(const NamedFit& named, int series, const std::string& name) {
   const auto& options = named.fit.options;
-  const bool logarithmic = axis.scale == AxisScale::log10;
-  // the curve ends where its band does
+  const double guess = options.guess == analysis::Guess::fixed    ? options.guess_value
+                       : options.guess == analysis::Guess::fitted ? named.fit.parameters->guess
+                                                                  : 0;
+  return {options.function, options.scale, *named.fit.parameters, guess, series, name};
+}
+
+std::vector<double> levels_of(const std::vector<const NamedFit*>& fits) {
+  std::vector<double> levels;
+  for (const auto* named : fits)
+    for (const auto& point : named->fit.data)
+      if (point.level != analysis::kNoise) levels.push_back(point.level);
+  return levels;
+}
+
+/// Adds the fitted curve, which ends where its band does.
+void add_curve(const NamedFit& named, const DrawnFunction& drawn, Chart& panel) {
   const auto& along = named.intervals.band_level;
-  const double low = along.empty() ? axis.low : along.front(),
-               high = along.empty() ? axis.high : along.back();
-  for (int i = 0; i <= 120; ++i) {
-    const double share = i / 120.0;
-    const double x = logarithmic ? low * std::pow(high / low, share) : low + share * (high - low);
-    line.x.push_back(x);
-    line.y.push_back(analysis::probability(options.function, options.scale, *named.fit.parameters, x));
-  }
-  return line;
+  const auto levels = levels_of({&named});
+  const auto [first, last] = std::minmax_element(levels.begin(), levels.end());
+  add_curve(panel, drawn, along.empty() ? panel.x.low : along.front(),
+            along.empty() ? panel.x.high : along.back(), {*first, *last});
 }
 
 /// Returns the proportion of "yes" answers in trials without a signal.
@@ -57,36 +65,11 @@ std::optional<double> false_alarms(const NamedFit& named) {
   return std::nullopt;
 }
 
-/// Marks the threshold (or PSE) on the curve: a thin line labelled with its value and the height of the curve
-/// there, which is the criterion that the threshold stands for, and its interval at that height.
-void mark_threshold(const NamedFit& named, const LevelAnalysis& data, const Words& words, int series,
-                    const std::string& name, Chart& panel) {
-  const auto& fit = named.fit;
-  const double at = fit.parameters->threshold;
-  if (at < panel.x.low || at > panel.x.high) return;
-  const auto unit = data.level_unit.empty() ? "" : " " + data.level_unit;
-  const double height = analysis::probability(fit.options.function, fit.options.scale, *fit.parameters, at);
-  const auto* interval = named.intervals.threshold ? &named.intervals.threshold->interval : nullptr;
-  panel.layers.push_back(Rule{Rule::Direction::vertical, at,
-                              words(data.design == Design::two_sided ? "figure.pse" : "figure.threshold",
-                                    (name.empty() ? "" : name + " ") + in_digits(at, interval) + unit + " (" +
-                                        core::number(std::round(100 * height)) + " %)")});
-  if (interval != nullptr) panel.layers.push_back(Span{interval->low, interval->high, height, series});
-}
-
-/// What all captions of a session's figures begin with: whose trials they are, and how many.
-std::string of_trials(const Summary& summary, int trials) {
-  return Words(summary.data.language)("figure.caption_trials",
-                                      {summary.data.participant, std::to_string(trials)});
-}
-std::string of_trials(const Summary& summary, std::size_t trials) {
-  return of_trials(summary, static_cast<int>(trials));
-}
-
 std::string of_answers(const Summary& summary) {
-  int answered = 0;
-  for (const auto& entry : summary.trade.instructions) answered += entry.answered - entry.excluded;
-  return of_trials(summary, answered);
+  std::size_t answered = 0;
+  for (const auto& entry : summary.trade.instructions)
+    answered += static_cast<std::size_t>(entry.answered - entry.excluded);
+  return of_trials(summary.data, answered);
 }
 
 const char* curve_caption(core::Function function) {
@@ -101,68 +84,129 @@ const char* curve_caption(core::Function function) {
   return "figure.caption_weibull";
 }
 
-std::string psychometric_caption(const Summary& summary) {
+/// True if a line across a chart has no label.
+bool has_silent_chance(const Figure& figure) {
+  return std::any_of(figure.charts.begin(), figure.charts.end(), [](const Chart& chart) {
+    return std::any_of(chart.layers.begin(), chart.layers.end(), [](const Layer& layer) {
+      const auto* rule = std::get_if<Rule>(&layer);
+      return rule != nullptr && rule->label.empty();
+    });
+  });
+}
+
+std::string psychometric_caption(const Summary& summary, const Figure& figure) {
   const Words words(summary.data.language);
-  int trials = 0;
+  std::size_t trials = 0;
   bool bands = false, thresholds = false;
+  auto method = analysis::IntervalMethod::none;
   for (const auto& named : summary.fits) {
-    for (const auto& point : named.fit.data) trials += point.trials;
+    for (const auto& point : named.fit.data) trials += static_cast<std::size_t>(point.trials);
     bands = bands || !named.intervals.band_level.empty();
     thresholds = thresholds || named.intervals.threshold;
+    if (named.intervals.method != analysis::IntervalMethod::none) method = named.intervals.method;
   }
+  const bool posterior = method == analysis::IntervalMethod::posterior;
   auto caption =
-      of_trials(summary, trials) + " " +
+      of_trials(summary.data, trials) + " " +
       words.together({"figure.caption_points", curve_caption(summary.fits.front().fit.options.function)});
-  if (bands) caption += " " + words("figure.caption_band");
-  if (thresholds) caption += " " + words("figure.caption_threshold");
+  if (goes_beyond(figure)) caption += " " + words("figure.caption_beyond");
+  if (has_silent_chance(figure)) caption += " " + words("figure.caption_chance");
+  if (bands)
+    caption +=
+        " " + words("figure.caption_band", words(posterior ? "figure.credible" : "figure.percentiles"));
+  if (thresholds)
+    caption +=
+        " " + words("figure.caption_threshold", words(posterior ? "figure.credible" : "figure.profile"));
   return caption;
 }
 
 }  // namespace
 
+std::string of_trials(const SessionData& data, std::size_t trials) {
+  return (data.title.empty() ? "" : data.title + ". ") +
+         Words(data.language)("figure.caption_trials", {data.participant, std::to_string(trials)});
+}
+
 namespace {
 
-/// The chart of the functions of one analysis; empty if there are no levels.
-std::optional<Chart> psychometric_chart(const std::vector<const NamedFit*>& fits, const LevelAnalysis& data,
-                                        int alternatives, const Words& words) {
-  std::vector<double> levels;
-  for (const auto* named : fits)
+/// The lowest proportion that charts of these functions show.
+double lowest_of(const std::vector<const NamedFit*>& fits, Design design, int alternatives) {
+  if (design != Design::forced_choice) return 0;
+  double lowest = 1.0 / alternatives;
+  for (const auto* named : fits) {
     for (const auto& point : named->fit.data)
-      if (point.level != analysis::kNoise) levels.push_back(point.level);
+      lowest = std::min(lowest, analysis::wilson(point.sum(), point.trials).low);
+    for (const double low : named->intervals.band_low) lowest = std::min(lowest, low);
+  }
+  return lowest;
+}
+
+/// An empty chart for all functions of one analysis; nullopt if there are no levels.
+std::optional<Chart> psychometric_axes(const std::vector<const NamedFit*>& fits, const LevelAnalysis& data,
+                                       int alternatives, const Words& words) {
+  const auto levels = levels_of(fits);
   if (levels.empty()) return std::nullopt;
-  const bool logarithmic = data.scale == analysis::Scale::log10;
   Chart panel;
-  panel.x = report::fitted(words(data.level_label), levels, 0.05,
-                           logarithmic ? AxisScale::log10 : AxisScale::linear);
-  const bool forced = data.design == Design::forced_choice;
+  panel.title = data.name;
+  panel.x = level_axis(words(data.level_label), levels, data.scale);
   const auto& positive = fits.front()->positive;
-  panel.y = {words("figure.proportion", positive == "correct" ? words("figure.correct") : positive),
-             forced ? 0.3 : -0.03, 1.03};
-  if (forced)
-    for (const auto* named : fits)
-      for (const auto& point : named->fit.data)
-        panel.y.low = std::min(panel.y.low, analysis::wilson(point.sum(), point.trials).low - 0.03);
+  panel.y =
+      proportion_axis(words("figure.proportion", positive == "correct" ? words("figure.correct") : positive),
+                      lowest_of(fits, data.design, alternatives));
+  return panel;
+}
+
+/// Adds functions to a chart; `series` is that of the first, `chance` the label of the line at the chance
+/// level.
+void add_functions(const std::vector<const NamedFit*>& fits, const LevelAnalysis& data, int alternatives,
+                   int series, const std::string& chance, const Words& words, Chart& panel) {
   for (std::size_t i = 0; i < fits.size(); ++i)
     if (const auto& band = fits[i]->intervals; !band.band_level.empty())
-      panel.layers.push_back(Band{band.band_level, band.band_low, band.band_high, static_cast<int>(i), ""});
-  if (forced)
-    panel.layers.push_back(Rule{Rule::Direction::horizontal, 1.0 / alternatives, words("figure.chance")});
+      panel.layers.push_back(
+          Band{band.band_level, band.band_low, band.band_high, series + static_cast<int>(i), ""});
+  add_chance(panel, data, alternatives, chance);
   if (has_noise(data.design))
     for (const auto* named : fits)
       if (const auto noise = false_alarms(*named))
         panel.layers.push_back(Rule{Rule::Direction::horizontal, *noise,
-                                    named->name.empty() ? words("figure.false_alarms")
-                                                        : words("figure.false_alarms_of", named->name)});
+                                    named->name.empty() || fits.size() == 1
+                                        ? words("figure.false_alarms")
+                                        : words("figure.false_alarms_of", named->name)});
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const auto& named = *fits[i];
-    const int series = static_cast<int>(i);
+    const int own = series + static_cast<int>(i);
     const auto name = fits.size() > 1 ? named.name : std::string();
-    if (named.fit.parameters) panel.layers.push_back(curve(named, series, panel.x, name));
-    panel.layers.push_back(observed(named, series, name));
-    if (named.fit.parameters) mark_threshold(named, data, words, series, name, panel);
+    if (named.fit.parameters && !levels_of({&named}).empty())
+      add_curve(named, drawn_of(named, own, name), panel);
+    panel.layers.push_back(observed(named, own, name));
   }
-  panel.title = data.name;
-  return panel;
+  for (std::size_t i = 0; i < fits.size(); ++i)
+    if (const auto& named = *fits[i]; named.fit.parameters)
+      add_threshold(panel, drawn_of(named, series + static_cast<int>(i), fits.size() > 1 ? named.name : ""),
+                    named.intervals.threshold ? &named.intervals.threshold->interval : nullptr, data, words);
+}
+
+/// More functions than these in one chart would hide each other: each then has a chart of its own.
+constexpr std::size_t kMostTogether = 2;
+
+/// The charts of the functions of one analysis.
+std::vector<Chart> psychometric_charts(const std::vector<const NamedFit*>& fits, const SessionData& session,
+                                       const Words& words) {
+  const auto& data = analysis_of(*fits.front(), session);
+  const auto axes = psychometric_axes(fits, data, session.alternatives, words);
+  if (!axes) return {};
+  if (fits.size() <= kMostTogether) {
+    auto panel = *axes;
+    add_functions(fits, data, session.alternatives, 0, words("figure.chance"), words, panel);
+    return {std::move(panel)};
+  }
+  std::vector<Chart> charts;
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    charts.push_back(*axes);
+    charts.back().title = fits[i]->name;
+    add_functions({fits[i]}, data, session.alternatives, static_cast<int>(i), "", words, charts.back());
+  }
+  return charts;
 }
 
 }  // namespace
@@ -170,21 +214,18 @@ std::optional<Chart> psychometric_chart(const std::vector<const NamedFit*>& fits
 std::optional<Figure> psychometric_figure(const Summary& summary) {
   Figure figure;
   figure.title = "Psychometric function";
-  figure.chart_width_px = 620;
-  figure.chart_height_px = 380;
   const Words words(summary.data.language);
   for (std::size_t part = 0; part < std::max<std::size_t>(1, summary.data.parts.size()); ++part) {
     std::vector<const NamedFit*> fits;
     for (const auto& named : summary.fits)
       if (named.part == part) fits.push_back(&named);
     if (fits.empty()) continue;
-    auto chart =
-        psychometric_chart(fits, analysis_of(*fits.front(), summary.data), summary.data.alternatives, words);
-    if (chart) figure.charts.push_back(std::move(*chart));
+    for (auto& chart : psychometric_charts(fits, summary.data, words))
+      figure.charts.push_back(std::move(chart));
   }
   if (figure.charts.empty()) return std::nullopt;
-  figure.caption = psychometric_caption(summary);
-  return figure;
+  figure.caption = psychometric_caption(summary, figure);
+  return on_page(std::move(figure), 380);
 }
 
 std::optional<Figure> trace_figure(const Summary& summary) {
@@ -197,7 +238,6 @@ std::optional<Figure> trace_figure(const Summary& summary) {
   for (const auto& trace : summary.traces) {
     trials += trace.points.size();
     Points right, wrong;
-    right.series = wrong.series = static_cast<int>(figure.charts.size());
     Line line;
     line.series = report::kNeutral;
     for (const auto& point : trace.points) {
@@ -211,7 +251,7 @@ std::optional<Figure> trace_figure(const Summary& summary) {
     }
     if (!wrong.x.empty()) right.name = words("figure.right"), wrong.name = words("figure.wrong");
     Chart panel;
-    panel.title = words(name_of(trace.procedure));
+    panel.title = trace.procedure;
     panel.x = report::fitted(words("figure.trial_in_session"), line.x, 0.03);
     panel.x.counts = true;
     panel.y = report::fitted(words(summary.data.level_label), line.y, 0.1);
@@ -227,7 +267,7 @@ std::optional<Figure> trace_figure(const Summary& summary) {
     figure.charts.push_back(std::move(panel));
   }
   if (figure.charts.empty()) return std::nullopt;
-  figure.caption = of_trials(summary, trials) + " " + words("figure.caption_trace");
+  figure.caption = of_trials(summary.data, trials) + " " + words("figure.caption_trace");
   return figure;
 }
 
@@ -264,7 +304,7 @@ std::optional<Figure> settings_figure(const Summary& summary) {
     figure.charts.push_back(std::move(panel));
   }
   if (figure.charts.empty()) return std::nullopt;
-  figure.caption = of_trials(summary, count) + " " + words("figure.caption_settings");
+  figure.caption = of_trials(summary.data, count) + " " + words("figure.caption_settings");
   return figure;
 }
 
@@ -302,8 +342,8 @@ std::optional<Figure> judgement_figure(const Summary& summary) {
   figure.title = numbers ? "Numbers at each level" : "Ratings at each level";
   figure.chart_width_px = 620;
   figure.chart_height_px = 320;
-  figure.caption =
-      of_trials(summary, count) + " " + words(numbers ? "figure.caption_numbers" : "figure.caption_ratings");
+  figure.caption = of_trials(summary.data, count) + " " +
+                   words(numbers ? "figure.caption_numbers" : "figure.caption_ratings");
   figure.charts.push_back(std::move(chart));
   return figure;
 }
@@ -337,7 +377,7 @@ std::optional<Figure> scale_figure(const Summary& summary) {
   figure.title = "Scale of the stimuli";
   figure.chart_width_px = 620;
   figure.chart_height_px = 320;
-  figure.caption = of_trials(summary, count) + " " + words("figure.caption_scale");
+  figure.caption = of_trials(summary.data, count) + " " + words("figure.caption_scale");
   figure.charts.push_back(std::move(chart));
   return figure;
 }
@@ -350,19 +390,19 @@ std::optional<Figure> confusion_figure(const Summary& summary) {
   };
   Figure figure;
   const Words words(summary.data.language);
-  int trials = 0;
+  std::size_t trials = 0;
   figure.title = "Answers to each stimulus";
   figure.chart_width_px = 620;
   figure.chart_height_px = 380;
   for (const auto& confusion : summary.confusions) {
     if (confusion.rows.empty()) continue;
-    for (const auto& row : confusion.rows) trials += row.trials;
+    for (const auto& row : confusion.rows) trials += static_cast<std::size_t>(row.trials);
     HeatMap shares{
         edges(summary.data.choices.size()), edges(confusion.rows.size()), {}, 0, 1, words("figure.share")};
     for (const auto& row : confusion.rows)
       for (const int count : row.answers) shares.values.push_back(static_cast<double>(count) / row.trials);
     Chart chart;
-    chart.title = words(name_of(confusion.condition));
+    chart.title = confusion.condition;
     chart.x = {words("figure.answer"), 0.5,  shares.x_edges.back(),
                AxisScale::linear,      true, summary.data.choices};
     chart.y = {words("figure.stimulus"), 0.5, shares.y_edges.back(), AxisScale::linear, true};
@@ -374,7 +414,7 @@ std::optional<Figure> confusion_figure(const Summary& summary) {
     figure.charts.push_back(std::move(chart));
   }
   if (figure.charts.empty()) return std::nullopt;
-  figure.caption = of_trials(summary, trials);
+  figure.caption = of_trials(summary.data, trials);
   return figure;
 }
 
@@ -397,8 +437,8 @@ std::optional<Figure> vibration_figure(const Summary& summary) {
   chart.layers.push_back(points);
   Figure figure;
   figure.title = "Vibration of the surface";
-  figure.caption =
-      of_trials(summary, points.x.size()) + " " + Words(summary.data.language)("figure.caption_vibration");
+  figure.caption = of_trials(summary.data, points.x.size()) + " " +
+                   Words(summary.data.language)("figure.caption_vibration");
   figure.chart_width_px = 620;
   figure.chart_height_px = 220;
   figure.charts.push_back(std::move(chart));
@@ -428,7 +468,7 @@ std::optional<Figure> response_time_figure(const Summary& summary) {
     const auto& entry = summary.trade.instructions[i];
     bars[i].series = static_cast<int>(i);
     Chart panel;
-    panel.title = words(name_of(entry.instruction));
+    panel.title = entry.instruction;
     panel.x = {words("figure.response_time"), 0, high};
     panel.y = {words("figure.trials"), 0, tallest * 1.12, AxisScale::linear, true};
     panel.layers.push_back(bars[i]);
@@ -439,24 +479,23 @@ std::optional<Figure> response_time_figure(const Summary& summary) {
                 in_digits(entry.times->median_s, entry.median_s ? &entry.median_s->interval : nullptr))});
     figure.charts.push_back(std::move(panel));
   }
-  figure.caption = of_trials(summary, all.size()) + " " + words("figure.caption_times");
+  figure.caption = of_trials(summary.data, all.size()) + " " + words("figure.caption_times");
   return figure;
 }
 
 std::optional<Figure> quantile_probability_figure(const Summary& summary) {
   Figure figure;
   figure.title = "Quantiles of response times, observed and predicted";
-  figure.chart_width_px = 420;
-  figure.columns = 2;
-  figure.caption =
-      of_answers(summary) +
-      " Quantiles 0.1 to 0.9 of the response times over the probability of the answer: right answers on the "
-      "right, wrong ones on the left. Markers: observed, with 95 % intervals. Lines: the fitted diffusion "
-      "model.";
+  figure.caption = of_answers(summary) +
+                   " Quantiles of the response times over the probability of the answer: right answers on "
+                   "the right, wrong "
+                   "ones on the left. Markers: observed, with 95 % intervals (from one order statistic to "
+                   "another). Lines: "
+                   "the fitted diffusion model.";
   std::vector<double> times{0};
   for (const auto& entry : summary.trade.instructions) {
     if (!entry.check) continue;
-    Chart chart{core::say(name_of(entry.instruction), summary.data.language), {}, {}, {}, false};
+    Chart chart{entry.instruction, {}, {}, {}};
     for (std::size_t q = 0; q < analysis::kPredictedQuantiles.size(); ++q) {
       Points points;
       std::vector<std::pair<double, double>> predicted;
@@ -475,6 +514,7 @@ std::optional<Figure> quantile_probability_figure(const Summary& summary) {
       for (const auto& [probability, time_s] : predicted)
         line.x.push_back(probability), line.y.push_back(time_s);
       points.series = line.series = static_cast<int>(q);
+      points.name = line.name = "quantile " + core::number(analysis::kPredictedQuantiles[q], 2);
       chart.layers.push_back(line);
       if (!points.x.empty()) chart.layers.push_back(points);
     }
@@ -482,10 +522,11 @@ std::optional<Figure> quantile_probability_figure(const Summary& summary) {
   }
   if (figure.charts.empty()) return std::nullopt;
   for (auto& chart : figure.charts) {
-    chart.x = {"Probability of the answer (0 to 1)", 0, 1};
+    chart.beside = false;  // a marker off its probability would look like a misfit
+    chart.x = {"Probability of answer (0 to 1)", -0.03, 1.03};
     chart.y = report::fitted("Response time (s)", times, 0.06);
   }
-  return figure;
+  return on_page(std::move(figure), 300);
 }
 
 namespace {
@@ -560,8 +601,8 @@ std::optional<Chart> conditions_chart(const Summary& summary, const Words& words
   if (auto curve = boundary_curve(summary, words("figure.boundary_curve"), chart.x.high); !curve.x.empty())
     chart.layers.push_back(std::move(curve));
   chart.layers.insert(chart.layers.end(), points.begin(), points.end());
-  chart.y = {words("figure.proportion", words("figure.correct")),
-             std::min(0.45, *std::min_element(accuracies.begin(), accuracies.end()) - 0.03), 1.03};
+  chart.y = proportion_axis(words("figure.proportion", words("figure.correct")),
+                            *std::min_element(accuracies.begin(), accuracies.end()));
   return chart;
 }
 
@@ -598,15 +639,12 @@ std::optional<Figure> trade_figure(const Summary& summary) {
     cells.layers.push_back(by_difficulty);
   }
   if (cell_times.empty() && caf_times.empty()) return std::nullopt;
-  const double lowest = std::min(0.45, *std::min_element(accuracies.begin(), accuracies.end()) - 0.03);
   caf.x = report::fitted(words("figure.bin_time"), caf_times, 0.12);
   cells.x = report::fitted(words("figure.correct_time"), cell_times, 0.12);
-  caf.y = cells.y = {words("figure.proportion", words("figure.correct")), lowest, 1.03};
+  caf.y = cells.y = proportion_axis(words("figure.proportion", words("figure.correct")),
+                                    *std::min_element(accuracies.begin(), accuracies.end()));
   Figure figure;
   figure.title = "Speed and accuracy";
-  figure.columns = 2;
-  figure.chart_width_px = 400;
-  figure.chart_height_px = 330;
   figure.caption = of_answers(summary) + " " + words("figure.caption_trade");
   const auto add = [&](Chart chart, const char* caption) {
     figure.charts.push_back(std::move(chart));
@@ -616,7 +654,7 @@ std::optional<Figure> trade_figure(const Summary& summary) {
     add(std::move(*conditions), "figure.caption_conditions");
   if (!caf_times.empty()) add(std::move(caf), "figure.caption_conditional");
   if (!cell_times.empty()) add(std::move(cells), "figure.caption_cells");
-  return figure;
+  return on_page(std::move(figure), 330);
 }
 
 std::optional<Figure> macro_figure(const Summary& summary) {
@@ -629,15 +667,14 @@ std::optional<Figure> macro_figure(const Summary& summary) {
     const int own = series++;
     if (!entry.d_prime || !entry.median_s) continue;
     const auto &time = *entry.median_s, &height = *entry.d_prime;
-    Line across;
-    across.x = {time.interval.low, time.interval.high}, across.y = {height.value, height.value};
+    const Span across{time.interval.low, time.interval.high, height.value, own, true};
     Points point;
     point.add(time.value, height.value, height.interval.low, height.interval.high);
-    across.series = point.series = own;
+    point.series = own;
     point.name = words(name_of(entry.instruction));
     chart.layers.insert(chart.layers.end(), {across, point});
     joined.emplace_back(time.value, height.value);
-    times_s.insert(times_s.end(), across.x.begin(), across.x.end());
+    times_s.insert(times_s.end(), {across.low, across.high});
     heights.insert(heights.end(), {height.interval.low, height.interval.high});
   }
   if (joined.size() < 2) return std::nullopt;
@@ -651,7 +688,7 @@ std::optional<Figure> macro_figure(const Summary& summary) {
   Figure figure;
   figure.title = "Sensitivity against time over the conditions";
   figure.chart_width_px = 560;
-  figure.caption = of_answers(summary) + " " + words("figure.caption_trade");
+  figure.caption = of_answers(summary) + " " + words("figure.caption_macro");
   figure.charts.push_back(std::move(chart));
   return figure;
 }
@@ -662,11 +699,14 @@ std::optional<Figure> roc_figure(const Summary& summary) {
   Figure figure;
   figure.title = "Receiver operating characteristic";
   figure.chart_width_px = 420, figure.chart_height_px = 420;
-  figure.caption = words("figure.caption_roc");
+  std::size_t trials = 0;
   std::string last;
   for (const auto& entry : summary.rocs) {
+    if (!entry.level)
+      for (const auto* counts : {&entry.noise, &entry.signal})
+        trials += static_cast<std::size_t>(std::accumulate(counts->begin(), counts->end(), 0));
     if (figure.charts.empty() || entry.condition != last) {
-      figure.charts.push_back({words(name_of(entry.condition)), {"False alarms", 0, 1}, {"Hits", 0, 1}, {}});
+      figure.charts.push_back({entry.condition, {"False alarms", 0, 1}, {"Hits", 0, 1}, {}});
       last = entry.condition;
     }
     auto& layers = figure.charts.back().layers;
@@ -681,6 +721,7 @@ std::optional<Figure> roc_figure(const Summary& summary) {
     layers.push_back(std::move(line));
     layers.push_back(std::move(points));
   }
+  figure.caption = of_trials(summary.data, trials) + " " + words("figure.caption_roc");
   return figure;
 }
 
@@ -688,6 +729,7 @@ std::optional<Figure> signal_figure(const Summary& summary) {
   const Words words(summary.data.language);
   Chart chart{"", {}, {}, {}};
   std::vector<double> times{0}, heights{0};
+  std::size_t trials = 0;
   int series = 0;
   for (const auto& curve : summary.curves) {
     Points points;
@@ -695,6 +737,8 @@ std::optional<Figure> signal_figure(const Summary& summary) {
     points.series = line.series = series++;
     points.name = line.name = words(name_of(curve.condition));
     for (const auto& point : curve.points) {
+      const auto& [hits, misses, false_alarms, correct_rejections] = point.counts;
+      trials += static_cast<std::size_t>(hits + misses + false_alarms + correct_rejections);
       if (!point.d_prime) continue;
       const auto& interval = point.d_prime->interval;
       points.add(point.time_s, point.d_prime->value, interval.low, interval.high);
@@ -717,7 +761,7 @@ std::optional<Figure> signal_figure(const Summary& summary) {
   Figure figure;
   figure.title = "Sensitivity over time";
   figure.chart_width_px = 560;
-  figure.caption = words("figure.caption_signal");
+  figure.caption = of_trials(summary.data, trials) + " " + words("figure.caption_signal");
   figure.charts.push_back(std::move(chart));
   return figure;
 }

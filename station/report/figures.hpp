@@ -9,8 +9,12 @@ namespace turnpoint::report {
 /// The figures of a report, in the language of its SessionData. Each function returns nullopt if the session
 /// has no data for its figure.
 
+/// What all captions of a session's figures begin with: the protocol, whose trials they are, and how many.
+std::string of_trials(const SessionData& data, std::size_t trials);
+
 /// Plots the proportion of answers at each level with its Wilson interval, and the fitted curve with its
-/// band. The area of a marker is proportional to the number of trials.
+/// band. The area of a marker is proportional to the number of trials. Each of three or more conditions has a
+/// chart of its own, all with the same axes.
 std::optional<Figure> psychometric_figure(const Summary& summary);
 /// Plots the threshold along the second dimension with its band, one panel per procedure and block. Markers
 /// are trials; open markers are answers that were wrong, or not the tracked answer.

@@ -153,7 +153,7 @@ std::optional<Figure> finger_figure(const Summary& summary) {
     if (!chart.layers.empty()) figure.charts.push_back(std::move(chart));
   if (figure.charts.empty()) return std::nullopt;
   const auto trials = summary.finger->trials.size();
-  figure.caption = words("figure.caption_trials", {summary.data.participant, std::to_string(trials)}) + " " +
+  figure.caption = of_trials(summary.data, trials) + " " +
                    words(trials > kMostMarkers ? "figure.caption_finger_means" : "figure.caption_finger");
   return figure;
 }
@@ -196,8 +196,7 @@ std::optional<Figure> friction_figure(const Summary& summary) {
   if (!summary.finger->boundaries.shift_mm.empty()) figure.charts = boundary_charts(summary);
   if (strip) figure.charts.push_back(*strip);
   const Words words(summary.data.language);
-  figure.caption = words("figure.caption_trials",
-                         {summary.data.participant, std::to_string(summary.finger->trials.size())});
+  figure.caption = of_trials(summary.data, summary.finger->trials.size());
   if (!summary.finger->boundaries.shift_mm.empty()) figure.caption += " " + words("figure.caption_boundary");
   if (strip) figure.caption += " " + words("figure.caption_strip");
   return figure;

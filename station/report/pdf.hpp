@@ -10,21 +10,23 @@
 
 namespace turnpoint::report {
 
-/// The outline of a character: how far the next character is from it, and its path. Both are in units of the font size,
-/// with y upwards. The path is written in the operators of PDF: "x y m", "x y l", "x y x y x y c", "h". A character
-/// without a shape has no path.
+/// The outline of a character: how far the next character is from it, and its path. Both are in units of the
+/// font size, with y upwards. The path is written in the operators of PDF: "x y m", "x y l", "x y x y x y c",
+/// "h". A character without a shape has no path.
 using Outline = std::pair<double, std::string>;
 using Outlines = std::function<Outline(char32_t character, bool bold)>;
 
-/// Thrown for letters that a Pdf cannot draw, because their shape depends on their neighbours or they are written from
-/// right to left: Arabic, Hebrew, and the scripts of India.
+/// Thrown for letters that a Pdf cannot draw, because their shape depends on their neighbours or they are
+/// written from right to left: Arabic, Hebrew, and the scripts of India.
 class JoinedLetters : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Builds one PDF document of one page, as large as the figure. Letters are drawn as outlines, each of which is stored
-/// once. The same calls give the same bytes. Throws std::invalid_argument for a coordinate that is not finite.
+/// Builds one PDF document of one page, as large as the figure. It embeds a font (CFF, Adobe Technical Note
+/// 5176) of the letters that it has, so that its text can be selected and searched, and edited in a drawing
+/// program. The same calls give the same bytes. Throws std::invalid_argument for a coordinate that is not
+/// finite.
 class Pdf : public Canvas {
  public:
   explicit Pdf(Outlines outlines) : outlines_(std::move(outlines)) {}
@@ -44,14 +46,17 @@ class Pdf : public Canvas {
 
  private:
   struct Letter {
-    std::string name;  ///< name of the form in the page's resources
-    Outline outline;
+    char32_t character = 0;
+    double advance = 0;   ///< in units of the font size
+    std::string drawing;  ///< as a Type 2 charstring
   };
-  const Letter& letter(char32_t character, bool bold);
+  /// The place in `letters_`: a font has kLettersOfFont of them.
+  std::size_t letter(char32_t character, bool bold);
   void paint(const std::string& path, const Paint& paint, bool closed);
 
   Outlines outlines_;
-  std::map<std::pair<char32_t, bool>, Letter> letters_;
+  std::map<std::pair<char32_t, bool>, std::size_t> places_;
+  std::vector<Letter> letters_;
   std::map<std::string, std::string> opacities_;  ///< name in the page's resources, by the opacity
   std::string body_, title_;
   double width_ = 0, height_ = 0;

@@ -9,7 +9,9 @@ namespace turnpoint::report {
 namespace {
 
 constexpr double kAscent = 9.5, kDescent = 3, kRow = 13, kBesideRule = 4;
-constexpr double kBeside_px = 8;  // between intervals that would lie on each other
+constexpr double kBeside_px = 8;     // between intervals that would lie on each other
+constexpr double kSamePlace_px = 3;  // intervals closer than this lie on each other
+constexpr double kLeastBeside_px = 4;
 constexpr double kArrow_px = 4;
 constexpr double kOver = 6;  // how far lines and markers may extend beyond the frame, in px
 
@@ -20,7 +22,7 @@ Box box_of(const std::string& text, Point at, Anchor anchor) {
 }
 
 RuleLabel label_at(const Rule& rule, Point at, Anchor anchor) {
-  return {rule.label, at, anchor, box_of(rule.label, at, anchor)};
+  return {rule.label, at, anchor, box_of(rule.label, at, anchor), rule.series};
 }
 
 bool is_flat(const Rule& rule) { return rule.direction == Rule::Direction::horizontal; }
@@ -52,10 +54,8 @@ struct Cover {
   }
   void operator()(const Rule& rule) const {
     if (!is_shown(rule, frame)) return;
-    if (is_flat(rule))
-      cover(boxes, frame.at(frame.across->low, rule.at), frame.at(frame.across->high, rule.at), 0.5);
-    else
-      cover(boxes, frame.at(rule.at, frame.up->low), frame.at(rule.at, frame.up->high), 0.5);
+    const auto [from, to] = ends_of(rule, frame);
+    cover(boxes, from, to, 0.5);
   }
   void operator()(const Histogram& bars) const {
     for (std::size_t i = 0; i < bars.heights.size() && i + 1 < bars.edges.size(); ++i) {
@@ -106,7 +106,7 @@ bool on_each_other(const Points& a, const Points& b, const Frame& frame) {
     for (std::size_t j = 0; j < count(b); ++j) {
       if (!drawable(*frame.across, a.x[i]) || !drawable(*frame.across, b.x[j])) continue;
       const double apart_px = frame.at(a.x[i], 0).first - frame.at(b.x[j], 0).first;
-      if (std::abs(apart_px) < 0.5 && meet(a.low[i], a.high[i], b.low[j], b.high[j])) return true;
+      if (std::abs(apart_px) < kSamePlace_px && meet(a.low[i], a.high[i], b.low[j], b.high[j])) return true;
     }
   return false;
 }
@@ -120,7 +120,7 @@ double closest_px(const std::vector<Points*>& all, const Frame& frame) {
   std::sort(places.begin(), places.end());
   double closest = frame.width;
   for (std::size_t i = 1; i < places.size(); ++i)
-    if (places[i] - places[i - 1] >= 0.5) closest = std::min(closest, places[i] - places[i - 1]);
+    if (places[i] - places[i - 1] >= kSamePlace_px) closest = std::min(closest, places[i] - places[i - 1]);
   return closest;
 }
 
@@ -128,6 +128,12 @@ void shift_along(std::vector<double>& x, const Axis& axis, double share) {
   for (double& value : x)
     value = axis.scale == AxisScale::linear ? value + share * (axis.high - axis.low)
                                             : value * std::pow(axis.high / axis.low, share);
+}
+
+/// True if a horizontal interval is that of one of these points.
+bool belongs(const Span& span, const Points& dots) {
+  return span.of_marker && span.series == dots.series &&
+         std::find(dots.y.begin(), dots.y.end(), span.at) != dots.y.end();
 }
 
 void move_points(std::vector<Layer>& layers, const Frame& frame) {
@@ -141,15 +147,36 @@ void move_points(std::vector<Layer>& layers, const Frame& frame) {
       clash.push_back(dots);
   if (clash.size() < 2) return;
   const auto count = static_cast<double>(clash.size());
-  const double step_px = std::min(kBeside_px, 0.6 * closest_px(clash, frame) / count);
+  const double closest = closest_px(clash, frame);
+  // between levels that are close to each other there is no room for the least distance
+  const double least_px = closest < count * kLeastBeside_px ? 0 : kLeastBeside_px;
+  const double step_px = std::clamp(0.6 * closest / count, least_px, kBeside_px);
   for (std::size_t i = 0; i < clash.size(); ++i) {
     const double share = (static_cast<double>(i) - (count - 1) / 2) * step_px / frame.width;
     for (auto& layer : layers)
       if (auto* line = std::get_if<Line>(&layer);
           line != nullptr && line->series == clash[i]->series && line->x == clash[i]->x)
         shift_along(line->x, *frame.across, share);
+    for (auto& layer : layers)
+      if (auto* span = std::get_if<Span>(&layer); span != nullptr && belongs(*span, *clash[i])) {
+        std::vector<double> ends{span->low, span->high};
+        shift_along(ends, *frame.across, share);
+        span->low = ends[0], span->high = ends[1];
+      }
     shift_along(clash[i]->x, *frame.across, share);
   }
+}
+
+/// Moves the point at this height, with its interval and the line through it.
+template <typename Moved>
+void move_point(std::vector<Layer>& layers, Points& dots, double height, const Moved& moved) {
+  const auto i = static_cast<std::size_t>(std::find(dots.y.begin(), dots.y.end(), height) - dots.y.begin());
+  for (auto& layer : layers)
+    if (auto* line = std::get_if<Line>(&layer);
+        line != nullptr && line->series == dots.series && line->x == dots.x && line->y[i] == height)
+      line->y[i] = moved(height);
+  for (auto* list : {&dots.y, &dots.low, &dots.high})
+    if (i < list->size()) (*list)[i] = moved((*list)[i]);
 }
 
 void move_spans(std::vector<Layer>& layers, const Frame& frame) {
@@ -158,15 +185,20 @@ void move_spans(std::vector<Layer>& layers, const Frame& frame) {
     if (auto* span = std::get_if<Span>(&layer)) spans.push_back(span);
   std::vector<Span*> group;
   const auto height = [&](const Span* span) { return frame.at(frame.across->low, span->at).second; };
-  std::sort(spans.begin(), spans.end(),
-            [&](const Span* a, const Span* b) { return height(a) < height(b); });
+  std::sort(spans.begin(), spans.end(), [&](const Span* a, const Span* b) { return height(a) < height(b); });
   const auto spread = [&] {
     for (std::size_t i = 0; i < group.size() && group.size() > 1; ++i) {
       const double off_px =
           (static_cast<double>(i) - (static_cast<double>(group.size()) - 1) / 2) * kBeside_px;
-      std::vector<double> at{group[i]->at};
-      shift_along(at, *frame.up, -off_px / frame.height);
-      group[i]->at = at.front();
+      const auto moved = [&](double old) {
+        std::vector<double> at{old};
+        shift_along(at, *frame.up, -off_px / frame.height);
+        return at.front();
+      };
+      for (auto& layer : layers)
+        if (auto* dots = std::get_if<Points>(&layer); dots != nullptr && belongs(*group[i], *dots))
+          move_point(layers, *dots, group[i]->at, moved);
+      group[i]->at = moved(group[i]->at);
     }
     group.clear();
   };
@@ -192,8 +224,9 @@ std::vector<RuleLabel> places_beside(const Rule& rule, const Frame& frame) {
       for (const double base : {y - kBesideRule, y + 1 + kAscent})
         places.push_back(label_at(rule, {end, base}, Anchor::end));
   } else {
-    const double x = frame.at(rule.at, frame.up->low).first;
-    for (double base = frame.y + 12; base + kDescent <= bottom; base += 0.25 * kRow) {
+    const auto [low, high] = ends_of(rule, frame);
+    const double x = low.first;
+    for (double base = high.second + 12; base + kDescent <= bottom; base += 0.25 * kRow) {
       places.push_back(label_at(rule, {x + kBesideRule, base}, Anchor::start));
       places.push_back(label_at(rule, {x - kBesideRule, base}, Anchor::end));
     }
@@ -288,6 +321,12 @@ bool overlap(const Box& a, const Box& b) {
          b.top < a.bottom - touching;
 }
 
+std::pair<Point, Point> ends_of(const Rule& rule, const Frame& frame) {
+  if (is_flat(rule)) return {frame.at(frame.across->low, rule.at), frame.at(frame.across->high, rule.at)};
+  const double top = rule.until ? std::min(*rule.until, frame.up->high) : frame.up->high;
+  return {frame.at(rule.at, frame.up->low), frame.at(rule.at, top)};
+}
+
 bool is_shown(const Rule& rule, const Frame& frame) {
   const Axis& axis = is_flat(rule) ? *frame.up : *frame.across;
   if (!drawable(axis, rule.at)) return false;
@@ -331,12 +370,16 @@ Labelled place_labels(const Chart& chart, Frame whole, VerticalLabels where, con
                           [&](const RuleLabel& other) { return overlap(other.box, place.box); });
     };
     bool all = true;
-    int rows = 0;
+    // the label of the first rule is the uppermost
+    int rows =
+        static_cast<int>(std::count_if(outside_data.begin(), outside_data.end(), [&](const Rule* rule) {
+          return !is_flat(*rule) && is_shown(*rule, frame);
+        }));
     for (const auto& layer : chart.layers) {
       const auto* rule = std::get_if<Rule>(&layer);
       if (rule == nullptr || rule->label.empty() || !is_shown(*rule, frame)) continue;
       if (outside_data.count(rule) > 0) {
-        auto label = outside(*rule, frame, is_flat(*rule) ? 0 : rows++);
+        auto label = outside(*rule, frame, is_flat(*rule) ? 0 : --rows);
         while (!free(label)) label = lower(std::move(label));
         result.labels.push_back(std::move(label));
         continue;

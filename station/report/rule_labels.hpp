@@ -28,9 +28,13 @@ struct Shown {
 /// Returns the shown part of an interval; nullopt if the axis shows nothing of it, or an end is not a number.
 std::optional<Shown> shown(const Axis& axis, double low, double high);
 
-/// Moves intervals of several series that would lie on each other beside each other: those of points to the side, those
-/// of a Span up and down. A line through the same points moves with them.
+/// Moves intervals of several series that would lie on each other beside each other: those of points to the
+/// side, those of a Span up and down. A line through the same points moves with them, and so do both
+/// intervals of a point.
 std::vector<Layer> beside(const Chart& chart, const Frame& frame);
+
+/// The two ends of a rule in px.
+std::pair<Point, Point> ends_of(const Rule& rule, const Frame& frame);
 
 /// False if the rule lies outside the chart's axes.
 bool is_shown(const Rule& rule, const Frame& frame);
@@ -60,6 +64,7 @@ struct RuleLabel {
   Point at;
   Anchor anchor = Anchor::start;
   Box box;
+  int series = kNeutral;
 };
 
 /// The labels of the chart's rules (reference lines), and the frame that remains for the data. A label stands

@@ -847,6 +847,7 @@ Document document(const Summary& summary) {
   document.title = data.title;
   document.name = data.title + ", " + data.participant;
   document.run_mode = data.run_mode;
+  document.language = data.language;
   document.about = "Participant " + Text(data.participant, Look::strong) + ", session " + data.session_id +
                    ", " + data.status;
   document.facts(data.facts);

@@ -151,7 +151,7 @@ void add_measures(const Summary& summary, StudyPerson& person) {
     }
   for (const auto& entry : summary.rocs) {
     if (entry.level) continue;
-    measures.add(entry.condition, "area under the ROC", "", std::optional(entry.roc.area.value));
+    measures.add(entry.condition, analysis::kRocArea, "", std::optional(entry.roc.area.value));
     if (entry.equal)
       measures.add(entry.condition, "d' of ratings", "", std::optional(entry.equal->sensitivity));
     if (!entry.unequal) continue;

@@ -115,7 +115,8 @@ void add_effects(const Study& study, Document& document) {
   document.table(std::move(table));
   document.explain(
       "Each participant counts once, with estimates from the participant\u2019s own trials. 95 % intervals "
-      "of means: Student\u2019s t. Effects within participants: Student\u2019s t of the participants\u2019 "
+      "of means: Student\u2019s t, of proportions on the logit scale. Effects within participants: "
+      "Student\u2019s t of the participants\u2019 "
       "differences, in standard deviations of these differences (d" +
       Text("z", Look::below) +
       "). Effects between groups: Welch\u2019s t of the difference of the means, in pooled standard "

@@ -3,7 +3,9 @@
 #include <map>
 
 #include "station/analysis/student.hpp"
+#include "station/core/letters.hpp"
 #include "station/report/chart.hpp"
+#include "station/report/psychometric_parts.hpp"
 #include "station/report/study.hpp"
 #include "station/report/words.hpp"
 
@@ -11,31 +13,20 @@ namespace turnpoint::report {
 
 namespace {
 
-Line curve_of(const analysis::MixedOptions& options, const analysis::Psychometric& parameters,
-              const Axis& axis, int series) {
-  Line line;
-  line.series = series;
-  for (int i = 0; i <= 80; ++i) {
-    const double share = i / 80.0;
-    const double x = axis.scale == AxisScale::log10 ? axis.low * std::pow(axis.high / axis.low, share)
-                                                    : axis.low + share * (axis.high - axis.low);
-    line.x.push_back(x);
-    line.y.push_back(analysis::probability(options.function, options.scale, parameters, x));
-  }
-  return line;
-}
-
 /// The group's psychometric function, with the mean of the participants' lower asymptotes.
-analysis::Psychometric group_parameters(const analysis::MixedFit& fit) {
+DrawnFunction group_function(const analysis::MixedFit& fit) {
   double guess = 0;
   for (const auto& person : fit.persons)
     guess += person.parameters.guess / static_cast<double>(fit.persons.size());
-  return {fit.threshold->value, fit.slope->value, guess, fit.lapse};
+  return {fit.options.function,
+          fit.options.scale,
+          {fit.threshold->value, fit.slope->value, guess, fit.lapse},
+          fit.options.tied_to_lapse ? 0 : guess};
 }
 
 /// The mean of the participants' proportions, with its interval, at each level that at least three of them
 /// had.
-Points answers_of(const Study& study, const GroupFit& group, int series) {
+Points answers_of(const Study& study, const GroupFit& group) {
   struct Level {
     int trials = 0;
     std::vector<double> shares;
@@ -52,12 +43,11 @@ Points answers_of(const Study& study, const GroupFit& group, int series) {
       }
     }
   Points points;
-  points.series = series;
   points.name = "mean of the participants";
   for (const auto& [at, level] : levels) {
-    const auto mean = level.shares.size() < 3 ? std::nullopt : analysis::student_mean(level.shares);
+    const auto mean = analysis::student_proportion(level.shares);
     if (!mean) continue;
-    points.add(at, mean->value, std::max(0.0, mean->interval.low), std::min(1.0, mean->interval.high));
+    points.add(at, mean->value, mean->interval.low, mean->interval.high);
     points.weight.push_back(level.trials);
   }
   return points;
@@ -76,14 +66,97 @@ std::size_t persons_of(const Study& study) {
                                                 [](const auto& person) { return person.excluded.empty(); }));
 }
 
-std::vector<double> levels_of(const Study& study, std::size_t part) {
+/// The levels of an analysis that participants who count had; in one condition, or in all; of one person, or
+/// of all.
+std::vector<double> levels_of(const Study& study, std::size_t part,
+                              const std::optional<std::string>& condition = {},
+                              const std::optional<std::string>& only = {}) {
   std::vector<double> levels;
   for (const auto& person : study.persons)
     for (const auto& named : person.fits)
       for (const auto& point : named.fit.data)
-        if (named.part == part && person.excluded.empty() && point.level != analysis::kNoise)
+        if (named.part == part && person.excluded.empty() && point.level != analysis::kNoise &&
+            (!condition || named.name == *condition) && (!only || person.person == *only))
           levels.push_back(point.level);
   return levels;
+}
+
+/// What all captions of a study's figures begin with.
+std::string of_study(const Study& study, int trials) {
+  return Words("en")("figure.caption_study",
+                     {study.settings.title, std::to_string(persons_of(study)), std::to_string(trials)}) +
+         " ";
+}
+
+int answered_in(const Study& study) {
+  int answered = 0;
+  for (const auto& person : study.persons)
+    if (person.excluded.empty()) answered += person.answered;
+  return answered;
+}
+
+/// True if the group's function is known.
+bool has_function(const GroupFit& group) { return group.result.fit && group.result.fit->threshold; }
+
+/// The answers and the functions of one condition.
+Chart group_chart(const Study& study, const GroupFit& group) {
+  const Words words("en");
+  const auto& fit = *group.result.fit;
+  const auto& part = analysis_of(group, study.settings);
+  const auto whole = group_function(fit);
+  const auto levels = levels_of(study, group.part, group.condition);
+  const auto [first, last] = std::minmax_element(levels.begin(), levels.end());
+  Chart chart;
+  chart.title = group.condition;
+  chart.x = level_axis(words(part.level_label), levels_of(study, group.part), fit.options.scale);
+  chart.y.label = words("figure.proportion", group.positive);
+  add_chance(chart, part, study.settings.alternatives, "");
+  for (const auto& person : fit.persons) {
+    if (!person.threshold) continue;
+    auto alone = whole;
+    alone.parameters = person.parameters, alone.series = kNeutral, alone.name = "participants";
+    const auto own = levels_of(study, group.part, group.condition, person.person);
+    if (own.empty()) continue;
+    const auto [own_first, own_last] = std::minmax_element(own.begin(), own.end());
+    auto i = chart.layers.size();
+    add_curve(chart, alone, *first, *last, {*own_first, *own_last});
+    for (; i < chart.layers.size(); ++i) std::get<Line>(chart.layers[i]).faint = true;
+  }
+  auto named = whole;
+  named.name = "group";
+  add_curve(chart, named, chart.x.low, chart.x.high, {*first, *last});
+  if (auto answers = answers_of(study, group); !answers.x.empty()) chart.layers.push_back(std::move(answers));
+  add_threshold(chart, whole, &fit.threshold->interval, part, words);
+  return chart;
+}
+
+/// The lowest end of what the charts show.
+double lowest_of(const std::vector<Chart>& charts) {
+  double lowest = 1;
+  const auto add = [&lowest](const std::vector<double>& values) {
+    for (const double value : values) lowest = std::min(lowest, value);
+  };
+  for (const auto& chart : charts)
+    for (const auto& layer : chart.layers) {
+      if (const auto* line = std::get_if<Line>(&layer)) add(line->y);
+      if (const auto* dots = std::get_if<Points>(&layer)) add(dots->y), add(dots->low);
+      if (const auto* rule = std::get_if<Rule>(&layer);
+          rule != nullptr && rule->direction == Rule::Direction::horizontal)
+        lowest = std::min(lowest, rule->at);
+    }
+  return lowest;
+}
+
+/// Gives charts of the same quantity the same vertical axis.
+void share_vertical_axis(std::vector<Chart>& charts, double margin) {
+  const auto own = charts;
+  for (auto& chart : charts) {
+    std::vector<double> ends;
+    for (const auto& other : own)
+      if (other.y.label == chart.y.label && other.y.scale == chart.y.scale)
+        ends.insert(ends.end(), {other.y.low, other.y.high});
+    chart.y = fitted(chart.y.label, ends, margin, chart.y.scale);
+  }
 }
 
 }  // namespace
@@ -91,84 +164,96 @@ std::vector<double> levels_of(const Study& study, std::size_t part) {
 std::optional<Figure> group_curve_figure(const Study& study) {
   Figure figure;
   figure.title = "Psychometric functions of the participants and of the group";
-  figure.columns = study.groups.size() > 1 ? 2 : 1;
-  figure.chart_width_px = study.groups.size() > 1 ? 400 : 620;
-  figure.chart_height_px = 330;
-  int series = -1;
-  for (const auto& group : study.groups) {
-    ++series;
-    if (!group.result.fit || !group.result.fit->threshold) continue;
-    const auto& fit = *group.result.fit;
-    Chart chart;
-    chart.title = core::say(name_of(group.condition), "en");
-    const auto& part = analysis_of(group, study.settings);
-    chart.x =
-        report::fitted(core::say(part.level_label, "en"), levels_of(study, group.part), 0.05,
-                       fit.options.scale == analysis::Scale::log10 ? AxisScale::log10 : AxisScale::linear);
-    chart.y = {"Proportion " + group.positive + " (0 to 1)", -0.03, 1.03};
-    if (part.design == Design::forced_choice) chart.y.low = 0.3;
-    for (const auto& person : fit.persons) {
-      if (!person.threshold) continue;
-      auto alone = curve_of(fit.options, person.parameters, chart.x, report::kNeutral);
-      alone.name = "participants", alone.faint = true;
-      chart.layers.push_back(std::move(alone));
-    }
-    auto whole = curve_of(fit.options, group_parameters(fit), chart.x, series);
-    whole.name = "group";
-    chart.layers.push_back(std::move(whole));
-    if (auto answers = answers_of(study, group, series); !answers.x.empty())
-      chart.layers.push_back(std::move(answers));
-    figure.charts.push_back(std::move(chart));
-  }
+  for (const auto& group : study.groups)
+    if (has_function(group)) figure.charts.push_back(group_chart(study, group));
   if (figure.charts.empty()) return std::nullopt;
-  figure.caption = Words("en")("figure.caption_group",
-                               {std::to_string(persons_of(study)), std::to_string(trials_of(study))});
-  return figure;
+  for (auto& chart : figure.charts)
+    chart.y = proportion_axis(std::move(chart.y.label), lowest_of(figure.charts));
+  figure.caption = of_study(study, trials_of(study)) + Words("en")("figure.caption_group");
+  if (study.settings.design == Design::forced_choice)
+    figure.caption += " " + Words("en")("figure.caption_chance");
+  if (goes_beyond(figure)) figure.caption += " " + Words("en")("figure.caption_beyond");
+  return on_page(std::move(figure), 330);
 }
+
+namespace {
+
+/// The name of an axis of thresholds, with the proportion that they stand for.
+std::string threshold_axis(const GroupFit& group, const LevelAnalysis& part) {
+  auto name = core::phrase(part.design == Design::two_sided ? "report.pse" : "report.threshold");
+  if (part.design == Design::forced_choice)
+    name = core::phrase("figure.threshold_at",
+                        {core::plain(in_percent(criterion(group_function(*group.result.fit))))});
+  auto label = core::say(in_unit(std::move(name), core::plain(part.level_unit)), "en");
+  label[0] = core::upper(label[0]);
+  return label;
+}
+
+/// The thresholds of the participants in one condition, with partial pooling and alone.
+Chart thresholds_chart(const Study& study, const GroupFit& group) {
+  constexpr double apart = 0.13;
+  const auto& fit = *group.result.fit;
+  const auto& part = analysis_of(group, study.settings);
+  Chart chart;
+  Points alone, without_interval, pooled;
+  alone.name = "alone", alone.series = report::kNeutral;
+  without_interval = alone;
+  pooled.name = "partial pooling";
+  std::vector<double> all{fit.threshold->interval.low, fit.threshold->interval.high};
+  double number = 0;
+  for (const auto& person : fit.persons) {
+    ++number;
+    chart.x.names.push_back(person.person);
+    if (person.threshold) {
+      const auto& [low, high, confidence] = person.threshold->interval;
+      pooled.add(number - apart, person.threshold->value, low, high);
+      all.insert(all.end(), {person.threshold->value, low, high});
+    }
+    for (const auto& single : study.persons)
+      for (const auto& named : single.fits) {
+        if (single.person != person.person || named.name != group.condition || !named.fit.parameters)
+          continue;
+        const double at = named.fit.parameters->threshold;
+        const auto& interval = named.intervals.threshold;
+        // the axis cuts what a fit of few answers leaves open
+        auto& own = interval ? alone : without_interval;
+        if (interval)
+          own.add(number + apart, at, interval->interval.low, interval->interval.high);
+        else
+          own.x.push_back(number + apart), own.y.push_back(at);
+        own.open.push_back(true), all.push_back(at);
+      }
+  }
+  chart.title = group.condition;
+  chart.x.label = "Participant", chart.x.low = 0.4, chart.x.high = number + 0.6, chart.x.counts = true;
+  chart.y = fitted(threshold_axis(group, part), all, 0.04,
+                   fit.options.scale == analysis::Scale::log10 ? AxisScale::log10 : AxisScale::linear);
+  const auto& interval = fit.threshold->interval;
+  chart.layers = {Band{{chart.x.low, chart.x.high},
+                       {interval.low, interval.low},
+                       {interval.high, interval.high},
+                       kNeutral,
+                       ""},
+                  Rule{Rule::Direction::horizontal, fit.threshold->value, ""}};
+  for (auto* points : {&alone, &without_interval, &pooled})
+    if (!points->x.empty()) chart.layers.push_back(std::move(*points));
+  return chart;
+}
+
+}  // namespace
 
 std::optional<Figure> shrinkage_figure(const Study& study) {
   Figure figure;
   figure.title = "Thresholds of the participants, alone and with partial pooling";
-  figure.chart_width_px = 620;
-  figure.chart_height_px = 260;
-  int series = -1;
-  for (const auto& group : study.groups) {
-    ++series;
-    if (!group.result.fit || !group.result.fit->threshold) continue;
-    Points alone, pooled;
-    alone.name = "alone", alone.series = report::kNeutral;
-    pooled.name = "partial pooling", pooled.series = series;
-    std::vector<double> all;
-    double number = 0;
-    std::vector<std::string> codes;
-    for (const auto& person : group.result.fit->persons) {
-      ++number;
-      codes.push_back(person.person);
-      if (person.threshold) {
-        const auto& [low, high, confidence] = person.threshold->interval;
-        pooled.add(number, person.threshold->value, low, high);
-        all.insert(all.end(), {person.threshold->value, low, high});
-      }
-      for (const auto& single : study.persons)
-        for (const auto& named : single.fits)
-          if (single.person == person.person && named.name == group.condition && named.fit.parameters) {
-            alone.x.push_back(number + 0.25), alone.y.push_back(named.fit.parameters->threshold);
-            alone.open.push_back(true), all.push_back(alone.y.back());
-          }
-    }
-    if (all.empty()) continue;
-    Chart chart;
-    chart.title = core::say(name_of(group.condition), "en");
-    chart.x = {"Participant", 0.4, number + 0.6, AxisScale::linear, true, codes};
-    chart.y = report::fitted(core::say(analysis_of(group, study.settings).level_label, "en"), all, 0.08);
-    chart.layers.push_back(Rule{Rule::Direction::horizontal, group.result.fit->threshold->value, "group"});
-    chart.layers.push_back(alone);
-    chart.layers.push_back(pooled);
-    figure.charts.push_back(std::move(chart));
-  }
+  for (const auto& group : study.groups)
+    if (has_function(group)) figure.charts.push_back(thresholds_chart(study, group));
   if (figure.charts.empty()) return std::nullopt;
-  figure.caption = Words("en")("figure.caption_shrinkage", std::to_string(persons_of(study)));
-  return figure;
+  share_vertical_axis(figure.charts, 0.01);
+  const bool posterior = study.settings.prior.has_value();
+  const Words words("en");
+  figure.caption = of_study(study, trials_of(study)) +
+                   words("figure.caption_shrinkage", words(posterior ? "figure.credible" : "figure.profile"));
+  return on_page(std::move(figure), 260);
 }
 
 std::optional<Figure> group_trade_figure(const Study& study) {
@@ -194,7 +279,7 @@ std::optional<Figure> group_trade_figure(const Study& study) {
         accuracy = mean_of(analysis::kCorrect, condition);
         time && accuracy) {
       mean.add(time->value, accuracy->value, accuracy->interval.low, accuracy->interval.high);
-      means.push_back(Span{time->interval.low, time->interval.high, accuracy->value, mean.series});
+      means.push_back(Span{time->interval.low, time->interval.high, accuracy->value, mean.series, true});
       means.push_back(mean);
       times.insert(times.end(), {time->interval.low, time->interval.high});
       accuracies.push_back(accuracy->interval.low);
@@ -223,10 +308,10 @@ std::optional<Figure> group_trade_figure(const Study& study) {
   }
   chart.x = report::fitted("Median response time (s)", times, 0.1);
   const double lowest = *std::min_element(accuracies.begin(), accuracies.end());
-  chart.y = {"Proportion correct (0 to 1)", std::min(0.45, lowest - 0.03), 1.03};
+  chart.y = proportion_axis("Proportion correct (0 to 1)", lowest);
   Figure figure;
   figure.title = "Speed and accuracy of each participant";
-  figure.caption = Words("en")("figure.caption_persons", std::to_string(persons_of(study)));
+  figure.caption = of_study(study, answered_in(study)) + Words("en")("figure.caption_persons");
   figure.chart_width_px = 620;
   figure.chart_height_px = 330;
   figure.charts.push_back(std::move(chart));
@@ -260,7 +345,7 @@ std::optional<Chart> course_chart(const Study& study, const std::string& heights
         if (time.measure != wanted || time.condition != condition || !time.mean) continue;
         const auto &x = *time.mean, &y = *height.mean;
         points.add(x.value, y.value, y.interval.low, y.interval.high);
-        chart.layers.push_back(Span{x.interval.low, x.interval.high, y.value, points.series});
+        chart.layers.push_back(Span{x.interval.low, x.interval.high, y.value, points.series, true});
         xs.insert(xs.end(), {x.interval.low, x.interval.high});
         ys.insert(ys.end(), {y.interval.low, y.interval.high});
       }
@@ -293,6 +378,7 @@ std::optional<Figure> group_course_figure(const Study& study) {
     auto chart = course_chart(study, heights, times, joins_conditions);
     if (!chart) return;
     chart->title = title, chart->y.label = y;
+    if (heights == analysis::kBinMeasure) chart->y = proportion_axis(y, chart->y.low);
     figure.charts.push_back(std::move(*chart));
   };
   add("Conditional accuracy", "Proportion correct (0 to 1)", analysis::kBinMeasure, kBinTime, false);
@@ -302,11 +388,8 @@ std::optional<Figure> group_course_figure(const Study& study) {
         analysis::kMedianTime, true);
   if (figure.charts.empty()) return std::nullopt;
   figure.title = "Accuracy over time, means of the participants";
-  figure.caption = Words("en")("figure.caption_course", std::to_string(persons_of(study)));
-  figure.columns = figure.charts.size() > 1 ? 2 : 1;
-  figure.chart_width_px = figure.columns > 1 ? 400 : 620;
-  figure.chart_height_px = 330;
-  return figure;
+  figure.caption = of_study(study, answered_in(study)) + Words("en")("figure.caption_course");
+  return on_page(std::move(figure), 330);
 }
 
 }  // namespace turnpoint::report

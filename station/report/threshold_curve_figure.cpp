@@ -63,8 +63,8 @@ std::optional<Figure> threshold_curve_figure(const Summary& summary) {
     trials += curve.trials.size();
   }
   if (figure.charts.empty()) return std::nullopt;
-  figure.caption = words("figure.caption_trials", {summary.data.participant, std::to_string(trials)}) + " " +
-                   words.together({"figure.areas", "figure.caption_posterior"});
+  figure.caption =
+      of_trials(summary.data, trials) + " " + words.together({"figure.areas", "figure.caption_posterior"});
   return figure;
 }
 

@@ -18,9 +18,9 @@ inline core::Phrase second_minus_first(const std::string& first, const std::stri
   return {"", "", {name_of(second), core::plain(" \u2212 "), name_of(first)}};
 }
 
-/// A name with its unit, or with "no unit" if that is empty.
+/// A name with its unit, if it has one.
 inline core::Phrase in_unit(core::Phrase name, core::Phrase unit) {
-  if (unit.empty()) unit = core::phrase("report.no_unit");
+  if (unit.empty()) return name;
   return {"", "", {std::move(name), core::plain(" ("), std::move(unit), core::plain(")")}};
 }
 

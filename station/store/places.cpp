@@ -23,6 +23,14 @@ std::vector<std::int64_t> integers(Statement& rows) {
 
 }  // namespace
 
+std::optional<int> session_done(const SessionRecord& session, const Assignment& assignment) {
+  const bool unfinished = session.status != SessionStatus::running && session.trials > 0;
+  const int number = assignment.sessions == 1 ? 1 : session.start.planned_session.value_or(0);
+  if (session.status != SessionStatus::completed && !(assignment.incomplete_count && unfinished))
+    return std::nullopt;
+  return number >= 1 && number <= assignment.sessions ? std::optional(number) : std::nullopt;
+}
+
 std::vector<Participation> participations(Database& database, const std::string& protocol_id, RunMode mode,
                                           const Assignment& assignment, std::int64_t now_ns) {
   struct Person {
@@ -35,12 +43,8 @@ std::vector<Participation> participations(Database& database, const std::string&
   for (const auto& session : list_sessions(database, {"", "", protocol_id})) {
     if (session.start.run_mode != mode) continue;
     auto& person = persons[session.person];
-    const bool running = session.status == SessionStatus::running;
-    const int number = assignment.sessions == 1 ? 1 : session.start.planned_session.value_or(0);
-    if (session.status == SessionStatus::completed ||
-        (assignment.incomplete_count && !running && session.trials > 0))
-      if (number >= 1 && number <= assignment.sessions) person.done.insert(number);
-    person.running = person.running || running;
+    if (const auto number = session_done(session, assignment)) person.done.insert(*number);
+    person.running = person.running || session.status == SessionStatus::running;
     const std::pair last(session.last_activity_realtime_ns, session.session_id);
     if (last >= person.last) person.last = last, person.place = session.sequence_index;
   }

@@ -10,6 +10,7 @@
 namespace turnpoint::store {
 
 class Database;
+struct SessionRecord;
 
 // Places in the counterbalancing of a protocol. No two participants of a station get the same place, but
 // places whose difference is a multiple of Assignment::rows have the same group and the same orders: they are
@@ -35,6 +36,10 @@ struct Participation {
   std::int64_t place = 0;  ///< place in the counterbalancing, of the newest session
   Progress progress = Progress::expected;
 };
+
+/// Returns the number of the planned session that this session does: 1 if only one is planned. Empty if it is
+/// not done: not completed and, if such sessions count, without trials or still running.
+std::optional<int> session_done(const SessionRecord& session, const Assignment& assignment);
 
 /// Returns how far each participant of a protocol has come at a time. Only sessions of this run mode count.
 /// Several codes of one person count once. The times are those that were recorded: if the clock is behind,

@@ -48,9 +48,10 @@ double stimulus_s(const core::TrialRow& row, int rate_Hz) {
 }  // namespace
 
 LiveView::LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state,
-                   std::string language, OnGauges on_gauges)
+                   std::string language, OnGauges on_gauges, std::shared_ptr<std::atomic<int>> stored)
     : on_state_(std::move(on_state)),
       on_gauges_(std::move(on_gauges)),
+      stored_(std::move(stored)),
       language_(std::move(language)),
       level_(protocol::common_level(protocol).value_or(Words(language_)("figure.level"))),
       asked_(protocol.sensing),
@@ -78,6 +79,7 @@ void LiveView::finger_moved(const std::optional<session::FingerSeen>& finger) {
 }
 
 void LiveView::trial_ended(const trial::TrialSpec& /*spec*/, const core::TrialRow& row) {
+  if (stored_) ++*stored_;
   LiveTrial trial{row, stimulus_s(row, rig_.output.rate_Hz)};
   trial.tones.clear();
   trial.signal_rows.clear();

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -43,9 +44,11 @@ class LiveView : public session::Monitor {
   using OnState = std::function<void(LiveState)>;
   /// Receives the gauges whenever they change. Called on the session thread; must return at once.
   using OnGauges = std::function<void(FingerGauges)>;
-  /// `language` is that of all texts and figures, such as "de".
+  /// `language` is that of all texts and figures, such as "de". `stored` is counted up with each trial that
+  /// is stored.
   LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state,
-           std::string language = "en", OnGauges on_gauges = {});
+           std::string language = "en", OnGauges on_gauges = {},
+           std::shared_ptr<std::atomic<int>> stored = nullptr);
   ~LiveView() override;
 
   void trial_begins(const trial::TrialSpec& spec, const protocol::Block& block,
@@ -80,6 +83,7 @@ class LiveView : public session::Monitor {
 
   OnState on_state_;
   OnGauges on_gauges_;
+  std::shared_ptr<std::atomic<int>> stored_;
   std::optional<FingerGauges> gauges_;  ///< as they were last shown; used on the session thread alone
   std::string language_;
   /// name of the factor that the first procedure varies, or "Level" if there is no procedure

@@ -320,9 +320,14 @@ report::SessionData report_data(const std::string& database, const std::string& 
   return data;
 }
 
-std::optional<protocol::Protocol> newest_protocol(const std::string& path, const std::string& protocol_id) {
+std::optional<protocol::Protocol> newest_protocol(const std::string& path, const std::string& protocol_id,
+                                                  core::RunMode mode, const std::set<std::string>& stations) {
   auto database = store::open_reader(path);
-  const auto sessions = store::list_sessions(database, {"", "", protocol_id});
+  auto sessions = store::list_sessions(database, {"", "", protocol_id});
+  std::erase_if(sessions, [&](const auto& session) {
+    return session.start.run_mode != mode ||
+           (!stations.empty() && stations.count(session.start.station_id) == 0);
+  });
   const auto newest = std::ranges::max_element(sessions, {}, [](const auto& session) {
     return std::pair(session.last_activity_realtime_ns, session.session_id);
   });

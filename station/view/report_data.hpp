@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,9 +24,11 @@ void add_own_estimates(const std::string& database, const store::StoredSession& 
 /// strokes.
 std::vector<analysis::FrictionCurve> curves_of(const session::AlongStrip& along);
 
-/// Returns the protocol of the newest session with this protocol id; empty if there is no session.
-std::optional<protocol::Protocol> newest_protocol(const std::string& database,
-                                                  const std::string& protocol_id);
+/// Returns the protocol of the newest session with this protocol id and run mode at these stations, or at any
+/// if the set is empty. Returns nothing if there is no such session.
+std::optional<protocol::Protocol> newest_protocol(const std::string& database, const std::string& protocol_id,
+                                                  core::RunMode mode,
+                                                  const std::set<std::string>& stations = {});
 
 /// Returns the session to report: the named one or, without a name, the newest session that matches the
 /// filter and has trials. Throws StoreError (missing) if there is none.

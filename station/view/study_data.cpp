@@ -13,6 +13,7 @@
 #include "station/protocol/protocol.hpp"
 #include "station/protocol/visits.hpp"
 #include "station/report/stored_trials.hpp"
+#include "station/store/places.hpp"
 #include "station/store/read.hpp"
 #include "station/view/report_data.hpp"
 
@@ -187,11 +188,12 @@ Counted counted(const std::vector<Found>& sessions, report::SessionCounts& count
   return result;
 }
 
-/// Returns how many different planned sessions these are.
-int sessions_done(const std::vector<Found>& sessions) {
+/// True if a participant with these sessions has done all that are planned.
+bool has_completed(const std::vector<Found>& sessions, const core::Assignment& assignment) {
   std::set<int> numbers;
-  for (const auto& found : sessions) numbers.insert(found.session.start.planned_session.value_or(1));
-  return static_cast<int>(numbers.size());
+  for (const auto& found : sessions)
+    if (const auto number = store::session_done(found.session, assignment)) numbers.insert(*number);
+  return static_cast<int>(numbers.size()) >= assignment.sessions;
 }
 
 report::Study head_of(const StudyChoice& choice, const std::vector<Found>& all, int copies) {
@@ -224,7 +226,10 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
   auto study = head_of(choice, all, copies);
   const auto first = store::read_session(all.front().database, all.front().session.session_id);
   const auto stored = protocol::parse(first.session.start.protocol_text, first.session.start.protocol_path);
-  study.design_rows = protocol::place_count(stored);
+  auto replacing = stored;  // who has completed does not depend on when others are replaced
+  replacing.dropout_after_h = 0;
+  const auto assignment = *protocol::assignment(replacing);
+  study.design_rows = assignment.rows;
   const auto protocol = report::by_group(stored);
   const auto rules = protocol.exclusion.value_or(protocol::Exclusion{});
   study.rules = report::rules_in_words(rules);
@@ -250,7 +255,7 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
     result.early_ends = std::move(early_ends);
     result.group = sessions.front().session.start.group;
     result.row = sessions.back().session.sequence_index % study.design_rows;
-    result.completed = sessions_done(used.sessions) >= protocol::session_count(stored);
+    result.completed = has_completed(sessions, assignment);
     sink(result, data);
     study.persons.push_back(std::move(result));
     data.trials.clear();

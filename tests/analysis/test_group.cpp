@@ -1,4 +1,6 @@
 #include "station/analysis/group.hpp"
+
+#include "station/analysis/trade.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::analysis;
@@ -49,6 +51,32 @@ TEST_CASE("Means count each participant once, and effects only those with both c
   CHECK(means[0].sd == Approx(2.002249).epsilon(1e-6));
   CHECK(means[1].persons == 9);
   CHECK(effects(measures, within)[0].persons == 9);
+}
+
+TEST_CASE("The interval of a mean proportion stays between 0 and 1, and that of other measures is symmetric",
+          "[group]") {
+  std::vector<PersonMeasure> measures;
+  for (const double share : {1.0, 1.0, 1.0, 0.6})
+    for (const char* measure : {kCorrect, "proportion correct in time bin 1 of 5", kRocArea, "d'"})
+      measures.push_back({"P" + std::to_string(measures.size()), "", measure, "", share});
+  for (const auto& mean : group_means(measures)) {
+    INFO(mean.measure);
+    CHECK(mean.mean->value == Approx(0.9));
+    if (mean.measure == "d'") {
+      CHECK(mean.mean->interval.low == Approx(0.9 - 3.182446 * 0.1));
+      CHECK(mean.mean->interval.high == Approx(0.9 + 3.182446 * 0.1));
+    } else {
+      // R: plogis(qlogis(0.9) + c(-1, 1) * qt(0.975, 3) * 0.1 / (0.9 * 0.1))
+      CHECK(mean.mean->interval.low == Approx(0.2077).epsilon(1e-3));
+      CHECK(mean.mean->interval.high == Approx(0.99677).epsilon(1e-4));
+    }
+  }
+  for (const double all : {0.0, 1.0}) {
+    const auto same = group_means(
+        {{"a", "", kCorrect, "", all}, {"b", "", kCorrect, "", all}, {"c", "", kCorrect, "", all}});
+    CHECK(same[0].mean->interval.low == all);
+    CHECK(same[0].mean->interval.high == all);
+  }
 }
 
 TEST_CASE("The effect between groups is that of R's Welch test", "[group]") {

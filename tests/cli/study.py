@@ -383,6 +383,25 @@ class Sessions(unittest.TestCase):
         self.assertEqual([row["expected"] for row in self.listed[0]["places"]], [0, 1])
         self.assertEqual([row["completed"] for row in self.study_json["places"]], [2, 0])
 
+    def test_the_places_of_each_run_mode_are_those_of_its_own_newest_protocol(self):
+        self.places("")
+        with sqlite3.connect(os.path.join(self.folder, "lab.sqlite")) as database:
+            database.execute("DROP TRIGGER session_keeps_its_provenance")  # nobody is here to answer a live session
+            database.execute("UPDATE session SET run_mode = 'live', observer = ''")
+        with open(os.path.join(self.folder, "teams.toml"), encoding="utf-8") as file:
+            text = file.read().replace('"blue"]', '"blue", "green"]')
+        with open(os.path.join(self.folder, "teams.toml"), "w", encoding="utf-8") as file:
+            file.write(text)
+        self.call("run", "teams.toml", "--participant", "P04", "--db", "lab.sqlite", "--observer", "sim", "--seed", "1")
+        listed = json.loads(self.call("sessions", "--db", "lab.sqlite", "--places", "--json"))
+        self.assertEqual({one["run_mode"]: one["different_places"] for one in listed}, {"live": 2, "simulated": 3})
+
+    def test_who_stopped_has_not_completed_although_the_analysis_counts_the_session(self):
+        self.places('[analysis]\nincomplete_sessions = "count"\n')
+        for places in (self.listed[0]["places"], self.study_json["places"]):
+            self.assertEqual([row["completed"] for row in places], [2, 0])
+        self.assertEqual([row["used"] for row in self.study_json["places"]], [2, 0])
+
 
 class OwnEstimates(unittest.TestCase):
     """What adaptive procedures estimate themselves, session by session."""

@@ -166,7 +166,7 @@ int live(const std::string& db, const std::string& station, const std::string& p
 void lease(const std::string& db, const std::string& to, std::int64_t count,
            const std::optional<core::Assignment>& assignment = kFourRows) {
   collector::PushOptions options{db, to, "", "", {{kProtocol, count}}, {}};
-  if (assignment) options.assignments.emplace(kProtocol, *assignment);
+  options.assignment = [&](auto&&...) { return assignment; };
   REQUIRE(collector::push(options).complete());
 }
 
@@ -207,6 +207,27 @@ TEST_CASE("a station replaces the dropouts of another", "[collector]") {
     lease(b, to_b, 1, patient);
     CHECK(live(b, "bench-b", "B2", 0, store::SessionStatus::completed, patient) == 4);
   }
+}
+
+TEST_CASE("the sessions are sent although no place can be leased", "[collector]") {
+  const PostgresServer postgres;
+  const TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  live(db, "bench-a", "A0", 100);
+  collector::PushOptions options{db, postgres.as("station_a"), "", "", {{kProtocol, 2}}, {}};
+  SECTION("because the protocol cannot be read") {
+    options.assignment = [](const auto&, const auto& stations) -> std::optional<core::Assignment> {
+      CHECK(stations == std::set<std::string>{"bench-a"});
+      throw std::runtime_error("cannot be read");
+    };
+    CHECK_THROWS_WITH(collector::push(options), "cannot be read");
+  }
+  SECTION("because the server was not updated") {
+    postgres.admin().query("DROP FUNCTION turnpoint.lease_places(text, bigint, json)");
+    CHECK_THROWS_WITH(collector::push(options),
+                      Catch::Matchers::ContainsSubstring("deploy/collector upgrade"));
+  }
+  CHECK(postgres.admin().query("SELECT 1 FROM turnpoint.session").count() == 1);
 }
 
 TEST_CASE("the server counts and chooses as a station does", "[collector]") {
@@ -300,7 +321,7 @@ TEST_CASE("two stations that enrol at the same time get different places, and ro
     for (int i = 0; i < count; ++i) {
       const bool leaves = static_cast<int>(random() % 100) < leaving_percent;
       collector::PushOptions options{db, postgres.as("station_" + letter), "", "", {{kProtocol, 1}}, {}};
-      options.assignments.emplace(kProtocol, kFourRows);
+      options.assignment = [](auto&&...) { return std::optional(kFourRows); };
       for (int attempt = 0;; ++attempt) {
         try {
           if (std::filesystem::exists(db)) collector::push(options);
@@ -357,7 +378,7 @@ TEST_CASE("a lease that is cut at any place is completed by the next push", "[co
                                    "",
                                    {{kProtocol, 2}},
                                    {}};
-    options.assignments.emplace(kProtocol, kFourRows);
+    options.assignment = [](auto&&...) { return std::optional(kFourRows); };
     try {
       collector::push(options);
     } catch (const collector::ServerError&) {

@@ -212,6 +212,26 @@ TEST_CASE("smoothed sides fall, stay close to the table and are smoothed only on
   CHECK(std::get<TabulatedTaper>(smooth_sides(few).taper).slopes.empty());
 }
 
+TEST_CASE("smoothed sides that end steeply are nowhere narrower than the table's end", "[physics]") {
+  constexpr double w = 0.01;
+  std::vector<TaperPoint> stepped{{0, w}}, curved = stepped;  // and 60 points in 0.6 half-widths
+  for (int i = 1; i <= 60; ++i) {
+    const double u = 0.01 * i;
+    stepped.push_back({u * w, w * (u < 0.1 ? 1 - 9 * u : 0.101 - 0.01 * u)});
+    curved.push_back({u * w, w * std::exp(-u / 0.1)});
+  }
+  for (const auto& points : {stepped, curved}) {
+    Surface s = tabulated(seed_brass(), points);
+    s.length_m = points.back().x_m;
+    validate(s);
+    const Surface smooth = smooth_sides(s);
+    CAPTURE(half_width_m(smooth, s.length_m) / w, points.back().half_width_m / w);
+    REQUIRE(!std::get<TabulatedTaper>(smooth.taper).slopes.empty());
+    CHECK(half_width_m(smooth, s.length_m) >= points.back().half_width_m * (1 - 1e-9));
+    CHECK(half_width_m(narrowed_sides(s, smooth, 20e3), s.length_m) > 0);
+  }
+}
+
 // Rounding would destroy the stiffness of an element as short as this: 28 % of the impedance.
 TEST_CASE("two points as close together as is allowed do not spoil the solution", "[physics]") {
   auto points = noisy_points(50, 0, true, 1);

@@ -308,6 +308,17 @@ def student_mean(values):
     return {"value": mean, "interval": {"low": mean - half, "high": mean + half}}
 
 
+def student_proportion(values):
+    """The same for proportions, on the logit scale by the delta method."""
+    plain = student_mean(values)
+    if plain is None or not 0 < plain["value"] < 1:
+        return plain
+    mean = plain["value"]
+    half = (plain["interval"]["high"] - mean) / (mean * (1 - mean))
+    low, high = (float(special.expit(special.logit(mean) + side * half)) for side in (-1, 1))
+    return {"value": mean, "interval": {"low": low, "high": high}}
+
+
 def scatter(values):
     if len(values) < 3 or numpy.ptp(values) == 0:
         return None
@@ -1430,7 +1441,8 @@ def compare_study(study, sessions, reports):
     for i, entry in enumerate(document["means"]):
         mine = [float(v) for v in values[entry["measure"], entry["condition"]].values()]
         study.same(f"means[{i}].participants", len(mine))
-        study.same(f"means[{i}].mean", student_mean(mine))
+        proportion = entry["measure"].startswith("proportion correct") or entry["measure"] == "area under the ROC"
+        study.same(f"means[{i}].mean", (student_proportion if proportion else student_mean)(mine))
         if len(mine) >= 3:
             study.same(f"means[{i}].sd", numpy.std(mine, ddof=1))
     for i, entry in enumerate(document["effects"]):

@@ -10,6 +10,7 @@
 #include "station/report/figure_files.hpp"
 #include "station/report/figures.hpp"
 #include "station/report/words.hpp"
+#include "tests/report/simulated_report.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/diffusion.hpp"
 
@@ -317,15 +318,10 @@ TEST_CASE("If the answers determined the levels, the report states the posterior
   keep("posterior.svg", shown(figure));
   const auto& layers = figure->charts[0].layers;
   const double threshold = summary.fits[0].fit.parameters->threshold;
-  const auto& fitted = summary.fits[0].fit;
-  const auto height =
-      core::number(std::round(100 * analysis::probability(fitted.options.function, fitted.options.scale,
-                                                          *fitted.parameters, threshold)));
   CHECK(std::any_of(layers.begin(), layers.end(), [&](const auto& layer) {
     const auto* rule = std::get_if<report::Rule>(&layer);
     return rule != nullptr && rule->direction == report::Rule::Direction::vertical && rule->at == threshold &&
-           rule->label ==
-               "threshold " + in_digits(threshold, &found.threshold->interval) + " dB (" + height + " %)";
+           rule->label == "threshold " + in_digits(threshold, &found.threshold->interval) + " dB (81.6 %)";
   }));
   CHECK(std::any_of(layers.begin(), layers.end(), [&](const auto& layer) {
     const auto* span = std::get_if<report::Span>(&layer);
@@ -429,34 +425,102 @@ TEST_CASE("The report has the finger's force, speed and friction only if force c
   CHECK(unfelt.find("Friction along the strip") == std::string::npos);
 }
 
-TEST_CASE("The label of a threshold has the digits of the table and the height of the curve there",
+TEST_CASE("The label of a threshold has the digits of the table, and the criterion that the protocol says",
           "[report]") {
   const auto summary = summarise(speed_accuracy(28));
   const auto svg = render(*psychometric_figure(summary));
   const auto html = to_html(summary);
   for (const auto& named : summary.fits) {
     REQUIRE(named.intervals.threshold);
-    const double at = named.fit.parameters->threshold;
-    const auto digits = in_digits(at, &named.intervals.threshold->interval);
+    const auto digits = in_digits(named.fit.parameters->threshold, &named.intervals.threshold->interval);
     CHECK(html.find(digits + " <span class=\"soft\">[") != std::string::npos);
-    const auto height = core::number(
-        std::round(100 * analysis::probability(named.fit.options.function, named.fit.options.scale,
-                                               *named.fit.parameters, at)));
-    CHECK(svg.find(named.name + " " + digits) != std::string::npos);
-    CHECK(svg.find("(" + height + " %)") != std::string::npos);
+    CHECK(svg.find(named.name + ": PSE " + digits) != std::string::npos);
+    CHECK(svg.find("(50 %)") != std::string::npos);
+  }
+  for (const auto& [name, said] :
+       {std::pair{"friction-2ifc", "81.6 %"}, {"friction-3ifc", "75.5 %"}, {"boundary-constant", "50 %"}}) {
+    const auto data = data_of(shipped(name));
+    INFO(name << ": " << data.meaning);
+    if (data.design == Design::forced_choice)
+      CHECK(data.meaning.find(std::string(said) + " correct") != std::string::npos);
+    CHECK(shown(psychometric_figure(summarise(data))).find("(" + std::string(said) + ")") !=
+          std::string::npos);
   }
 }
 
-TEST_CASE("Every figure of a report has a caption that says whose trials it shows and how many", "[report]") {
-  const auto summary = summarise(speed_accuracy(28));
-  const auto figures = figures_of(document(summary));
-  REQUIRE(figures.size() >= 4);
-  for (const auto& [name, figure] : figures) {
-    INFO(name << ": " << figure.caption);
-    CHECK(figure.caption.find("Participant " + summary.data.participant + ", ") == 0);
-    CHECK(figure.caption.find(" trials.") != std::string::npos);
+TEST_CASE(
+    "Every figure of a report has a caption with the study, the participant, the trials and the kind of each "
+    "interval, which does not repeat its title",
+    "[report]") {
+  for (const char* name :
+       {"friction-2ifc", "speed-accuracy", "response-signal", "friction-rating", "friction-yes-no",
+        "friction-boundary-2d", "boundary-constant", "boundary-adjustment", "friction-pairs"}) {
+    auto data = data_of(shipped(name));
+    data.title = "Study of friction", data.participant = "P07";
+    const auto figures = figures_of(document(summarise(data)));
+    CHECK(!figures.empty());
+    for (const auto& [file, figure] : figures) {
+      INFO(name << ", " << file << ": " << figure.caption);
+      CHECK(figure.caption.starts_with("Study of friction. Participant P07, "));
+      CHECK(figure.caption.find(" trials.") != std::string::npos);
+      CHECK(figure.caption.find(" 0 trials") == std::string::npos);
+      CHECK(figure.caption.find(figure.title) == std::string::npos);
+      bool intervals = false;
+      for (const auto& chart : figure.charts) {
+        CHECK(chart.title != "all trials");
+        CHECK((chart.x.label + chart.y.label).find("no unit") == std::string::npos);
+        for (const auto& layer : chart.layers) {
+          if (const auto* dots = std::get_if<Points>(&layer)) intervals = intervals || !dots->low.empty();
+          intervals = intervals || std::holds_alternative<Band>(layer) || std::holds_alternative<Span>(layer);
+        }
+      }
+      if (!intervals) continue;
+      const char* const kinds[] = {"Wilson",    "Student",  "Gourevitch",     "likelihood",
+                                   "posterior", "credible", "order statistic"};
+      CHECK(std::any_of(std::begin(kinds), std::end(kinds), [&figure = figure](const char* kind) {
+        return figure.caption.find(kind) != std::string::npos;
+      }));
+    }
   }
-  CHECK(psychometric_figure(summary)->caption.find("95 %") != std::string::npos);
+}
+
+TEST_CASE("The caption says if markers are drawn beside each other", "[report]") {
+  for (const auto& [name, figure] : figures_of(document(summarise(speed_accuracy(28))))) {
+    INFO(name);
+    CHECK((figure.caption.find("side by side") != std::string::npos) == has_moved(figure));
+  }
+}
+
+TEST_CASE("Two conditions stand in one chart, and each of more in a chart of its own", "[report]") {
+  auto data = speed_accuracy(28);
+  CHECK(psychometric_figure(summarise(data))->charts.size() == 1);
+  for (auto& trial : data.trials)
+    if (trial.trial_index % 3 == 0) trial.instruction = "neither";
+  const auto figure = *psychometric_figure(summarise(data));
+  REQUIRE(figure.charts.size() == 3);
+  for (const auto& chart : figure.charts) {
+    CHECK(!chart.title.empty());
+    CHECK(chart.x == figure.charts[0].x);
+    CHECK(chart.y == figure.charts[0].y);
+  }
+  // three charts fill a row of two columns
+  for (const auto& [name, every] : figures_of(document(summarise(data))))
+    if (every.charts.size() == 3) {
+      INFO(name);
+      CHECK(for_paper(every, kTwoColumns_mm).columns == 3);
+    }
+  // a whole figure in one column, with a legend or labels, is mostly data
+  CHECK(least_data_px(for_paper(figure, kOneColumn_mm)) >
+        0.45 * for_paper(figure, kOneColumn_mm).chart_width_px);
+}
+
+TEST_CASE("The quantiles of response times are named in a legend, and stand at their probability",
+          "[report]") {
+  const auto figure = quantile_probability_figure(summarise(speed_accuracy(28)));
+  const auto svg = shown(figure);
+  for (const char* name : {"0.1", "0.3", "0.5", "0.7", "0.9"})
+    CHECK(svg.find(">quantile " + std::string(name) + "</text>") != std::string::npos);
+  CHECK(!has_moved(*figure));
 }
 
 TEST_CASE("A number of a report has the digits that its interval determines, and says what is not determined",
@@ -474,15 +538,24 @@ TEST_CASE("A number of a report has the digits that its interval determines, and
   CHECK(shown({2, analysis::Interval{1, endless}, 3, false, false, true}) == "2 [1, \u221e]");
 }
 
-TEST_CASE("A curve ends where its band ends", "[report]") {
+TEST_CASE("A curve ends where its band ends, and is thin and dashed beyond the levels presented",
+          "[report]") {
   const auto summary = summarise(speed_accuracy(28));
   const auto figure = *psychometric_figure(summary);
+  CHECK(figure.caption.find("Thin and dashed") != std::string::npos);
   for (const auto& chart : figure.charts)
-    for (const auto& layer : chart.layers)
-      if (const auto* line = std::get_if<Line>(&layer))
-        for (const auto& other : chart.layers)
-          if (const auto* band = std::get_if<Band>(&other); band != nullptr && band->series == line->series) {
-            CHECK(line->x.front() == Approx(band->x.front()));
-            CHECK(line->x.back() == Approx(band->x.back()));
+    for (const auto& other : chart.layers)
+      if (const auto* band = std::get_if<Band>(&other)) {
+        double low = INFINITY, high = -INFINITY;
+        for (const auto& layer : chart.layers)
+          if (const auto* line = std::get_if<Line>(&layer); line != nullptr && line->series == band->series) {
+            low = std::min(low, line->x.front()), high = std::max(high, line->x.back());
+            if (line->beyond)
+              CHECK((line->x.back() <= -0.4 + 1e-9 || line->x.front() >= 0.4 - 1e-9));
+            else
+              CHECK((line->x.front() == Approx(-0.4) && line->x.back() == Approx(0.4)));
           }
+        CHECK(low == Approx(band->x.front()));
+        CHECK(high == Approx(band->x.back()));
+      }
 }

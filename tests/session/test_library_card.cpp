@@ -253,11 +253,11 @@ TEST_CASE(
   CHECK(summary.status == (completes ? core::SessionStatus::completed : core::SessionStatus::interrupted));
   if (change == Change::level)
     CHECK(events[0].value ==
-          std::string("the control \"Digital Playback Volume\" of the sound card is at 207, 180; "
+          std::string("the control \"Digital Playback Volume\" of the sound device is at 207, 180; "
                       "during the calibration it was at 207, 207") +
               (continues ? "; continued: set back by hand" : ""));
   if (change == Change::muted)
-    CHECK(events[0].value.find("\"Speaker Switch\" of the sound card is at off") != std::string::npos);
+    CHECK(events[0].value.find("\"Speaker Switch\" of the sound device is at off") != std::string::npos);
   if (!completes) CHECK(summary.reason.find("mixer: ") == 0);
   card.controls.clear();
 }
@@ -310,18 +310,18 @@ TEST_CASE("the mixer's levels belong to a calibration", "[session][alsa][mixer]"
     card.controls[0].values = {207, 180};
     CHECK(check().verdict == core::Verdict::failed);
     CHECK(check().what ==
-          "the control \"Digital Playback Volume\" of the sound card is at 207, 180; during the "
+          "the control \"Digital Playback Volume\" of the sound device is at 207, 180; during the "
           "calibration it was at 207, 207");
   }
   SECTION("a switch and a choice that were changed are named too") {
     card.controls[1].values = {1, 0}, card.controls[2].values = {0, 0};
-    CHECK(check().what.find("\"Auto Mute Switch\" of the sound card is at on;") != std::string::npos);
-    CHECK(check().what.find("\"Output\" of the sound card is at Line;") != std::string::npos);
+    CHECK(check().what.find("\"Auto Mute Switch\" of the sound device is at on;") != std::string::npos);
+    CHECK(check().what.find("\"Output\" of the sound device is at Line;") != std::string::npos);
   }
   SECTION("a control that is gone is named") {
     card.controls.erase(card.controls.begin());
     CHECK(check().what ==
-          "the control \"Digital Playback Volume\" of the sound card cannot be read; during the "
+          "the control \"Digital Playback Volume\" of the sound device cannot be read; during the "
           "calibration it was at 207, 207");
   }
   SECTION("a calibration is not continued with other levels") {

@@ -20,21 +20,6 @@ namespace {
 /// report, the amplifier guard switches the amplifier off.
 constexpr int kLife_ms = 250;
 
-/// The operator's view of a session, which also counts the trials that are stored.
-class CountingView final : public view::LiveView {
- public:
-  template <class... Arguments>
-  explicit CountingView(std::shared_ptr<std::atomic<int>> stored, Arguments&&... arguments)
-      : LiveView(std::forward<Arguments>(arguments)...), stored_(std::move(stored)) {}
-  void trial_ended(const trial::TrialSpec& spec, const core::TrialRow& row) override {
-    ++*stored_;
-    LiveView::trial_ended(spec, row);
-  }
-
- private:
-  std::shared_ptr<std::atomic<int>> stored_;
-};
-
 /// True for pages on which a late frame would matter, so that late frames are counted.
 bool is_trial(PageModel::Kind kind) {
   using Kind = PageModel::Kind;
@@ -96,9 +81,9 @@ void SessionRunner::begin(session::Setup setup, const std::string& language) {
   bridge_.show(empty);
   live_.take(std::optional<view::FingerGauges>{});
   *stored_ = 0;
-  view_ = std::make_unique<CountingView>(
-      stored_, setup_.protocol, setup_.rig, [this](view::LiveState state) { live_.take(std::move(state)); },
-      language_, [this](view::FingerGauges gauges) { live_.take(std::optional(std::move(gauges))); });
+  view_ = std::make_unique<view::LiveView>(
+      setup_.protocol, setup_.rig, [this](view::LiveState state) { live_.take(std::move(state)); }, language_,
+      [this](view::FingerGauges gauges) { live_.take(std::optional(std::move(gauges))); }, stored_);
   inputs_.page_alive(system::monotonic_ns());
   life_.start(kLife_ms);
   thread_ = std::jthread([this] { run(); });
@@ -114,6 +99,7 @@ void SessionRunner::run() {
     show_failure();
   }
   over_ = true;
+  *stored_ = -1;
   try {
     if (summary_ && summary_->trials > 0 && !leaving_)
       report_.take(view::report_pages(summary_->database, summary_->session_id, language_));
@@ -167,8 +153,9 @@ std::function<std::string()> SessionRunner::kept() const {
   return [stored = stored_] {
     if (*stored < 0) return std::string("no session was running");
     return fmt::format(
-        "trials of the session that are stored: {}; later answers are lost; `turnpoint resume` continues the "
-        "session",
+        "trials stored since the session began or was resumed: {}; later answers are lost; `turnpoint "
+        "resume` "
+        "continues the session",
         stored->load());
   };
 }

@@ -46,8 +46,8 @@ class SessionRunner : public QObject {
   bool running() const { return thread_.joinable() && !over_; }
   void ask_to_stop();
 
-  /// Says how many trials of the last session are stored. The function that is returned may be called on any
-  /// thread, also after this object is gone.
+  /// Says how many trials of the running session are stored. The function that is returned may be called on
+  /// any thread, also after this object is gone.
   std::function<std::string()> kept() const;
 
   /// Waits for the session's end and returns its summary; empty if no session was begun. Throws the exception
@@ -78,7 +78,7 @@ class SessionRunner : public QObject {
   std::exception_ptr failure_;
   std::atomic<bool> over_ = false;
   std::atomic<bool> leaving_ = false;  ///< the program ends, so nobody will read a report
-  /// trials of the last session that are stored; -1 if there was no session
+  /// stored since the session began or was resumed; -1 if none is running
   std::shared_ptr<std::atomic<int>> stored_ = std::make_shared<std::atomic<int>>(-1);
   // The last member, so that the thread is joined before anything that it uses is destroyed.
   std::jthread thread_;
