@@ -476,6 +476,38 @@ TEST_CASE("A horizontal interval stays on its marker when it is moved", "[plot]"
   CHECK(!has_moved(one_chart(chart)));
 }
 
+TEST_CASE("No marker is drawn above the largest possible value", "[plot]") {
+  Chart chart;
+  chart.x = {"Time", 0, 4};
+  chart.y = {"Proportion", 0.5, 1.03};
+  chart.y.most = 1;
+  const auto heights = [&chart] {
+    std::vector<double> flat;
+    for (const auto& line : svg_geometry::elements(render(one_chart(chart)), "line"))
+      for (const int series : {0, 1})
+        if (svg_geometry::attribute(line, "stroke") == style(series).colour &&
+            svg_geometry::number(line, "x1") + 50 < svg_geometry::number(line, "x2"))
+          flat.push_back(svg_geometry::number(line, "y1"));
+    return flat;
+  };
+  const auto place = [&chart](double first, double second) {
+    chart.layers.clear();
+    for (const int series : {0, 1}) {
+      const double x = series == 0 ? first : second;
+      chart.layers.push_back(Points{{x}, {1}, {0.9}, {1}, {}, {}, series, "c" + std::to_string(series)});
+      chart.layers.push_back(Span{x - 0.5, x + 0.5, 1, series, true});
+    }
+  };
+  place(1, 3);
+  REQUIRE(heights().size() == 2);
+  CHECK(!has_moved(one_chart(chart)));
+  const double at_one = heights()[0];
+  place(2, 2);
+  REQUIRE(heights().size() == 2);
+  CHECK(has_moved(one_chart(chart)));
+  for (const double height : heights()) CHECK(height >= at_one - 0.01);
+}
+
 TEST_CASE("A marker stays where it is when the interval of a threshold at its height is moved", "[plot]") {
   auto chart = two_conditions(0.3, 0.7);
   const auto middle = [&chart](int series) {
