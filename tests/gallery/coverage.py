@@ -64,9 +64,9 @@ def largest_of_three(d_prime):
 def one_of_three(threshold, slope, lapse):
     """Another curve than the fitted one: what is meant are the levels at which it has the same proportions."""
     def right(level):
-        d_prime = math.sqrt(2) * NORMAL.inv_cdf(two_intervals(level, threshold, slope))
-        return lapse / 3 + (1 - lapse) * largest_of_three(d_prime)
-    return {"75 % point": root(right, 0.75, 0.05, 5)}
+        return largest_of_three(math.sqrt(2) * NORMAL.inv_cdf(two_intervals(level, threshold, slope)))
+    return {"threshold": root(right, 1 - 2 / 3 * math.exp(-1), 0.05, 5),
+            "75 % point": root(right, (0.75 - lapse / 3) / (1 - lapse), 0.05, 5)}
 
 
 def same_as_sample(levels, threshold, slope):
@@ -83,6 +83,8 @@ def same_as_sample(levels, threshold, slope):
         d_prime = math.sqrt(2) * NORMAL.inv_cdf(two_intervals(level, threshold, slope))
         values[f"d', differencing, at {level:g}"] = d_prime
         values[f"d', independent observations, at {level:g}"] = root(independent, differencing(d_prime), 0, 8)
+    values["75 % point"] = root(
+        lambda level: differencing(math.sqrt(2) * NORMAL.inv_cdf(two_intervals(level, threshold, slope))), 0.75, 0.01, 10)
     return values
 
 
@@ -106,15 +108,16 @@ def no_difference(first, second, *measures):
 
 
 BEFORE = {"stimulus before": 0.0, "answer before": 0.0}  # the observer does not remember
+HITS = 2 * NORMAL.inv_cdf(0.75) * 0.2 / 0.15  # d' of points-for-hits
 SPEED = ("boundary", "time outside the decision", "drift")
 
 # file name: observer, generating values
 GALLERY = {
     "points-for-hits": ("sim:threshold=0.15,criterion=0.8,lapse=0", {
         **conditions(("hit points 1", "hit points 3"), {
-            "d' at 0.2": 2 * NORMAL.inv_cdf(0.75) * 0.2 / 0.15, "criterion at 0.2": 0.8 - NORMAL.inv_cdf(0.75) * 0.2 / 0.15,
-            **BEFORE}),
-        **no_difference("hit points 1", "hit points 3", "d'")}),
+            "d' at 0.2": HITS, "criterion at 0.2": 0.8 - HITS / 2, **BEFORE,
+            **diffusion({0.0: NORMAL.cdf(0.8), 0.2: NORMAL.cdf(HITS - 0.8)})}),
+        **no_difference("hit points 1", "hit points 3", "d'", *SPEED)}),
     "delay-after-errors": ("sim:threshold=0.3,lapse=0", {
         **conditions(("penalty 0 s", "penalty 1.5 s"), {**two_sides(0.0, 0.3, 0.0), **diffusion(signed((0.25, 0.5), 0.3))}),
         **no_difference("penalty 0 s", "penalty 1.5 s", *SPEED)}),
@@ -127,14 +130,15 @@ GALLERY = {
     "unforced-three": ("sim:threshold=0.5,slope=1.5,unsure=0.7", one_of_three(0.5, 1.5, 0.02)),
     "reproduction": ("sim:lapse=0", {
         **{f"shown {shown:g} µm: setting": shown for shown in (0.6, 0.9, 1.2, 1.5)}, **BEFORE}),
-    "bisection-spacing": ("sim:threshold=0.25,bias=0.8", two_sides(0.8, 0.25, 0.02)),
+    "bisection-spacing": ("sim:threshold=0.25,bias=-0.1", two_sides(0.8, 0.25, 0.02)),
     "both-hands": ("sim:threshold=0.4,slope=1.5", {
-        **conditions(("left", "right"), curve(0.4, 1.5, 0.02)),
+        **conditions(("left", "right"), {**curve(0.4, 1.5, 0.02), **BEFORE}),
         **no_difference("left", "right", "threshold"), "share of second": 0.5}),
     "tracks-in-passes": ("sim:threshold=0.4,slope=1.5", {**curve(0.4, 1.5, 0.02), "share of second": 0.5}),
     "double-staircase": ("sim:threshold=6,bias=4", two_sides(4.0, 6.0, 0.02)),
     "two-sided-comparison": ("sim:threshold=0.2", {**two_sides(0.0, 0.2, 0.02), **BEFORE, "share of second": 0.5}),
-    "psi-two-intervals": ("sim:threshold=0.4,slope=1.5", {**curve(0.4, 1.5, 0.02), "share of second": 0.5}),
+    "psi-two-intervals": ("sim:threshold=0.4,slope=1.5", {
+        **curve(0.4, 1.5, 0.02), "estimate of psi": curve(0.4, 1.5, 0.02)["threshold"], "share of second": 0.5}),
     "strength-and-time": ("sim:threshold=0.3,lapse=0", {
         **two_sides(0.0, 0.3, 0.0), **diffusion(signed((0.2, 0.4, 0.8), 0.3)), **BEFORE}),
     "match-to-sample": ("sim:threshold=0.6,lapse=0", same_as_sample((0.5, 1.0, 2.0), 0.6, 1.0)),
@@ -184,6 +188,9 @@ def intervals(report):
     for row in report["trial_before"]:
         for key, name in (("previous_stimulus", "stimulus before"), ("previous_answer", "answer before")):
             yield named(row["condition"], name), (row[key] or {}).get("interval")
+    for row in report["estimates"]:
+        if row["parameter"] == "threshold":
+            yield f"estimate of {row['procedure']}", row["interval"]
     if report["bias"]:
         yield "share of second", report["bias"]["interval"]
 
