@@ -133,7 +133,7 @@ GALLERY = {
     "bisection-spacing": ("sim:threshold=0.25,bias=-0.1", two_sides(0.8, 0.25, 0.02)),
     "both-hands": ("sim:threshold=0.4,slope=1.5", {
         **conditions(("left", "right"), {**curve(0.4, 1.5, 0.02), **BEFORE}),
-        **no_difference("left", "right", "threshold"), "share of second": 0.5}),
+        "share of second": 0.5}),
     "tracks-in-passes": ("sim:threshold=0.4,slope=1.5", {**curve(0.4, 1.5, 0.02), "share of second": 0.5}),
     "double-staircase": ("sim:threshold=6,bias=4", two_sides(4.0, 6.0, 0.02)),
     "two-sided-comparison": ("sim:threshold=0.2", {**two_sides(0.0, 0.2, 0.02), **BEFORE, "share of second": 0.5}),
