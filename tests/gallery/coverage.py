@@ -6,7 +6,7 @@ For each protocol (or only those of the files named FILE, such as `quadruples`):
 each with a participant of its own and the observer of the table below, whose parameters are known; `report --json` of each;
 `export`, whose trials must be those that were run. Prints how many of the 95 % intervals contain the generating value.
 
-By default N is 3, and the intervals need only exist. With 50 or more, the exit status is 1 if an interval of any quantity
+By default N is 1, and the intervals need only exist. With 50 or more, the exit status is 1 if an interval of any quantity
 contains its value in less than 86 % of the runs (43 of 50), or those of all together in less than 92 or more than 98 %.
 The generating values are computed here from the observer's parameters (protocols/check-and-power.md), not by the program.
 """
@@ -141,7 +141,7 @@ GALLERY = {
         **curve(0.4, 1.5, 0.02), "estimate of psi": curve(0.4, 1.5, 0.02)["threshold"], "share of second": 0.5}),
     "strength-and-time": ("sim:threshold=0.3,lapse=0", {
         **two_sides(0.0, 0.3, 0.0), **diffusion(signed((0.2, 0.4, 0.8), 0.3)), **BEFORE}),
-    "match-to-sample": ("sim:threshold=0.6,lapse=0", same_as_sample((0.5, 1.0, 2.0), 0.6, 1.0)),
+    "match-to-sample": ("sim:threshold=0.6,lapse=0", {**same_as_sample((0.5, 1.0, 2.0), 0.6, 1.0), **BEFORE}),
     "implicit-standard": ("sim:threshold=0.1,bias=0.03", {**two_sides(1.03, 0.1, 0.02), **BEFORE}),
     "sequential-effects": ("sim:slope=0.6,lapse=0", {"exponent": 0.6, **BEFORE}),
     "stochastic-approximation": ("sim:threshold=0.4,slope=1.5", {**curve(0.4, 1.5, 0.02), "share of second": 0.5}),
@@ -176,8 +176,10 @@ def intervals(report):
             yield named(row["condition"], f"criterion at {row['level']:g}"), (row["criterion"] or {}).get("interval")
     for row in report["discrimination"]:
         if row["level"] is not None:
-            for estimate in row["d_primes"]:
-                yield f"d', {estimate['model']}, at {row['level']:g}", (estimate["d_prime"] or {}).get("interval")
+            for estimate in row["d_prime"]:
+                yield f"d', {estimate['model']}, at {row['level']:g}", estimate["interval"]
+    for row in report.get("judgements") or []:
+        yield named(row["condition"], "exponent"), (row["exponent"] or {}).get("interval")
     for row in report.get("settings") or []:
         yield named(row["condition"], "setting"), (row["mean"] or {}).get("interval")
     for scale in report.get("scales") or []:
@@ -243,7 +245,7 @@ def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("turnpoint")
     options.add_argument("files", nargs="*", metavar="FILE")
-    options.add_argument("--runs", type=int, default=3)
+    options.add_argument("--runs", type=int, default=1)
     options.add_argument("--jobs", type=int, default=1)
     said = options.parse_args()
     shipped = {os.path.basename(path)[:-5] for path in glob.glob(os.path.join(SOURCE, "protocols/gallery/*.toml"))}
@@ -266,7 +268,7 @@ def main():
             for quantity, runs in found.items():
                 there, held = sum(run is not None for run in runs), sum(run is True for run in runs)
                 missing = f", {len(runs) - there} without an interval" if there < len(runs) else ""
-                print(f"{name:25} {quantity:48} {GALLERY[name][1][quantity]:9.4f} {held:3} of {len(runs)}{missing}", flush=True)
+                print(f"{name:25} {quantity:56} {GALLERY[name][1][quantity]:9.4f} {held:3} of {len(runs)}{missing}", flush=True)
                 contained, total = contained + held, total + there
                 if there == 0:
                     faults.append(f"{name}: no report has an interval of {quantity}")
