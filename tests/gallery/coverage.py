@@ -247,7 +247,7 @@ def main():
     options.add_argument("files", nargs="*", metavar="FILE")
     options.add_argument("--runs", type=int, default=1)
     options.add_argument("--jobs", type=int, default=1)
-    said = options.parse_args()
+    said = options.parse_intermixed_args()
     shipped = {os.path.basename(path)[:-5] for path in glob.glob(os.path.join(SOURCE, "protocols/gallery/*.toml"))}
     faults = [f"{name}: has no observer in this program" for name in sorted(shipped - GALLERY.keys())]
     for name in sorted(shipped):
