@@ -81,11 +81,11 @@ void check_sequences(const Reading& reading) {
                            phrase("each participant has only one level of \"%1\"", {plain(factor->name)}),
                            phrase("use a factor whose \"draw\" is not \"per-participant\""));
     for (const auto& source : sources_of(protocol))
-      if (source.block == &sequence->block && source.sets.count(sequence->over) > 0)
+      if (source.block == &sequence->block && source.spec && source.spec->with.count(factor->name) > 0)
         reading.findings.add(
             place,
             phrase("%1 sets \"%2\" in every block of the sequence, so that its blocks are alike",
-                   {source.what, plain(sequence->over)}),
+                   {source.what, plain(factor->name)}),
             phrase("leave the factor to the sequence, or use a [[block]] instead"));
     if (!sequence->one_per_session) continue;
     const auto& listed = sequence->block.audience.sessions;
