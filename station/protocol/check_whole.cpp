@@ -302,17 +302,11 @@ void check_timing(core::TableReader& file, const Reading& reading) {
         table->place, phrase("nothing ends the interval: [timing] has no \"explore_s\""),
         phrase(
             "set it to the longest time that the tones last, in seconds (or set \"duration_s\" in [task])"));
-  if (!one_interval && table->find("explore_s")) {
-    const bool one = protocol.task.kind == TaskKind::single_interval && protocol.task.standard.empty();
+  if (!one_interval && table->find("explore_s"))
     findings.add(
         place("explore_s"),
-        one ? phrase(
-                  "\"explore_s\" does not apply to an interval that lasts for the \"duration_s\" of [task]")
-            : phrase("\"explore_s\" does not apply to a task with several intervals"),
-        one ? phrase("delete one of them: \"explore_s\" lets the answer end the interval, \"duration_s\" has "
-                     "the answer follow it")
-            : phrase("use \"duration_s\" in [task] instead"));
-  }
+        phrase("\"explore_s\" does not apply to intervals that last for the \"duration_s\" of [task]"),
+        phrase("leave it out; a single interval without \"duration_s\" lasts until the answer instead"));
   if (timing.signal && protocol.task.kind == TaskKind::adjustment)
     findings.add(
         place("response_signal"),

@@ -66,7 +66,7 @@ void check_blocks(const Reading& reading) {
   }
 }
 
-/// Reports sequences over a factor of which each participant has only one level or that something in their
+/// Reports sequences over a factor of which each participant has only one level, or that a procedure in their
 /// blocks sets, and sequences with one level per session if the number of sessions differs from the number of
 /// levels.
 void check_sequences(const Reading& reading) {

@@ -98,14 +98,13 @@ void read_intervals(TableReader& reader, Task& task, const Reading& reading) {
 }
 
 void read_times(TableReader& reader, Task& task) {
-  const bool one = explored(task);  // before duration_s is known: one interval
-  if (!one) {
+  if (!explored(task)) {
     task.duration_s = reader.number("duration_s");
     task.gap_s = reader.number("gap_s");
   } else {
-    task.duration_s = reader.maybe_number("duration_s");
+    task.duration_s = reader.maybe_number("duration_s");  // with it, the interval is not explored
   }
-  if (one && task.duration_s && task.kind == TaskKind::adjustment)
+  if (task.duration_s && task.kind == TaskKind::adjustment)
     reader.problem(
         "duration_s",
         phrase("a slider is set for as long as it takes: \"duration_s\" does not apply to \"adjustment\""),
