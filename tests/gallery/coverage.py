@@ -28,6 +28,7 @@ RIG = os.path.join(SOURCE, "deploy/rigs/simulated.toml")
 NORMAL = statistics.NormalDist()
 BOUND, OUTSIDE_S = 0.85, 0.35 + 0.15  # the observer's bound, and residual and travel together
 LOWEST, ALL = 0.86, (0.92, 0.98)
+OPEN = "open"  # an interval without one of its ends says too little to be counted as right
 
 
 # ------------------------------------------------------------------------------------------- generating values
@@ -209,8 +210,8 @@ def run(turnpoint, *words):
 
 
 def measure(turnpoint, name, runs):
-    """Returns, for each quantity of a protocol, one entry a run: whether its interval contains the generating value, or
-    None without an interval."""
+    """Returns, for each quantity of a protocol, one entry a run: whether its interval contains the generating value, OPEN
+    if the interval lacks an end, or None without an interval."""
     path = os.path.join(SOURCE, "protocols/gallery", name + ".toml")
     observer, values = GALLERY[name]
     found = {quantity: [] for quantity in values}
@@ -232,7 +233,7 @@ def measure(turnpoint, name, runs):
                     found[quantity].append(None)
                     continue
                 low, high = interval["low"], interval["high"]
-                found[quantity].append((low is None or low <= value) and (high is None or value <= high))
+                found[quantity].append(OPEN if low is None or high is None else low <= value <= high)
         run(turnpoint, "export", "--db", database, "--out", os.path.join(folder, "export"))
         with open(glob.glob(os.path.join(folder, "export", "*", "trials.csv"))[0], encoding="utf-8", newline="") as file:
             rows = sum(1 for _ in csv.DictReader(file))
@@ -266,10 +267,11 @@ def main():
                 faults.append(str(failure))
                 continue
             for quantity, runs in found.items():
-                there, held = sum(run is not None for run in runs), sum(run is True for run in runs)
+                there, held, ends = sum(run is not None for run in runs), runs.count(True), runs.count(OPEN)
                 missing = f", {len(runs) - there} without an interval" if there < len(runs) else ""
+                missing += f", {ends} without an end" if ends else ""
                 print(f"{name:25} {quantity:56} {GALLERY[name][1][quantity]:9.4f} {held:3} of {len(runs)}{missing}", flush=True)
-                contained, total = contained + held, total + there
+                contained, total = contained + held, total + there - ends
                 if there == 0:
                     faults.append(f"{name}: no report has an interval of {quantity}")
                 elif said.runs >= 50 and held < LOWEST * len(runs):
