@@ -10,7 +10,7 @@ install(PROGRAMS protocols/programs/one_up_two_down.py protocols/programs/carefu
   DESTINATION ${CMAKE_INSTALL_DATADIR}/turnpoint/protocols/programs COMPONENT station)
 # Keep the folder structure of the manuals, so that the links between them work.
 file(GLOB drawings RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS deploy/drawings/*.svg)
-file(GLOB protocol_pages RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS protocols/*.md)
+file(GLOB protocol_pages RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS protocols/*.md protocols/gallery/*.md)
 foreach(manual README.md LICENSE deploy/README.md deploy/boards.md deploy/to-measure.md deploy/rigs/README.md deploy/rigs/keys.md ${drawings} physics/README.md ${protocol_pages}
         station/store/README.md station/analysis/README.md station/collector/README.md station/python/README.md tests/README.md tests/coverage/README.md)
   cmake_path(GET manual PARENT_PATH folder)

@@ -113,7 +113,8 @@ std::vector<Node> fit(const MonotoneCubic& table, const std::vector<Stretch>& st
 }
 
 // Makes the sides fall everywhere, although what is left of noise may let them rise here and there. They stay
-// as wide as the end of the table, which a cubic fitted to a steep end may undershoot, even below zero.
+// as wide as the table's narrowest point, which a cubic fitted to a steep end may undershoot, even below
+// zero.
 TabulatedTaper falling(const std::vector<Stretch>& stretches, const std::vector<Node>& nodes, double least) {
   TabulatedTaper table;
   std::vector<double> lowest, highest;
@@ -146,7 +147,8 @@ Surface smooth_sides(const Surface& surface) {
   const std::vector<Stretch> stretches = divide(taper.table());
   if (std::ranges::all_of(stretches, &Stretch::kept)) return surface;
   Surface smooth = surface;
-  smooth.taper = falling(stretches, fit(taper.table(), stretches), table->points.back().half_width_m);
+  const double least = std::ranges::min(table->points, {}, &TaperPoint::half_width_m).half_width_m;
+  smooth.taper = falling(stretches, fit(taper.table(), stretches), least);
   return smooth;
 }
 

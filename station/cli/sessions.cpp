@@ -2,7 +2,6 @@
 #include <fmt/ostream.h>
 
 #include <cmath>
-#include <limits>
 #include <map>
 #include <memory>
 #include <set>
@@ -83,10 +82,7 @@ Design design_of(const std::string& path, const std::string& protocol_id, core::
   const auto protocol = view::newest_protocol(path, protocol_id, mode);
   Design design{protocol_id, mode, {}, {}};
   if (!protocol) return design;
-  auto counted = *protocol;
-  // without [assignment], nobody is ever a dropout
-  if (!counted.dropout_after_h) counted.dropout_after_h = std::numeric_limits<double>::infinity();
-  design.assignment = *protocol::assignment(counted);
+  design.assignment = protocol::design(*protocol);
   if (design.assignment.rows <= 100)
     for (int row = 0; row < design.assignment.rows; ++row) design.rows[row];
   auto reader = store::open_reader(path);

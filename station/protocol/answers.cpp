@@ -233,7 +233,7 @@ procedure::Answer learned_from(const procedure::Spec& spec, const std::string& r
 }
 
 bool explored(const Task& task) {
-  return (task.kind == TaskKind::single_interval && task.standard.empty()) ||
+  return (task.kind == TaskKind::single_interval && task.standard.empty() && !task.duration_s) ||
          task.kind == TaskKind::adjustment;
 }
 

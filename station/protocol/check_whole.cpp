@@ -303,8 +303,10 @@ void check_timing(core::TableReader& file, const Reading& reading) {
         phrase(
             "set it to the longest time that the tones last, in seconds (or set \"duration_s\" in [task])"));
   if (!one_interval && table->find("explore_s"))
-    findings.add(place("explore_s"), phrase("\"explore_s\" does not apply to a task with several intervals"),
-                 phrase("use \"duration_s\" in [task] instead"));
+    findings.add(
+        place("explore_s"),
+        phrase("\"explore_s\" does not apply to intervals that last for the \"duration_s\" of [task]"),
+        phrase("leave it out; a single interval without \"duration_s\" lasts until the answer instead"));
   if (timing.signal && protocol.task.kind == TaskKind::adjustment)
     findings.add(
         place("response_signal"),

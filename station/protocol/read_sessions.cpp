@@ -66,8 +66,9 @@ void check_blocks(const Reading& reading) {
   }
 }
 
-/// Reports sequences over a factor of which each participant has only one level, and sequences with one level
-/// per session if the number of sessions differs from the number of levels.
+/// Reports sequences over a factor of which each participant has only one level, or that a procedure in their
+/// blocks sets, and sequences with one level per session if the number of sessions differs from the number of
+/// levels.
 void check_sequences(const Reading& reading) {
   const auto& protocol = reading.protocol;
   for (const auto& part : protocol.plan) {
@@ -79,6 +80,13 @@ void check_sequences(const Reading& reading) {
       reading.findings.add(place,
                            phrase("each participant has only one level of \"%1\"", {plain(factor->name)}),
                            phrase("use a factor whose \"draw\" is not \"per-participant\""));
+    for (const auto& source : sources_of(protocol))
+      if (source.block == &sequence->block && source.spec && source.spec->with.count(factor->name) > 0)
+        reading.findings.add(
+            place,
+            phrase("%1 sets \"%2\" in every block of the sequence, so that its blocks are alike",
+                   {source.what, plain(factor->name)}),
+            phrase("leave the factor to the sequence, or use a [[block]] instead"));
     if (!sequence->one_per_session) continue;
     const auto& listed = sequence->block.audience.sessions;
     const auto sessions = listed.empty() ? session_count(protocol) : static_cast<int>(listed.size());

@@ -102,8 +102,13 @@ void read_times(TableReader& reader, Task& task) {
     task.duration_s = reader.number("duration_s");
     task.gap_s = reader.number("gap_s");
   } else {
-    task.duration_s = reader.maybe_number("duration_s");
+    task.duration_s = reader.maybe_number("duration_s");  // with it, the interval is not explored
   }
+  if (task.duration_s && task.kind == TaskKind::adjustment)
+    reader.problem(
+        "duration_s",
+        phrase("a slider is set for as long as it takes: \"duration_s\" does not apply to \"adjustment\""),
+        phrase("set \"explore_s\" in [timing] to the longest time that the tones last"));
   const auto sequence = [](const auto& interval) { return interval.size() > 1; };
   const bool change = std::any_of(task.intervals.begin(), task.intervals.end(), sequence);
   if (change) {

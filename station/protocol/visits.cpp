@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 
 #include "station/protocol/conditions.hpp"
@@ -61,10 +62,13 @@ int place_count(const Protocol& protocol) {
   return static_cast<int>(std::min<std::int64_t>(orders * group_count(protocol), kMostPlaces));
 }
 
+core::Assignment design(const Protocol& protocol) {
+  return {protocol.dropout_after_h.value_or(std::numeric_limits<double>::infinity()), place_count(protocol),
+          session_count(protocol), protocol.sessions && protocol.sessions->incomplete == Unfinished::count};
+}
+
 std::optional<core::Assignment> assignment(const Protocol& protocol) {
-  if (!protocol.dropout_after_h) return std::nullopt;
-  return core::Assignment{*protocol.dropout_after_h, place_count(protocol), session_count(protocol),
-                          protocol.sessions && protocol.sessions->incomplete == Unfinished::count};
+  return protocol.dropout_after_h ? std::optional(design(protocol)) : std::nullopt;
 }
 
 int session_count(const Protocol& protocol) { return protocol.sessions ? protocol.sessions->count : 1; }

@@ -28,6 +28,10 @@ std::vector<std::string> group_names(const Protocol& protocol);
 /// session has more levels than there are sessions.
 int place_count(const Protocol& protocol);
 
+/// The rows of the design and what a participant does to complete; if nobody is replaced, with an infinite
+/// time.
+core::Assignment design(const Protocol& protocol);
+
 /// How the protocol replaces participants who drop out; empty if it does not.
 std::optional<core::Assignment> assignment(const Protocol& protocol);
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,10 @@ struct Axis {
   bool counts = false;  ///< true if only whole numbers get a tick; for a linear axis
   /// Names of the places 1, 2, 3, ... of the axis, such as participants' codes. They are its only ticks.
   std::vector<std::string> names = {};
+
+  /// No value can be above this, such as 1 for a proportion; a marker that is drawn beside another stays
+  /// below.
+  double most = std::numeric_limits<double>::infinity();
 
   bool operator==(const Axis&) const = default;
 };

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "station/core/number.hpp"
+#include "station/report/figure_files.hpp"
 
 namespace turnpoint::report {
 
@@ -56,7 +57,10 @@ void Document::table(Table added) {
 
 void Document::figure(const std::string& file, std::optional<Figure> drawn) {
   if (!drawn) return;
-  if (has_moved(*drawn)) drawn->caption += " " + Words(language)("figure.caption_beside");
+  // the files for a paper have the same caption
+  if (has_moved(*drawn) || has_moved(for_paper(*drawn, kOneColumn_mm)) ||
+      has_moved(for_paper(*drawn, kTwoColumns_mm)))
+    drawn->caption += " " + Words(language)("figure.caption_beside");
   parts.push_back(NamedFigure{file, std::move(*drawn)});
 }
 

@@ -12,9 +12,11 @@ namespace turnpoint::report {
 namespace {
 
 constexpr double kPixelsPerMm = 96 / 25.4;
-/// A figure of several rows is not made higher than this, unless legends and labels need it: a page of a
-/// journal is about 230 mm high, with the caption.
+/// A figure of several rows is not made higher than this, unless legends and labels need it.
 constexpr double kHighest_mm = 180;
+/// A page of a journal is about 230 mm high. A figure that would be higher, or whose data would be lower than
+/// this, gets more charts beside each other, as long as they are wide enough.
+constexpr double kPage_mm = 230, kLowest_px = 60, kNarrowest_px = 150;
 
 /// Writes the rows of one chart.
 struct Rows {
@@ -92,15 +94,15 @@ std::string data_csv(const Figure& figure) {
   return csv;
 }
 
-Figure for_paper(Figure figure, double width_mm) {
-  figure.caption.clear();
-  const double width_px = width_mm * kPixelsPerMm;
-  const bool narrow = width_mm < 120;
+namespace {
+
+/// Lays a figure out in this width with this many charts beside each other.
+Figure in_columns(Figure figure, double width_px, int columns) {
   const double shape = std::clamp(figure.chart_height_px / figure.chart_width_px, 0.62, 1.0);
-  figure.columns = narrow ? 1 : columns_for(figure, width_px);
-  figure.chart_width_px = width_px / figure.columns;
+  figure.columns = columns;
+  figure.chart_width_px = width_px / columns;
   const auto charts = static_cast<int>(figure.charts.size());
-  const int rows = (charts + figure.columns - 1) / figure.columns;
+  const int rows = (charts + columns - 1) / columns;
   // titles, legends and axes take as much height in a narrow chart as in a wide one
   const double wanted_px = figure.chart_width_px * shape + (figure.chart_width_px < 400 ? 50 : 0);
   const double share_px = kHighest_mm * kPixelsPerMm / rows;
@@ -109,6 +111,21 @@ Figure for_paper(Figure figure, double width_mm) {
   const double least_px = std::min(0.45 * figure.chart_width_px, 0.5 * share_px);
   for (int i = 0; i < 40 && least_data_px(figure) < least_px; ++i) figure.chart_height_px += 10;
   return figure;
+}
+
+}  // namespace
+
+Figure for_paper(Figure figure, double width_mm) {
+  figure.caption.clear();
+  const double width_px = width_mm * kPixelsPerMm;
+  int columns = width_mm < 120 ? 1 : columns_for(figure, width_px);
+  auto laid_out = in_columns(figure, width_px, columns);
+  const auto flat = [&] {
+    return size_px(laid_out).second > kPage_mm * kPixelsPerMm || least_data_px(laid_out) < kLowest_px;
+  };
+  while (columns < std::ssize(figure.charts) && flat() && width_px / (columns + 1) >= kNarrowest_px)
+    laid_out = in_columns(figure, width_px, ++columns);
+  return laid_out;
 }
 
 std::vector<FigureFile> figure_files(const NamedFigure& named, const PdfOf& pdf_of) {

@@ -84,16 +84,6 @@ const char* curve_caption(core::Function function) {
   return "figure.caption_weibull";
 }
 
-/// True if a line across a chart has no label.
-bool has_silent_chance(const Figure& figure) {
-  return std::any_of(figure.charts.begin(), figure.charts.end(), [](const Chart& chart) {
-    return std::any_of(chart.layers.begin(), chart.layers.end(), [](const Layer& layer) {
-      const auto* rule = std::get_if<Rule>(&layer);
-      return rule != nullptr && rule->label.empty();
-    });
-  });
-}
-
 std::string psychometric_caption(const Summary& summary, const Figure& figure) {
   const Words words(summary.data.language);
   std::size_t trials = 0;

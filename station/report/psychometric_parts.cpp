@@ -6,7 +6,9 @@
 namespace turnpoint::report {
 
 Axis proportion_axis(std::string label, double lowest) {
-  return {std::move(label), std::clamp(lowest - 0.03, -0.03, 0.45), 1.03};
+  Axis axis{std::move(label), std::clamp(lowest - 0.03, -0.03, 0.45), 1.03};
+  axis.most = 1;
+  return axis;
 }
 
 Axis level_axis(std::string label, const std::vector<double>& levels, analysis::Scale scale) {
@@ -62,6 +64,15 @@ void add_threshold(Chart& chart, const DrawnFunction& drawn, const analysis::Int
 void add_chance(Chart& chart, const LevelAnalysis& data, int alternatives, const std::string& label) {
   if (data.design == Design::forced_choice)
     chart.layers.push_back(Rule{Rule::Direction::horizontal, 1.0 / alternatives, label});
+}
+
+bool has_silent_chance(const Figure& figure) {
+  return std::any_of(figure.charts.begin(), figure.charts.end(), [](const Chart& chart) {
+    return std::any_of(chart.layers.begin(), chart.layers.end(), [](const Layer& layer) {
+      const auto* rule = std::get_if<Rule>(&layer);
+      return rule != nullptr && rule->label.empty();
+    });
+  });
 }
 
 bool goes_beyond(const Figure& figure) {

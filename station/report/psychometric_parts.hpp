@@ -49,6 +49,9 @@ void add_threshold(Chart& chart, const DrawnFunction& drawn, const analysis::Int
 /// with several charts says what it is, because a label would take room from the data of some of them.
 void add_chance(Chart& chart, const LevelAnalysis& data, int alternatives, const std::string& label);
 
+/// True if a chart of the figure has a rule without a label, such as that of chance.
+bool has_silent_chance(const Figure& figure);
+
 /// True if a chart of the figure has a curve beyond the levels presented.
 bool goes_beyond(const Figure& figure);
 

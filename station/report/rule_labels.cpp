@@ -193,7 +193,7 @@ void move_spans(std::vector<Layer>& layers, const Frame& frame) {
       const auto moved = [&](double old) {
         std::vector<double> at{old};
         shift_along(at, *frame.up, -off_px / frame.height);
-        return at.front();
+        return std::min(at.front(), std::max(old, frame.up->most));
       };
       for (auto& layer : layers)
         if (auto* dots = std::get_if<Points>(&layer); dots != nullptr && belongs(*group[i], *dots))

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
+#include <string>
 
 #include "station/analysis/student.hpp"
 #include "station/core/letters.hpp"
@@ -53,17 +55,25 @@ Points answers_of(const Study& study, const GroupFit& group) {
   return points;
 }
 
-int trials_of(const Study& study) {
-  int trials = 0;
-  for (const auto& group : study.groups)
-    if (group.result.fit)
-      for (const auto& person : group.result.fit->persons) trials += person.trials;
-  return trials;
-}
+/// True if the group's function is known.
+bool has_function(const GroupFit& group) { return group.result.fit && group.result.fit->threshold; }
 
-std::size_t persons_of(const Study& study) {
-  return static_cast<std::size_t>(std::count_if(study.persons.begin(), study.persons.end(),
-                                                [](const auto& person) { return person.excluded.empty(); }));
+/// How many participants and trials a figure shows.
+struct Counted {
+  std::size_t persons = 0;
+  int trials = 0;
+};
+
+/// Those behind the functions of the groups.
+Counted in_groups(const Study& study) {
+  Counted counted;
+  std::set<std::string> persons;
+  for (const auto& group : study.groups)
+    if (has_function(group))
+      for (const auto& person : group.result.fit->persons)
+        persons.insert(person.person), counted.trials += person.trials;
+  counted.persons = persons.size();
+  return counted;
 }
 
 /// The levels of an analysis that participants who count had; in one condition, or in all; of one person, or
@@ -82,21 +92,19 @@ std::vector<double> levels_of(const Study& study, std::size_t part,
 }
 
 /// What all captions of a study's figures begin with.
-std::string of_study(const Study& study, int trials) {
+std::string of_study(const Study& study, const Counted& counted) {
   return Words("en")("figure.caption_study",
-                     {study.settings.title, std::to_string(persons_of(study)), std::to_string(trials)}) +
+                     {study.settings.title, std::to_string(counted.persons), std::to_string(counted.trials)}) +
          " ";
 }
 
-int answered_in(const Study& study) {
-  int answered = 0;
+/// All who are not excluded, with their answers.
+Counted in_study(const Study& study) {
+  Counted counted;
   for (const auto& person : study.persons)
-    if (person.excluded.empty()) answered += person.answered;
-  return answered;
+    if (person.excluded.empty()) ++counted.persons, counted.trials += person.answered;
+  return counted;
 }
-
-/// True if the group's function is known.
-bool has_function(const GroupFit& group) { return group.result.fit && group.result.fit->threshold; }
 
 /// The answers and the functions of one condition.
 Chart group_chart(const Study& study, const GroupFit& group) {
@@ -169,9 +177,8 @@ std::optional<Figure> group_curve_figure(const Study& study) {
   if (figure.charts.empty()) return std::nullopt;
   for (auto& chart : figure.charts)
     chart.y = proportion_axis(std::move(chart.y.label), lowest_of(figure.charts));
-  figure.caption = of_study(study, trials_of(study)) + Words("en")("figure.caption_group");
-  if (study.settings.design == Design::forced_choice)
-    figure.caption += " " + Words("en")("figure.caption_chance");
+  figure.caption = of_study(study, in_groups(study)) + Words("en")("figure.caption_group");
+  if (has_silent_chance(figure)) figure.caption += " " + Words("en")("figure.caption_chance");
   if (goes_beyond(figure)) figure.caption += " " + Words("en")("figure.caption_beyond");
   return on_page(std::move(figure), 330);
 }
@@ -251,7 +258,7 @@ std::optional<Figure> shrinkage_figure(const Study& study) {
   share_vertical_axis(figure.charts, 0.01);
   const bool posterior = study.settings.prior.has_value();
   const Words words("en");
-  figure.caption = of_study(study, trials_of(study)) +
+  figure.caption = of_study(study, in_groups(study)) +
                    words("figure.caption_shrinkage", words(posterior ? "figure.credible" : "figure.profile"));
   return on_page(std::move(figure), 260);
 }
@@ -311,7 +318,7 @@ std::optional<Figure> group_trade_figure(const Study& study) {
   chart.y = proportion_axis("Proportion correct (0 to 1)", lowest);
   Figure figure;
   figure.title = "Speed and accuracy of each participant";
-  figure.caption = of_study(study, answered_in(study)) + Words("en")("figure.caption_persons");
+  figure.caption = of_study(study, in_study(study)) + Words("en")("figure.caption_persons");
   figure.chart_width_px = 620;
   figure.chart_height_px = 330;
   figure.charts.push_back(std::move(chart));
@@ -388,7 +395,7 @@ std::optional<Figure> group_course_figure(const Study& study) {
         analysis::kMedianTime, true);
   if (figure.charts.empty()) return std::nullopt;
   figure.title = "Accuracy over time, means of the participants";
-  figure.caption = of_study(study, answered_in(study)) + Words("en")("figure.caption_course");
+  figure.caption = of_study(study, in_study(study)) + Words("en")("figure.caption_course");
   return on_page(std::move(figure), 330);
 }
 

@@ -226,10 +226,8 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
   auto study = head_of(choice, all, copies);
   const auto first = store::read_session(all.front().database, all.front().session.session_id);
   const auto stored = protocol::parse(first.session.start.protocol_text, first.session.start.protocol_path);
-  auto replacing = stored;  // who has completed does not depend on when others are replaced
-  replacing.dropout_after_h = 0;
-  const auto assignment = *protocol::assignment(replacing);
-  study.design_rows = assignment.rows;
+  const auto design = protocol::design(stored);
+  study.design_rows = design.rows;
   const auto protocol = report::by_group(stored);
   const auto rules = protocol.exclusion.value_or(protocol::Exclusion{});
   study.rules = report::rules_in_words(rules);
@@ -255,7 +253,7 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
     result.early_ends = std::move(early_ends);
     result.group = sessions.front().session.start.group;
     result.row = sessions.back().session.sequence_index % study.design_rows;
-    result.completed = has_completed(sessions, assignment);
+    result.completed = has_completed(sessions, design);
     sink(result, data);
     study.persons.push_back(std::move(result));
     data.trials.clear();

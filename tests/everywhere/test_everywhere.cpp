@@ -152,7 +152,7 @@ constexpr Recorded kSessions[] = {
     {"response-signal-flash", "ef371dbbfaebe6ce", "5d99f9739e94ada6"},
     {"friction-rating", "293a46da12ce06a1", "4932411790c12386"},
     {"two-spots-oddity", "d84ae5fc63983e76", "b2d2fee42b03d1aa"},
-    {"bisection", "ae550ca70047cc3d", "8bff4d2e1e217462"},
+    {"bisection", "ae550ca70047cc3d", "5d4c6fea31190aa4"},
     {"matching", "671daafb56301337", "6b2912f4e02cfe2d"},
     {"cross-modal-matching", "0c39d187fabe8c6d", "58ae8ed91a523391"},
     {"magnitude-production", "1d495d0acb183b2d", "91e68fcc91fcfc60"},

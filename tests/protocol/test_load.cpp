@@ -35,13 +35,14 @@ std::string instruction(const protocol::Block& block) {
 
 TEST_CASE("every shipped protocol loads, and no two have the same id", "[protocol]") {
   std::map<std::string, std::string> ids;
-  for (const auto& entry : fs::directory_iterator(shipped)) {
-    if (entry.path().extension() != ".toml") continue;
-    INFO(entry.path().string());
-    const auto protocol = protocol::load(entry.path().string());
-    CHECK(protocol.id == entry.path().stem().string());
-    CHECK(ids.emplace(protocol.id, protocol.path).second);
-  }
+  for (const auto* folder : {"", "gallery"})
+    for (const auto& entry : fs::directory_iterator(shipped + folder)) {
+      if (entry.path().extension() != ".toml") continue;
+      INFO(entry.path().string());
+      const auto protocol = protocol::load(entry.path().string());
+      CHECK(protocol.id == entry.path().stem().string());
+      CHECK(ids.emplace(protocol.id, protocol.path).second);
+    }
   CHECK(ids.size() >= 10);
 }
 

@@ -39,17 +39,18 @@ rig::Rig with_cells(rig::Rig rig) {
 }
 
 void check_shipped(const rig::Rig& rig) {
-  for (const auto& entry : fs::directory_iterator(root + "/protocols")) {
-    if (entry.path().extension() != ".toml") continue;
-    INFO(entry.path().string());
-    const auto protocol = protocol::load(entry.path().string());
-    const bool more = protocol.sensing || protocol.task.sound == protocol::Sound::masking_noise;
-    const auto survey = protocol::survey(protocol, more ? with_cells(rig) : rig);
-    CHECK(all_of(survey.problems) == "");
-    CHECK(all_of(survey.warnings) == "");
-    CHECK_FALSE(survey.sights.empty());
-    for (const auto& sight : survey.sights) CHECK(sight.inside_tolerance);
-  }
+  for (const auto* folder : {"/protocols", "/protocols/gallery"})
+    for (const auto& entry : fs::directory_iterator(root + folder)) {
+      if (entry.path().extension() != ".toml") continue;
+      INFO(entry.path().string());
+      const auto protocol = protocol::load(entry.path().string());
+      const bool more = protocol.sensing || protocol.task.sound == protocol::Sound::masking_noise;
+      const auto survey = protocol::survey(protocol, more ? with_cells(rig) : rig);
+      CHECK(all_of(survey.problems) == "");
+      CHECK(all_of(survey.warnings) == "");
+      CHECK_FALSE(survey.sights.empty());
+      for (const auto& sight : survey.sights) CHECK(sight.inside_tolerance);
+    }
 }
 
 }  // namespace

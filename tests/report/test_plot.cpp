@@ -1,3 +1,8 @@
+#include <ft2build.h>
+#include FT_FREETYPE_H
+#include FT_OUTLINE_H
+
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -10,6 +15,7 @@
 #include "station/report/palette.hpp"
 #include "station/report/pdf.hpp"
 #include "station/report/svg.hpp"
+#include "station/system/fonts.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/svg_geometry.hpp"
 
@@ -440,6 +446,12 @@ TEST_CASE(
     }
     for (int charts = 2; charts <= 6; ++charts)
       CHECK(size_px(for_paper(panels(charts), width_mm)).second <= 200 * 96 / 25.4);
+    for (int charts = 7; charts <= 18; ++charts) {
+      CAPTURE(width_mm, charts);
+      const auto figure = for_paper(panels(charts), width_mm);
+      CHECK(size_px(figure).second <= 230 * 96 / 25.4);
+      CHECK(least_data_px(figure) >= (charts <= 10 ? 60 : 35));
+    }
   }
 }
 
@@ -474,6 +486,38 @@ TEST_CASE("A horizontal interval stays on its marker when it is moved", "[plot]"
   CHECK(has_moved(one_chart(chart)));
   chart.layers.resize(2);
   CHECK(!has_moved(one_chart(chart)));
+}
+
+TEST_CASE("No marker is drawn above the largest possible value", "[plot]") {
+  Chart chart;
+  chart.x = {"Time", 0, 4};
+  chart.y = {"Proportion", 0.5, 1.03};
+  chart.y.most = 1;
+  const auto heights = [&chart] {
+    std::vector<double> flat;
+    for (const auto& line : svg_geometry::elements(render(one_chart(chart)), "line"))
+      for (const int series : {0, 1})
+        if (svg_geometry::attribute(line, "stroke") == style(series).colour &&
+            svg_geometry::number(line, "x1") + 50 < svg_geometry::number(line, "x2"))
+          flat.push_back(svg_geometry::number(line, "y1"));
+    return flat;
+  };
+  const auto place = [&chart](double first, double second) {
+    chart.layers.clear();
+    for (const int series : {0, 1}) {
+      const double x = series == 0 ? first : second;
+      chart.layers.push_back(Points{{x}, {1}, {0.9}, {1}, {}, {}, series, "c" + std::to_string(series)});
+      chart.layers.push_back(Span{x - 0.5, x + 0.5, 1, series, true});
+    }
+  };
+  place(1, 3);
+  REQUIRE(heights().size() == 2);
+  CHECK(!has_moved(one_chart(chart)));
+  const double at_one = heights()[0];
+  place(2, 2);
+  REQUIRE(heights().size() == 2);
+  CHECK(has_moved(one_chart(chart)));
+  for (const double height : heights()) CHECK(height >= at_one - 0.01);
 }
 
 TEST_CASE("A marker stays where it is when the interval of a threshold at its height is moved", "[plot]") {
@@ -590,6 +634,84 @@ TEST_CASE("The files of a figure are as wide as one and two columns, and have it
     }
     CHECK(objects == 9);  // one font
   }
+}
+
+namespace {
+
+/// The fonts that a PDF embeds.
+std::vector<std::string> fonts_of(const std::string& pdf) {
+  const std::string entry = "/Subtype/Type1C/Length ";
+  std::vector<std::string> fonts;
+  for (auto at = pdf.find(entry); at != std::string::npos; at = pdf.find(entry, at + 1)) {
+    const auto start = pdf.find("stream\n", at) + 7;
+    fonts.push_back(pdf.substr(start, std::stoul(pdf.substr(at + entry.size()))));
+  }
+  return fonts;
+}
+
+/// How many closed curves a path has, and the box of its points in thousandths of the font's size.
+struct Shape {
+  int curves = 0;
+  long left = 0, right = 0, bottom = 0, top = 0;
+  bool operator==(const Shape&) const = default;
+};
+
+Shape shape_of(const std::string& path) {
+  Shape shape;
+  std::vector<long> coordinates[2];
+  std::size_t of = 0;
+  std::istringstream words(path);
+  for (std::string word; words >> word;) {
+    if (word == "m") ++shape.curves;
+    if (std::isalpha(static_cast<unsigned char>(word[0])) == 0)
+      coordinates[of++ % 2].push_back(std::lround(1000 * std::stod(word)));
+  }
+  if (shape.curves == 0) return shape;
+  const auto [left, right] = std::ranges::minmax(coordinates[0]);
+  const auto [bottom, top] = std::ranges::minmax(coordinates[1]);
+  return {shape.curves, left, right, bottom, top};
+}
+
+}  // namespace
+
+TEST_CASE("FreeType reads the letters of a PDF's fonts, each with its width and shape", "[plot]") {
+  std::u32string letters;
+  std::string text;
+  for (char32_t c = U'!'; c < 0x250; ++c) {
+    if (c >= 0x7F && c <= 0xA0) continue;
+    letters += c;
+    if (c < 0x80)
+      text += static_cast<char>(c);
+    else
+      (text += static_cast<char>(0xC0 | (c >> 6U))) += static_cast<char>(0x80 | (c & 63U));
+  }
+  Pdf pdf(turnpoint::system::outline);
+  pdf.begin(100, 100, "letters");
+  pdf.text({0, 50}, text, 10, Anchor::start, "#000000", 400, 0);
+  const auto fonts = fonts_of(pdf.finish());
+  REQUIRE(fonts.size() == 3);
+  FT_Library library = nullptr;
+  REQUIRE(FT_Init_FreeType(&library) == 0);
+  std::size_t at = 0;
+  for (const auto& font : fonts) {
+    FT_Face face = nullptr;
+    REQUIRE(FT_New_Memory_Face(library, reinterpret_cast<const FT_Byte*>(font.data()),
+                               static_cast<FT_Long>(font.size()), 0, &face) == 0);
+    CHECK(face->units_per_EM == 1000);
+    REQUIRE(FT_Select_Charmap(face, FT_ENCODING_ADOBE_CUSTOM) == 0);
+    for (FT_ULong code = 1; code <= 255 && at < letters.size(); ++code, ++at) {
+      CAPTURE(code, static_cast<unsigned>(letters[at]));
+      REQUIRE(FT_Load_Char(face, code, FT_LOAD_NO_SCALE) == 0);
+      const auto [advance, path] = turnpoint::system::outline(letters[at], false);
+      CHECK(face->glyph->metrics.horiAdvance == std::lround(1000 * advance));
+      FT_BBox box;
+      FT_Outline_Get_CBox(&face->glyph->outline, &box);
+      CHECK(Shape{face->glyph->outline.n_contours, box.xMin, box.xMax, box.yMin, box.yMax} == shape_of(path));
+    }
+    FT_Done_Face(face);
+  }
+  FT_Done_FreeType(library);
+  CHECK(at == letters.size());
 }
 
 TEST_CASE("A PDF refuses letters that it would draw in a wrong shape", "[plot]") {

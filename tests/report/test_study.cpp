@@ -118,6 +118,18 @@ TEST_CASE("The figures of a group name the criterion of the threshold and the ch
     }
     CHECK(band);  // the interval of the group
   }
+  auto fewer = study;
+  const auto missing = fewer.persons[2].person;
+  for (auto& one : fewer.groups)
+    std::erase_if(one.result.fit->persons, [&](const auto& person) { return person.person == missing; });
+  CHECK(report::group_curve_figure(fewer)->caption.find("Participants: 2. ") != std::string::npos);
+  for (auto& named : fewer.persons[0].fits) named.intervals.threshold.reset();
+  const auto open_ended = *report::shrinkage_figure(fewer);
+  for (const auto& chart : open_ended.charts)
+    CHECK(std::any_of(chart.layers.begin(), chart.layers.end(), [](const report::Layer& layer) {
+      const auto* dots = std::get_if<report::Points>(&layer);
+      return dots != nullptr && dots->low.empty() && dots->x.size() == 1;
+    }));
 }
 
 TEST_CASE("a study says of how many participants the answers give no scale, and why", "[report]") {

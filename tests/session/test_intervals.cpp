@@ -77,6 +77,16 @@ TEST_CASE("the pause between intervals is exactly the protocol's, to the frame, 
     }
 }
 
+TEST_CASE("a single interval with a length lasts so long in each trial, and the answer follows it",
+          "[session][intervals]") {
+  const auto trials = session_of(shipped("bisection"), kBuffers[1], 0);
+  CHECK(trials.size() == 99);
+  for (const auto& trial : trials) {
+    CHECK(trial.tones.front().length_frames == std::llround(1.5 * 192000));
+    CHECK(trial.timing.response_time_s.value_or(0) > 0);  // after the end
+  }
+}
+
 TEST_CASE("a scene of twenty tones, whose peak must be rendered first, does not lengthen the pause",
           "[session][intervals]") {
   const TemporaryFolder folder;
