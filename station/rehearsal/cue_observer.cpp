@@ -73,7 +73,8 @@ const std::vector<Presentation>& CueObserver::presentations(const protocol::Fact
   const auto combinations = census.combinations(cell);
   for (const auto& factors : combinations)
     for (const auto& order : orders) {
-      const auto correct = order.correct ? order.correct : trial::correct_choice(protocol_.task, factors);
+      const auto correct =
+          order.correct ? order.correct : trial::correct_choice(protocol_.task, factors, order.intervals);
       if (!correct) continue;  // no answer to this trial is right, so the trial does not count
       turn_ += 0.7548776662466927;
       Presentation presentation;

@@ -98,7 +98,7 @@ const Director::State::Left& Director::State::lists_left(const TrialSpec& spec, 
     other.factors = spec.factors;
     for (const auto& candidate : procedures[i]->candidates()) {
       set_proposal(candidate.proposal, from, other.factors);
-      other.correct = correct_choice(protocol.task, other.factors);
+      other.correct = correct_choice(protocol.task, other.factors, orders.front().intervals);
       const auto value = value_of(key, other);
       all[value] += candidate.in_all;
       if (candidate.in_repeat > 0) soon[value] += candidate.in_repeat;

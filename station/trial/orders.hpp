@@ -38,6 +38,6 @@ std::vector<double> friction_table_order(std::span<const double> levels, int rep
 /// Returns the right choice for these factors; empty if none of the task's comparisons is true. If the
 /// comparisons are about scenes (2ifc), it is the place of the right scene in `intervals`.
 std::optional<int> correct_choice(const protocol::Task& task, const protocol::Factors& factors,
-                                  const std::vector<std::vector<std::string>>& intervals = {});
+                                  const std::vector<std::vector<std::string>>& intervals);
 
 }  // namespace turnpoint::trial

@@ -32,7 +32,7 @@ bool asks_for_signal(const protocol::Protocol& protocol) {
   const auto right_at = [&](double level) {
     auto factors = protocol::any_factors(protocol);
     factors[protocol.procedures.front().level] = level;
-    return trial::correct_choice(protocol.task, factors);
+    return trial::correct_choice(protocol.task, factors, trial::orders_of(protocol.task).front().intervals);
   };
   double lowest = 0, highest = 0;
   for (const auto& source : protocol::sources_of(protocol))

@@ -85,8 +85,8 @@ std::vector<Seen> watch(const protocol::Protocol& protocol, World& world) {
       if (const auto found = levels.find(trial.procedure); found != levels.end()) {
         const auto& [factor, values] = found->second;
         trial.factors[factor] = values[random() % values.size()];
-        if (protocol.task.kind == TaskKind::single_interval)
-          trial.correct = trial::correct_choice(protocol.task, trial.factors);
+        if (!protocol.task.correct_answer.empty())
+          trial.correct = trial::correct_choice(protocol.task, trial.factors, trial.intervals);
       }
       if (trial.type != core::TrialType::practice && trial.correct)
         seen.push_back({world.look(trial), *trial.correct});

@@ -98,6 +98,17 @@ TEST_CASE(
   CHECK(report(guard, "always the same key").accuracy == Approx(0.5));
 }
 
+TEST_CASE("the trials of a 2ifc count although the right interval depends on the level", "[cues]") {
+  const auto by_level = [](const std::string& levels) {
+    const auto text = replaced(pair_text, "correct = \"target\"",
+                               "correct = { target = \"level_mm > 0\", standard = \"level_mm <= 0\" }");
+    return guard_of(replaced(text, "values = [4.0, 8.0, 16.0]", "values = " + levels));
+  };
+  // The wider interval is right at every level, and it is wider than the other one.
+  CHECK(report(by_level("[-8.0, 8.0]"), "strip width").accuracy == Approx(1));
+  CHECK(report(by_level("[-8.0, 8.0]"), "duration").accuracy == Approx(0.5));
+}
+
 TEST_CASE("an observer who knows the standard recognises a target that differs from it in either direction",
           "[cues]") {
   const auto both = replaced(pair_text, "values = [4.0, 8.0, 16.0]", "values = [-8.0, 8.0]");
