@@ -22,6 +22,10 @@ using Vector = Eigen::VectorXd;
 constexpr std::size_t kFewestPairs = 50, kFewestSpare = 10;
 /// errors before a counted trial without which `after_error` is left out
 constexpr int kFewestErrors = 5;
+/// points of a curve: the most stimuli that have one each, and the fewest pairs for that; for groups of
+/// stimuli the most and the fewest groups, and the fewest pairs of a group
+constexpr std::size_t kMostStimuli = 12, kFewestOfStimulus = 8, kMostGroups = 7, kFewestGroups = 3,
+                      kFewestOfGroup = 15;
 /// gains in log-likelihood: of a search that has come to rest, and below which only rounding errors could
 /// tell
 constexpr double kRest = 1e-13, kSmall = 1e-8;
@@ -245,8 +249,91 @@ Design design_of(const std::vector<PairOfTrials>& pairs, const DependenceOptions
   return design;
 }
 
+bool is_logistic(const DependenceOptions& options) {
+  return options.answers == Answers::sides || options.answers == Answers::choices;
+}
+
+/// The points of a curve without their shifts, and the number of the point to which each pair belongs.
+struct Grouping {
+  std::vector<AfterStimulus> points;
+  std::vector<std::size_t> point_of;
+};
+
+Grouping grouped(const std::vector<PairOfTrials>& pairs) {
+  std::map<double, std::size_t> counts;
+  for (const auto& pair : pairs) ++counts[pair.before.stimulus];
+  const bool each = counts.size() <= kMostStimuli && std::ranges::all_of(counts, [](const auto& entry) {
+                      return entry.second >= kFewestOfStimulus;
+                    });
+  const auto groups =
+      each ? counts.size() : std::min({kMostGroups, counts.size(), pairs.size() / kFewestOfGroup});
+  if (groups < kFewestGroups) return {};
+  // Equal stimuli stay together: each belongs where the middle of its pairs lies in their order.
+  std::map<double, std::size_t> group_of;
+  std::size_t before = 0;
+  for (const auto& [stimulus, count] : counts) {
+    group_of[stimulus] = each ? group_of.size() : (2 * before + count) * groups / (2 * pairs.size());
+    before += count;
+  }
+  std::map<std::size_t, AfterStimulus> points;  // a stimulus with many pairs can leave a group empty
+  for (const auto& pair : pairs) {
+    auto& point = points[group_of[pair.before.stimulus]];
+    ++point.pairs, point.stimulus += pair.before.stimulus;
+  }
+  Grouping result;
+  std::map<std::size_t, std::size_t> number;
+  for (auto& [group, point] : points) {
+    if (!each && point.pairs < static_cast<int>(kFewestOfGroup)) return {};
+    point.stimulus /= point.pairs;
+    number[group] = result.points.size();
+    result.points.push_back(point);
+  }
+  if (result.points.size() < kFewestGroups) return {};
+  for (const auto& pair : pairs) result.point_of.push_back(number[group_of[pair.before.stimulus]]);
+  return result;
+}
+
+/// The regression of estimate() with a shift for each point of the curve in place of a slope over the
+/// stimulus before. The shifts add up to 0, so a column has 1 for its point and -1 for the last one. The last
+/// point's shift comes from the same regression with another point in its place.
+std::vector<AfterStimulus> curve_of(const std::vector<PairOfTrials>& pairs, const std::vector<double>& values,
+                                    DependenceOptions options) {
+  options.after_error = false;
+  auto grouping = grouped(pairs);
+  auto& points = grouping.points;
+  if (points.empty()) return {};
+  const auto design = design_of(pairs, options);
+  const auto before = std::ranges::find(design.what, &Dependence::previous_stimulus) - design.what.begin();
+  const auto shifts = [&](std::size_t without, std::size_t wanted) -> std::vector<Estimate> {
+    std::vector<std::vector<double>> rows;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      auto& row = rows.emplace_back();
+      const auto own = grouping.point_of[i];
+      for (std::size_t k = 1; k < points.size(); ++k)
+        row.push_back(own == without ? -1 : own == (without + k) % points.size() ? 1 : 0);
+      for (std::size_t k = 0; k < design.rows[i].size(); ++k)
+        if (static_cast<std::ptrdiff_t>(k) != before) row.push_back(design.rows[i][k]);
+    }
+    if (!is_logistic(options)) return linear(rows, values).coefficients;
+    std::vector<bool> choices;
+    for (const double value : values) choices.push_back(value > 0);
+    return penalised_logistic(rows, choices, wanted).coefficients;
+  };
+  const auto last = points.size() - 1;
+  auto found = shifts(last, last);           // those of the points 0 to last - 1
+  const auto of_last = shifts(last - 1, 1);  // begins with that of the last point
+  if (found.size() < last || of_last.empty()) return {};
+  found.resize(last);
+  found.push_back(of_last.front());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!std::isfinite(found[i].interval.low) || !std::isfinite(found[i].interval.high)) return {};
+    points[i].shift = found[i];
+  }
+  return std::move(points);
+}
+
 void estimate(const std::vector<PairOfTrials>& pairs, const DependenceOptions& options, Dependence& into) {
-  const bool logistic = options.answers == Answers::sides || options.answers == Answers::choices;
+  const bool logistic = is_logistic(options);
   auto design = pairs.empty() ? Design{} : design_of(pairs, options);
   const auto columns = design.rows.empty() ? 0 : design.rows.front().size();
   if (const auto fewest = logistic ? kFewestPairs : columns + kFewestSpare; pairs.size() < fewest) {
@@ -275,6 +362,8 @@ void estimate(const std::vector<PairOfTrials>& pairs, const DependenceOptions& o
     into.statements.push_back({"confounded-pairs", core::phrase("statement.confounded_pairs")});
   else if (effects.empty())
     into.statements.push_back({"search-failed", core::phrase("statement.search_failed")});
+  if (into.previous_stimulus && options.answers != Answers::settings)
+    into.curve = curve_of(pairs, values, options);
 }
 
 }  // namespace

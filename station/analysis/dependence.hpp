@@ -30,6 +30,15 @@ struct DependenceOptions {
   bool noise = false;
 };
 
+/// What the answers are after one stimulus before, or after a group of stimuli that are close to each other.
+struct AfterStimulus {
+  double stimulus = 0;  ///< the stimulus before; of a group the mean
+  int pairs = 0;        ///< number of pairs of trials
+  /// how far it shifts the answers from the mean of all such shifts, beyond what the present stimulus and the
+  /// answer before explain, in log odds or in the unit of the answer
+  Estimate shift;
+};
+
 /// How the answers of one condition depend on the trial before, beyond what the present stimulus explains.
 ///
 /// For two choices: a logistic regression of the answer on the present stimulus, on that of the trial before,
@@ -56,6 +65,12 @@ struct Dependence {
   /// how much more a unit of the stimulus weighs after an error than after a right answer, beside a shift of
   /// the answers after errors
   std::optional<Estimate> after_error;
+  /// The serial-dependence curve, which need not be straight as `previous_stimulus` is, in ascending order:
+  /// one entry for each stimulus before, or for each of up to 7 groups of equal size if there are more than
+  /// 12 stimuli or fewer than 8 pairs with one. Empty with fewer than 3 groups of 15 pairs, or if the pairs
+  /// do not determine it, and for settings. For `sides` a stimulus has the sign of its side; for `logarithms`
+  /// it is the logarithm of the level (base 10).
+  std::vector<AfterStimulus> curve;
   std::vector<Statement> statements;
 };
 

@@ -1,7 +1,9 @@
 #include "station/report/figures.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "station/analysis/proportion.hpp"
@@ -369,6 +371,53 @@ std::optional<Figure> scale_figure(const Summary& summary) {
   figure.chart_height_px = 320;
   figure.caption = of_trials(summary.data, count) + " " + words("figure.caption_scale");
   figure.charts.push_back(std::move(chart));
+  return figure;
+}
+
+std::optional<Figure> before_figure(const Summary& summary) {
+  const Words words(summary.data.language);
+  Figure figure;
+  std::size_t count = 0;
+  std::map<std::string, std::array<std::vector<double>, 2>> drawn;  // by the label of the vertical axis
+  for (const auto& entry : summary.dependences) {
+    if (entry.curve.empty()) continue;
+    Chart chart;
+    chart.title = entry.condition.empty() ? entry.analysis : entry.condition;
+    const bool logarithms = entry.how.answers == analysis::Answers::logarithms, ratios = entry.how.decibel;
+    chart.x.label = words("report.previous_stimulus");
+    if (!entry.unit.empty() && !ratios) chart.x.label += " (" + entry.unit + ")";
+    if (logarithms) chart.x.scale = AxisScale::log10;
+    chart.y.label = entry.answer.empty() ? words("figure.shift") : words("figure.shift_of", entry.answer);
+    Points points;
+    Line line;
+    points.series = line.series = static_cast<int>(figure.charts.size());
+    double mean = 0;
+    for (const auto& point : entry.curve) mean += point.stimulus / static_cast<double>(entry.curve.size());
+    for (const auto& point : entry.curve) {
+      count += static_cast<std::size_t>(point.pairs);
+      const double at = logarithms ? std::pow(10, point.stimulus) : point.stimulus;
+      points.add(at, point.shift.value, point.shift.interval.low, point.shift.interval.high);
+      points.weight.push_back(point.pairs);
+      line.x.push_back(at);
+      line.y.push_back(entry.previous_stimulus->value * (point.stimulus - mean));
+    }
+    auto& [x, y] = drawn[chart.y.label];
+    x.insert(x.end(), points.x.begin(), points.x.end());
+    for (const auto* ends : {&points.low, &points.high, &line.y})
+      y.insert(y.end(), ends->begin(), ends->end());
+    chart.layers = {Rule{Rule::Direction::horizontal, 0, ""}, line, points};
+    figure.charts.push_back(std::move(chart));
+  }
+  if (figure.charts.empty()) return std::nullopt;
+  for (auto& chart : figure.charts) {
+    const auto& [x, y] = drawn[chart.y.label];
+    chart.x = report::fitted(chart.x.label, x, 0.06, chart.x.scale);
+    chart.y = report::fitted(chart.y.label, y, 0.08);
+  }
+  figure.title = "The answer after each stimulus";
+  figure.chart_width_px = 620;
+  figure.chart_height_px = 320;
+  figure.caption = of_trials(summary.data, count) + " " + words("figure.caption_before");
   return figure;
 }
 

@@ -37,6 +37,9 @@ std::optional<Figure> vibration_figure(const Summary& summary);
 std::optional<Figure> signal_figure(const Summary& summary);
 /// Plots hits against false alarms for each degree of confidence, with one curve for each level.
 std::optional<Figure> roc_figure(const Summary& summary);
+/// Plots the serial-dependence curves: how far each stimulus before shifts the answer, with intervals, and
+/// the straight line of the regression, in one chart for each condition.
+std::optional<Figure> before_figure(const Summary& summary);
 /// Plots the share of each answer by stimulus, in one chart for each condition.
 std::optional<Figure> confusion_figure(const Summary& summary);
 /// Plots accuracy against response time in two panels: the conditional accuracy functions, and one point for

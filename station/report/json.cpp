@@ -327,6 +327,9 @@ Json dependence_json(const analysis::Dependence& entry) {
     json[row.key] = value(found);
     if (found) json[row.key]["p"] = value(found->p);
   }
+  json["curve"] = list_of(entry.curve, [](const auto& point) -> Json {
+    return {{"stimulus", point.stimulus}, {"pairs", point.pairs}, {"shift", value(point.shift)}};
+  });
   json["statements"] = value(entry.statements);
   return json;
 }

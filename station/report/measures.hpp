@@ -51,11 +51,14 @@ inline constexpr Measure<Touched> kFinger[] = {
     {"mu_high", "report.friction_rough", &Touched::mu_high, "", "", false, "", true},
     {"felt_minus_planned_mm", "figure.felt", &Touched::shift_mm, "", "", false, "", true}};
 
+inline constexpr const char *kStimulusBefore = "effect of the stimulus before",
+                            *kAnswerBefore = "effect of the answer before";
+
 using Before = analysis::Dependence;
 inline constexpr Measure<Before> kBefore[] = {
     {"stimulus", "report.present_stimulus", &Before::stimulus},
-    {"previous_stimulus", "report.previous_stimulus", &Before::previous_stimulus},
-    {"previous_answer", "report.previous_answer", &Before::previous_answer},
+    {"previous_stimulus", "report.previous_stimulus", &Before::previous_stimulus, kStimulusBefore},
+    {"previous_answer", "report.previous_answer", &Before::previous_answer, kAnswerBefore},
     {"after_error", "report.after_error", &Before::after_error}};
 
 }  // namespace turnpoint::report

@@ -708,6 +708,7 @@ void add_before(const Summary& summary, Document& document) {
   const auto& entries = summary.dependences;
   if (entries.empty()) return;
   document.heading(phrase("report.trial_before"));
+  document.figure("trial-before", before_figure(summary));
   auto table = table_of(entries, &analysis::Dependence::condition);
   for (const auto& row : kBefore)
     if (std::any_of(entries.begin(), entries.end(), [&](const auto& one) { return one.*row.value; }))

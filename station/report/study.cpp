@@ -173,6 +173,11 @@ void add_measures(const Summary& summary, StudyPerson& person) {
       measures.add(curve.condition, kLagTime + at, "s", std::optional(point.time_s));
     }
   }
+  for (const auto& entry : summary.dependences)
+    for (const auto& row : kBefore)
+      if (*row.name != '\0')
+        measures.add(entry.condition, row.name + (entry.analysis.empty() ? "" : " of " + entry.analysis),
+                     row.unit, entry.*row.value);
   // With several procedures, name the procedure too: a measure can have only one value in each condition.
   for (const auto& settings : summary.settings) {
     const auto condition = settings.condition.empty() || summary.settings.size() == 1

@@ -119,6 +119,37 @@ std::vector<TrialRecord> numbers(turnpoint::core::Draws& draws) {
   });
 }
 
+/// 2IFC with a staircase, two down and one up, whose levels follow the answers.
+std::vector<TrialRecord> staircase(turnpoint::core::Draws& draws) {
+  double before = 0, answer = 0, level = 1;
+  int right = 0;
+  return made(kTrials, [&](TrialRecord& trial) {
+    trial.level = level;
+    trial.right_choice = static_cast<int>(draws.below(2));
+    const double x = *trial.right_choice == 1 ? level : -level;
+    trial.response = draws.uniform() < chance(0.1 + 4 * x + 0.8 * before + 0.5 * answer) ? 1 : 0;
+    trial.correct = trial.response == trial.right_choice;
+    right = *trial.correct ? right + 1 : 0;
+    if (!*trial.correct) level *= 1.25;
+    if (right == 2) level *= 0.8, right = 0;
+    before = x, answer = *trial.response - 0.5;
+  });
+}
+
+/// The shift after a stimulus before, which grows and falls again (Fischer & Whitney 2014, Nat. Neurosci.
+/// 17:738-743).
+double attraction(double stimulus) { return 2 * stimulus * std::exp(-stimulus * stimulus / 2); }
+
+/// Two answers about seven levels, with a shift that is no straight line.
+std::vector<TrialRecord> attracted(turnpoint::core::Draws& draws) {
+  double past = 0;
+  return made(2 * kTrials, [&](TrialRecord& trial) {
+    trial.level = static_cast<double>(draws.below(7)) - 3;
+    trial.response = draws.uniform() < chance(0.9 * *trial.level + past) ? 1 : 0;
+    past = attraction(*trial.level) + 0.6 * (*trial.response - 0.5);
+  });
+}
+
 /// Settings of a slider to two targets, drawn to its start and to start and setting before.
 std::vector<TrialRecord> settings(turnpoint::core::Draws& draws) {
   double before = 0, start = 0;
@@ -144,6 +175,10 @@ const std::vector<Session> kSessions{
      {Answers::choices, 1, 20, false, true},
      {{"stimulus", 0.5}, {"previous stimulus", 0.1}, {"previous answer", 0.4}, {"after an error", 0}},
      shift_after_errors},
+    {"a staircase",
+     {Answers::sides},
+     {{"stimulus", 4}, {"previous stimulus", 0.8}, {"previous answer", 0.5}},
+     staircase},
     {"same-different",
      {Answers::choices, 1, 0, true, true, true},
      {{"stimulus", 4}, {"previous stimulus", 1.5}, {"previous answer", 0.8}, {"after an error", 0}},
@@ -250,6 +285,62 @@ TEST_CASE("The intervals of the effects of the trial before contain the true val
                   << 100.0 * held[name] / found[name] << " %), mean " << sum[name] / found[name] << " of "
                   << truth << "\n";
     }
+  }
+}
+
+// With the same variables as the test before.
+TEST_CASE("The intervals of the serial-dependence curve contain the true shifts", "[analysis]") {
+  const int sets = number_from("TURNPOINT_DEPENDENCE_SETS", 40),
+            first = number_from("TURNPOINT_DEPENDENCE_FIRST", 0);
+  const bool asked = std::getenv("TURNPOINT_DEPENDENCE_SETS") != nullptr;
+  struct Kind {
+    const char* name;
+    std::vector<TrialRecord> (*trials)(turnpoint::core::Draws&);
+    DependenceOptions options;
+    double (*shift)(double);
+    std::size_t fewest, most;  // points
+  };
+  // A straight line, because the stimuli of a group have the shift of their mean then.
+  const std::vector<Kind> kinds{
+      {"attraction", attracted, {Answers::choices}, attraction, 7, 7},
+      {"two intervals, Weibull, no memory",
+       without_memory,
+       {Answers::sides},
+       [](double) { return 0.0; },
+       10,
+       10},
+      {"a staircase", staircase, {Answers::sides}, [](double x) { return 0.8 * x; }, 4, 7},
+      {"numbers", numbers, {Answers::logarithms}, [](double x) { return -0.1 * x; }, 6, 6}};
+  for (const auto& kind : kinds) {
+    INFO(kind.name);
+    int points = 0, held = 0, curves = 0;
+    double sum = 0, sum_square = 0;
+    for (int set = first; set < first + sets; ++set) {
+      auto draws = draws_of(set);
+      const auto found = serial_dependence(kind.trials(draws), {}, kind.options).at(0);
+      if (found.curve.empty()) continue;
+      ++curves;
+      CHECK(found.curve.size() >= kind.fewest);
+      CHECK(found.curve.size() <= kind.most);
+      double mean = 0, pairs = 0, total = 0;
+      for (const auto& point : found.curve) {
+        mean += kind.shift(point.stimulus) / static_cast<double>(found.curve.size());
+        pairs += point.pairs, total += point.shift.value;
+      }
+      CHECK(pairs == found.pairs);
+      CHECK(total == Approx(0).margin(1e-6));
+      for (const auto& point : found.curve) {
+        const double truth = kind.shift(point.stimulus) - mean;
+        ++points, held += point.shift.interval.low <= truth && truth <= point.shift.interval.high;
+        sum += truth * point.shift.value, sum_square += truth * truth;
+      }
+    }
+    CHECK(curves >= 0.95 * sets);
+    CHECK(held >= (asked ? 0.935 : 0.9) * points);
+    if (sum_square > 0) CHECK(sum / sum_square == Approx(1).margin(0.2));  // the shifts have the right size
+    if (asked)
+      std::cout << kind.name << ", curve: " << held << " of " << points << " (" << 100.0 * held / points
+                << " %), size " << sum / sum_square << ", " << curves << " of " << sets << "\n";
   }
 }
 
