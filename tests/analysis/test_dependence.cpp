@@ -340,7 +340,8 @@ TEST_CASE("The intervals of the serial-dependence curve contain the true shifts"
     if (sum_square > 0) CHECK(sum / sum_square == Approx(1).margin(0.2));  // the shifts have the right size
     if (asked)
       std::cout << kind.name << ", curve: " << held << " of " << points << " (" << 100.0 * held / points
-                << " %), size " << (sum_square > 0 ? sum / sum_square : 1) << ", " << curves << " of " << sets << "\n";
+                << " %), size " << (sum_square > 0 ? sum / sum_square : 1) << ", " << curves << " of " << sets
+                << "\n";
   }
 }
 

@@ -28,15 +28,15 @@ class Maker {
     if (two_scenes_) use("an interval of two scenes");
     marks_ = below(3);  // number of marks; 0 means that the level is the only factor
     if (marks_ > 0) use("a drawn factor");
-    auto text = header() + factors() + scenes() + task() + procedures();
+    auto text = header() + factors() + scenes() + task() + procedures() + blocks();
     // Decided by the seed alone, for the same reason.
-    if (task_ == "2ifc" && seed_ % 4 == 2 && kind_ == "constant-stimuli") {
+    if (task_ == "2ifc" && (seed_ % 4 == 2 || seed_ % 8 == 4) && kind_ == "constant-stimuli") {
       use("the right interval depends on the level");
       const std::string target = "correct = \"target\"";
       text.replace(text.find(target), target.size(),
                    "correct = { target = \"level_mm > 5\", standard = \"level_mm <= 5\" }");
     }
-    return text + blocks();
+    return text;
   }
 
  private:

@@ -21,7 +21,7 @@ const report::Figure* figure_in(const view::ReportPages& pages, const std::strin
   return nullptr;
 }
 
-std::string value_of(const view::ReportPages& pages, const std::string& label, const char* language = "en") {
+std::string value_in(const view::ReportPages& pages, const std::string& label, const char* language = "en") {
   for (const auto& section : pages.sections)
     for (const auto& [name, value] : section.facts)
       if (core::say(name, language) == label) return core::say(value, language);
@@ -36,8 +36,8 @@ TEST_CASE("the report on the screen has the numbers and figures of the speed-acc
   session::Inputs inputs;
   const auto summary = session::run(session::prepare(demo_in(folder)), nullptr, inputs);
   const auto pages = view::report_pages(summary.database, summary.session_id);
-  CHECK(value_of(pages, "Presented") == "10");
-  CHECK_FALSE(value_of(pages, "Proportion correct (0 to 1)").empty());
+  CHECK(value_in(pages, "Presented") == "10");
+  CHECK_FALSE(value_in(pages, "Proportion correct (0 to 1)").empty());
   CHECK(figure_in(pages, "levels") != nullptr);
   CHECK(core::say(pages.sections.back().heading, "en") == "The station");
 }
@@ -79,8 +79,8 @@ TEST_CASE("tables and figures of the report on the screen are in the language of
     return svg.finish();
   };
   const auto german = view::report_pages(summary.database, summary.session_id, "de");
-  CHECK(value_of(german, "Dargeboten", "de") == "10");
-  CHECK_FALSE(value_of(german, "Anteil richtig (0 bis 1)", "de").empty());
+  CHECK(value_in(german, "Dargeboten", "de") == "10");
+  CHECK_FALSE(value_in(german, "Anteil richtig (0 bis 1)", "de").empty());
   CHECK(svg_of(german, "levels").find("Durchgang (Nummer in der Sitzung)") != std::string::npos);
   CHECK(svg_of(german, "levels").find("Trial") == std::string::npos);
   CHECK(svg_of(german, "response-times").find("Reaktionszeit (s)") != std::string::npos);
@@ -184,7 +184,7 @@ TEST_CASE("the report on the screen has the finger's forces and friction, if for
           "[operator]") {
   report::Summary summary;
   summary.data.design = report::Design::ratings;
-  CHECK(value_of(view::report_pages(summary), "speed: Speed (mm/s)").empty());
+  CHECK(value_in(view::report_pages(summary), "speed: Speed (mm/s)").empty());
   CHECK(figure_in(view::report_pages(summary), "finger") == nullptr);
   std::vector<analysis::FingerTrial> trials;
   for (int i = 0; i < 4; ++i) {
@@ -193,8 +193,8 @@ TEST_CASE("the report on the screen has the finger's forces and friction, if for
   }
   summary.finger = analysis::finger(trials, {});
   const auto pages = view::report_pages(summary);
-  CHECK(value_of(pages, "speed: Speed (mm/s)").find("81.5 [") == 0);
-  CHECK(value_of(pages, "speed: Felt minus planned boundary (mm)").find(" [") != std::string::npos);
+  CHECK(value_in(pages, "speed: Speed (mm/s)").find("81.5 [") == 0);
+  CHECK(value_in(pages, "speed: Felt minus planned boundary (mm)").find(" [") != std::string::npos);
   CHECK(figure_in(pages, "finger") != nullptr);
   CHECK(figure_in(pages, "friction") != nullptr);
 }
