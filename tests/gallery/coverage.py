@@ -4,7 +4,9 @@ the simulated observers have?
 
 For each protocol (or only those of the files named FILE, such as `quadruples`): `check`; N sessions with the seeds 1 to N,
 each with a participant of its own and the observer of the table below, whose parameters are known; `report --json` of each;
-`export`, whose trials must be those that were run. Prints how many of the 95 % intervals contain the generating value.
+`export`, whose trials must be those of the database, value by value. Prints how many of the 95 % intervals contain the
+generating value. A quantity that a report states with an interval must have a generating value here, or a reason in
+WITHOUT_VALUE why it has none.
 
 By default N is 1, and the intervals need only exist. With 50 or more, the exit status is 1 if an interval of any quantity
 contains its value in less than 86 % of the runs (43 of 50), or those of all together in less than 92 or more than 98 %.
@@ -18,6 +20,7 @@ import json
 import math
 import os
 import re
+import sqlite3
 import statistics
 import subprocess
 import sys
@@ -100,6 +103,10 @@ def signed(levels, threshold):
     return {level: NORMAL.cdf(level / threshold * NORMAL.inv_cdf(0.75)) for level in levels}
 
 
+def right_of_two(levels, threshold, slope):
+    return {level: two_intervals(level, threshold, slope) for level in levels}
+
+
 def conditions(names, values):
     return {f"{name}: {quantity}": value for name in names for quantity, value in values.items()}
 
@@ -111,6 +118,9 @@ def no_difference(first, second, *measures):
 BEFORE = {"stimulus before": 0.0, "answer before": 0.0}  # the observer does not remember
 HITS = 2 * NORMAL.inv_cdf(0.75) * 0.2 / 0.15  # d' of points-for-hits
 SPEED = ("boundary", "time outside the decision", "drift")
+# between conditions in which the observer is the same
+ALIKE = (*SPEED, "proportion correct", "median response time", "LISAS", "inverse efficiency", "d'",
+         *(f"proportion correct in time bin {i} of 5" for i in range(1, 6)))
 
 # file name: observer, generating values
 GALLERY = {
@@ -120,33 +130,48 @@ GALLERY = {
             **diffusion({0.0: NORMAL.cdf(0.8), 0.2: NORMAL.cdf(HITS - 0.8)})}),
         **no_difference("hit points 1", "hit points 3", "d'", *SPEED)}),
     "delay-after-errors": ("sim:threshold=0.3,lapse=0", {
-        **conditions(("penalty 0 s", "penalty 1.5 s"), {**two_sides(0.0, 0.3, 0.0), **diffusion(signed((0.25, 0.5), 0.3))}),
-        **no_difference("penalty 0 s", "penalty 1.5 s", *SPEED)}),
+        **conditions(("penalty 0 s", "penalty 1.5 s"), {
+            **two_sides(0.0, 0.3, 0.0), **diffusion(signed((0.25, 0.5), 0.3)), **BEFORE}),
+        **no_difference("penalty 0 s", "penalty 1.5 s", *ALIKE)}),
     "fixed-time": ("sim:threshold=0.3,lapse=0", {
         **conditions(("trials", "time"), {**diffusion(signed((0.4,), 0.3)), **BEFORE}),
-        **no_difference("trials", "time", *SPEED)}),
+        **no_difference("trials", "time", *ALIKE)}),
     "quadruples": ("sim:threshold=0.2,lapse=0", {
         **{f"place of {level:g}": (level - 0.2) / 1.8 for level in (0.5, 0.8, 1.1, 1.4, 1.7)},
         "noise": 0.2 / NORMAL.inv_cdf(0.75) / 1.8, "tendency to answer second": 0.0}),
     "unforced-three": ("sim:threshold=0.5,slope=1.5,unsure=0.7", one_of_three(0.5, 1.5, 0.02)),
     "reproduction": ("sim:lapse=0", {
         **{f"shown {shown:g} µm: setting": shown for shown in (0.6, 0.9, 1.2, 1.5)}, **BEFORE}),
-    "bisection-spacing": ("sim:threshold=0.25,bias=-0.1", two_sides(0.8, 0.25, 0.02)),
+    "bisection-spacing": ("sim:threshold=0.25,bias=-0.1", {**two_sides(0.8, 0.25, 0.02), **BEFORE}),
     "both-hands": ("sim:threshold=0.4,slope=1.5", {
-        **conditions(("left", "right"), {**curve(0.4, 1.5, 0.02), **BEFORE}),
-        "share of second": 0.5}),
-    "tracks-in-passes": ("sim:threshold=0.4,slope=1.5", {**curve(0.4, 1.5, 0.02), "share of second": 0.5}),
-    "double-staircase": ("sim:threshold=6,bias=4", two_sides(4.0, 6.0, 0.02)),
-    "two-sided-comparison": ("sim:threshold=0.2", {**two_sides(0.0, 0.2, 0.02), **BEFORE, "share of second": 0.5}),
+        **conditions(("left", "right"), {
+            **curve(0.4, 1.5, 0.02), **diffusion(right_of_two((0.15, 0.3, 0.6, 1.2), 0.4, 1.5)), **BEFORE}),
+        **no_difference("left", "right", *ALIKE), "share of second": 0.5}),
+    "tracks-in-passes": ("sim:threshold=0.4,slope=1.5", {**curve(0.4, 1.5, 0.02), **BEFORE, "share of second": 0.5}),
+    "double-staircase": ("sim:threshold=6,bias=4", {**two_sides(4.0, 6.0, 0.02), **BEFORE}),
+    "two-sided-comparison": ("sim:threshold=0.2", {
+        **two_sides(0.0, 0.2, 0.02), **diffusion({0.0: 0.5, **signed((0.2, 0.4, 0.6), 0.2)}), **BEFORE, "share of second": 0.5}),
     "psi-two-intervals": ("sim:threshold=0.4,slope=1.5", {
-        **curve(0.4, 1.5, 0.02), "estimate of psi": curve(0.4, 1.5, 0.02)["threshold"], "share of second": 0.5}),
+        **curve(0.4, 1.5, 0.02), "estimate of psi": curve(0.4, 1.5, 0.02)["threshold"], **BEFORE, "share of second": 0.5}),
     "strength-and-time": ("sim:threshold=0.3,lapse=0", {
         **two_sides(0.0, 0.3, 0.0), **diffusion(signed((0.2, 0.4, 0.8), 0.3)), **BEFORE}),
-    "match-to-sample": ("sim:threshold=0.6,lapse=0", {**same_as_sample((0.5, 1.0, 2.0), 0.6, 1.0), **BEFORE}),
-    "implicit-standard": ("sim:threshold=0.1,bias=0.03", {**two_sides(1.03, 0.1, 0.02), **BEFORE}),
+    "match-to-sample": ("sim:threshold=0.6,lapse=0", {
+        **same_as_sample((0.5, 1.0, 2.0), 0.6, 1.0), **BEFORE}),
+    "implicit-standard": ("sim:threshold=0.1,bias=0.03", {
+        **two_sides(1.03, 0.1, 0.02), **BEFORE,
+        **diffusion({level: NORMAL.cdf(abs(level - 1.03) / 0.1 * NORMAL.inv_cdf(0.75)) for level in (0.7, 0.8, 0.9, 1.1, 1.2, 1.3)})}),
     "sequential-effects": ("sim:slope=0.6,lapse=0", {"exponent": 0.6, **BEFORE}),
-    "stochastic-approximation": ("sim:threshold=0.4,slope=1.5", {**curve(0.4, 1.5, 0.02), "share of second": 0.5}),
+    "stochastic-approximation": ("sim:threshold=0.4,slope=1.5", {**curve(0.4, 1.5, 0.02), **BEFORE, "share of second": 0.5}),
 }
+# file and quantity that are estimated, but have no true value
+WITHOUT_VALUE = (
+    r"^(psi-two-intervals|tracks-in-passes|stochastic-approximation): (boundary|time|drift)",  # their levels follow the answers
+    r"^(match-to-sample|unforced-three): (threshold|slope)",  # the observer's curve is no Weibull function
+    r"^match-to-sample: (boundary|time|drift)",  # two comparisons make one answer, which is no single diffusion
+    r"^quadruples: place of (0.2|2)$",  # the ends of the scale are 0 and 1 by definition
+    r": share of second$",  # depends on the levels that are presented, unless both answers are alike
+    r"^points-for-hits: .*(correct|response time|LISAS|efficiency|points)",  # depend on the criterion and the payoff
+)
 # the groups of a protocol are analysed apart, but have the same generating values
 GROUPS = {"bisection-spacing": r"^(steps|ratios): "}
 
@@ -209,6 +234,37 @@ def run(turnpoint, *words):
     return ran.stdout
 
 
+# columns of trials.csv, and those of the database with the same content
+COLUMNS = {name: name for name in ("trial_index", "attempt", "block_index", "trial_type", "procedure", "level",
+                                   "correct_response", "response", "correct", "outcome", "response_zero", "xruns")}
+COLUMNS.update(response_zero_onset="onset_s", trial_duration="duration_s", response_time="response_time_s", deadline="deadline_s")
+
+
+def same(text, value):
+    """Whether a field of a CSV file says what the database has."""
+    if value is None or text == "n/a":
+        return value in (None, "") and text == "n/a"
+    return text == value if isinstance(value, str) else math.isclose(float(text), value, rel_tol=1e-6, abs_tol=1e-9)
+
+
+def compare_export(database, folder, trials):
+    """Compares trials.csv with the database that it came from, which is read without the program."""
+    with open(glob.glob(os.path.join(folder, "*", "trials.csv"))[0], encoding="utf-8", newline="") as file:
+        rows = {(row["session_id"], row["trial_index"]): row for row in csv.DictReader(file)}
+    with sqlite3.connect(f"file:{database}?mode=ro", uri=True) as source:
+        source.row_factory = sqlite3.Row
+        stored = source.execute("SELECT * FROM trial").fetchall()
+    if not len(rows) == len(stored) == trials:
+        raise Failure(f"{trials} trials were run, {len(stored)} are in the database, and {len(rows)} come back from the export")
+    for trial in stored:
+        row = rows[trial["session_id"], str(trial["trial_index"])]
+        expected = {column: trial[field] for column, field in COLUMNS.items()}
+        expected.update((name, value) for name, value in json.loads(trial["factors"]).items() if name in row)
+        for column, value in expected.items():
+            if not same(row[column], value):
+                raise Failure(f"trial {trial['trial_index']}: {column} is {value} in the database and {row[column]} in the export")
+
+
 def measure(turnpoint, name, runs):
     """Returns, for each quantity of a protocol, one entry a run: whether its interval contains the generating value, OPEN
     if the interval lacks an end, or None without an interval."""
@@ -227,6 +283,10 @@ def measure(turnpoint, name, runs):
             trials += session["trials"]
             report = json.loads(run(turnpoint, "report", "--db", database, "--participant", f"P{seed}", "--json"))
             said = {re.sub(GROUPS.get(name, "^$"), "", quantity): interval for quantity, interval in intervals(report)}
+            unknown = [quantity for quantity, interval in said.items() if interval and quantity not in values
+                       and not any(re.search(words, f"{name}: {quantity}") for words in WITHOUT_VALUE)]
+            if unknown:
+                raise Failure(f"no generating value of {', '.join(unknown)}")
             for quantity, value in values.items():
                 interval = said.get(quantity)
                 if not interval:
@@ -235,10 +295,7 @@ def measure(turnpoint, name, runs):
                 low, high = interval["low"], interval["high"]
                 found[quantity].append(OPEN if low is None or high is None else low <= value <= high)
         run(turnpoint, "export", "--db", database, "--out", os.path.join(folder, "export"))
-        with open(glob.glob(os.path.join(folder, "export", "*", "trials.csv"))[0], encoding="utf-8", newline="") as file:
-            rows = sum(1 for _ in csv.DictReader(file))
-        if rows != trials:
-            raise Failure(f"{name}: {trials} trials were run, and {rows} come back from the export")
+        compare_export(database, os.path.join(folder, "export"), trials)
     return found
 
 
@@ -264,7 +321,7 @@ def main():
             try:
                 found = work[name].result()
             except Failure as failure:
-                faults.append(str(failure))
+                faults.append(f"{name}: {failure}")
                 continue
             for quantity, runs in found.items():
                 there, held, ends = sum(run is not None for run in runs), runs.count(True), runs.count(OPEN)
