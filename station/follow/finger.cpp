@@ -49,12 +49,12 @@ void BridgeWindow::push(std::int64_t first, const std::int32_t* frames, int coun
   for (int f = 0; f < count; ++f) {
     const std::int32_t* frame = frames + static_cast<std::ptrdiff_t>(f) * bridges_.channels;
     const auto at = static_cast<std::size_t>(next_);
-    kept_[0][at] = static_cast<float>(frame[bridges_.reference]) * 0x1p-31f;
+    kept_[at][0] = static_cast<float>(frame[bridges_.reference]) * 0x1p-31f;
     for (std::size_t b = 0; b < 3; ++b) {
       const std::int32_t value = frame[bridges_.bridges[b]];
       unchanged_[b] = value == last_[b] ? unchanged_[b] + 1 : 0;
       last_[b] = value;
-      kept_[b + 1][at] = static_cast<float>(value) * 0x1p-31f;
+      kept_[at][b + 1] = static_cast<float>(value) * 0x1p-31f;
     }
     next_ = next_ + 1 == n ? 0 : next_ + 1;
   }
@@ -68,21 +68,18 @@ FingerSample BridgeWindow::sample() const noexcept {
   result.frame = end_ - n / 2;
   result.fault = Fault::force;
   if (filled_ < n) return result;
+  std::array<float, 4> re{}, im{};
+  const auto add = [&](std::size_t ring, std::size_t tap) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      re[c] += kept_[ring][c] * cosine_[tap];
+      im[c] -= kept_[ring][c] * sine_[tap];
+    }
+  };
+  const auto oldest = static_cast<std::size_t>(next_), count = static_cast<std::size_t>(n);
+  for (std::size_t i = 0; i < count - oldest; ++i) add(oldest + i, i);
+  for (std::size_t i = count - oldest; i < count; ++i) add(i + oldest - count, i);
   std::array<std::complex<double>, 4> z;
-  const auto newer = static_cast<std::size_t>(n - next_);  // frames from the oldest to the ring's end
-  for (std::size_t c = 0; c < 4; ++c) {
-    float re = 0, im = 0;
-    const float* ring = kept_[c].data();
-    for (std::size_t i = 0; i < newer; ++i) {
-      const float s = ring[static_cast<std::size_t>(next_) + i];
-      re += s * cosine_[i], im -= s * sine_[i];
-    }
-    for (std::size_t i = newer; i < static_cast<std::size_t>(n); ++i) {
-      const float s = ring[i - newer];
-      re += s * cosine_[i], im -= s * sine_[i];
-    }
-    z[c] = {static_cast<double>(re), static_cast<double>(im)};
-  }
+  for (std::size_t c = 0; c < 4; ++c) z[c] = {static_cast<double>(re[c]), static_cast<double>(im[c])};
   const double amplitude = std::abs(z[0]);
   if (!(std::abs(amplitude - bridges_.reference_amplitude) <=
         reference_tolerance * bridges_.reference_amplitude)) {

@@ -68,7 +68,7 @@ class BridgeWindow {
  private:
   Bridges bridges_;
   std::array<float, kMostFrames> cosine_{}, sine_{};      ///< window times carrier
-  std::array<std::array<float, kMostFrames>, 4> kept_{};  ///< newest frames in a ring: reference, bridges
+  std::array<std::array<float, 4>, kMostFrames> kept_{};  ///< newest frames in a ring: reference, bridges
   std::array<std::int32_t, 3> last_{};
   std::array<int, 3> unchanged_{};  ///< how many samples of a bridge in a row were the same
   std::int64_t end_ = 0;            ///< frame number behind the newest frame
