@@ -145,6 +145,9 @@ class Plant {
     return sum;
   }
 
+  /// The forces now, as the cells read them: normal, lateral, moment.
+  const Reading& now() const { return ring_[(at_ + ring_.size() - 1) % ring_.size()]; }
+
   double time_s() const { return time_s_; }
   double gain() const { return gain_; }
   double amplitude() const { return amplitude_; }

@@ -82,6 +82,69 @@ TEST_CASE("a sine of 4 mm is felt with its amplitude, in its place, at every spe
       }
 }
 
+TEST_CASE("the whole way from captured frames: carrier, crosstalk of the modulated drive, and noise",
+          "[follower]") {
+  plant::Setup s;
+  s.friction = 0.9, s.noise_N = 0;  // the noise is the converter's
+  s.hand_m = [](double t) { return 0.03 + 0.2 * t; };
+  auto plan = lab::plan_of(s);
+  plan.control = Control::closed;
+  add(plan.pattern, sine_of_4_mm());
+  follow::Follower follower(plan);
+  plant::Plant plant(s);
+  constexpr double per_N = 0.08, reference = 0.5, pi = std::numbers::pi;
+  follow::Bridges wiring;
+  wiring.reference_amplitude = reference;
+  wiring.matrix = {{{1 / per_N, 0, 0}, {1 / per_N, 0, s.span_m / per_N}, {0, 1 / per_N, 0}}};
+  follow::BridgeWindow window(wiring);
+  plant::Dice dice(3);
+  std::array<std::array<float, follow::kGains>, 3> queue{};
+  std::vector<std::int32_t> frames(96 * 4);
+  std::vector<lab::Moment> moments;
+  double squares = 0, count = 0;
+  for (std::int64_t period = 0; period < 1150; ++period) {
+    const auto& gains = queue[static_cast<std::size_t>(period % 3)];
+    for (std::size_t k = 0; k < follow::kGains; ++k) {
+      const plant::Reading before = plant.now();
+      const double gain_before = plant.gain();
+      plant.step(static_cast<double>(gains[k]));
+      moments.push_back(
+          {plant.time_s(), plant.place_m(), plant.friction(), plant.felt(), plant.gain(), plant.normal_N()});
+      const plant::Reading& after = plant.now();
+      for (int i = 0; i < 12; ++i) {
+        const double t = (i + 0.5) / 12,
+                     n = static_cast<double>(period * 96) + static_cast<double>(k) * 12 + i;
+        const double normal = before.normal_N + t * (after.normal_N - before.normal_N),
+                     lateral = before.lateral_N + t * (after.lateral_N - before.lateral_N),
+                     b = (before.moment_Nm + t * (after.moment_Nm - before.moment_Nm)) / s.span_m;
+        const double carrier = std::cos(2 * pi * 10525 * n / 192000);
+        const double drive =
+            0.1 * (gain_before + t * (plant.gain() - gain_before)) * std::sin(2 * pi * 30000 * n / 192000);
+        const std::array<double, 4> volts{
+            reference * carrier, reference * per_N * (normal - b) * carrier + drive,
+            reference * per_N * b * carrier - 0.7 * drive, reference * per_N * lateral * carrier + drive};
+        for (std::size_t c = 0; c < 4; ++c)
+          frames[(k * 12 + static_cast<std::size_t>(i)) * 4 + c] =
+              static_cast<std::int32_t>(std::lround((volts[c] + 1e-4 * dice.bell()) * 0x1p31));
+      }
+    }
+    window.push(period * 96, frames.data(), 96);
+    const auto& update = follower.update((period + 3) * 96, window.sample());
+    queue[static_cast<std::size_t>(period % 3)] = update.gain;
+    if (period < 200) continue;
+    // the middle of that period: what the hand will do then, less the stretch by the asked friction
+    const double hand = s.hand_m((static_cast<double>(period) + 3.5) * 0.5e-3 + 0.6e-3);
+    squares += std::pow(update.place_m - (hand - 1e-3 * 0.5 * update.asked), 2), count += 1;
+  }
+  const auto f = fundamental(moments, 0.004, 0.06, 0.14, 0.2);
+  CAPTURE(f.ratio, f.phase_cycles, f.harmonics, std::sqrt(squares / count));
+  CHECK(f.ratio == Approx(1).margin(0.1));
+  CHECK(std::abs(f.phase_cycles) < 0.05);
+  CHECK(f.harmonics < 0.1);
+  CHECK(std::sqrt(squares / count) < 0.3e-3);
+  CHECK(follower.last().interrupted == 0);
+}
+
 TEST_CASE("an edge is felt where it is, from both sides", "[follower]") {
   const auto common = lab::plan_of({});
   for (const double speed : {0.05, 0.1, 0.2}) {
