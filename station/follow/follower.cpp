@@ -127,7 +127,7 @@ const Update& Follower::update(std::int64_t output_frame, const FingerSample& ne
   const bool slides = loop_.slides(finger.normal_N, finger.speed_m_s, finger.travelled_m) &&
                       plan_.pattern.asked == Asked::friction && following_ > 0.5;
   const double pull_N = std::copysign(finger.normal_N, finger.speed_m_s);
-  double stretch_m = slides && std::isfinite(asked_) ? skin * pull_N * asked_ : skin * finger.lateral_N;
+  const double stretch_m = slides ? skin * pull_N * asked_ : skin * finger.lateral_N;
   const double middle_m =
       placed ? estimator_.place_at(frame_of(0.5 * kGains) + lead) - stretch_m : update_.place_m;
   note(plan_.pattern, state_, {start_s, middle_m, update_.speed_m_s, finger.normal_N, touching});
@@ -149,7 +149,6 @@ const Update& Follower::update(std::int64_t output_frame, const FingerSample& ne
       bool reachable = true;
       wish_ = wish_at(estimator_.place_at(frame_of(step) + lead) - stretch_m,
                       start_s + step * period_s_ / kGains, asked, reachable);
-      if (slides) stretch_m = skin * pull_N * asked;
       if (k < kGains) asked_ = asked;
       if (k == kGains / 2) update_.asked = asked, update_.reachable = reachable;
     }
