@@ -179,8 +179,8 @@ TEST_CASE("an edge is felt where it is, from both sides", "[follower]") {
     CHECK(count[0] >= 40);  // there and back, twice
     CHECK(std::abs(sum[0] / count[0]) < 0.15e-3);
     CHECK(std::abs(sum[1] / count[1]) < 0.15e-3);
-    CHECK(far <= 1);  // noise of the place: one of 80
-    CHECK(most < 0.35e-3);
+    CHECK(far <= 3);  // of 80, by noise of the place
+    CHECK(most < 0.4e-3);
   }
 }
 
