@@ -11,6 +11,7 @@
 #include "station/system/progress.hpp"
 #include "station/system/stop_signals.hpp"
 #include "station/system/write_file.hpp"
+#include "tests/benchmark/follow.hpp"
 #include "tests/benchmark/intervals.hpp"
 #include "tests/benchmark/physics.hpp"
 #include "tests/benchmark/planning.hpp"
@@ -33,8 +34,8 @@ struct Options {
   bool json = false, progress = false;
 };
 
-const std::vector<std::string> kAll{"physics",    "planner",   "planning", "synth",
-                                    "procedures", "intervals", "sensing",  "store"};
+const std::vector<std::string> kAll{"physics",   "planner", "planning", "synth", "procedures",
+                                    "intervals", "sensing", "follow",   "store"};
 
 Report measure(const std::string& what, const Options& options) {
   if (what == "physics") return bench_physics(options.seconds);
@@ -44,6 +45,7 @@ Report measure(const std::string& what, const Options& options) {
   if (what == "procedures") return bench_procedures();
   if (what == "intervals") return bench_intervals();
   if (what == "sensing") return bench_sensing();
+  if (what == "follow") return bench_follow();
   return bench_store(options.disk, options.trials);
 }
 
@@ -118,9 +120,9 @@ int main(int argc, char** argv) {
   using namespace turnpoint::benchmark;
   Options options;
   CLI::App app{"Speed against accuracy on this machine, as tables and plots"};
-  app.add_option(
-         "what", options.what,
-         "physics | planner | planning | synth | procedures | intervals | sensing | store; otherwise all")
+  app.add_option("what", options.what,
+                 "physics | planner | planning | synth | procedures | intervals | sensing | follow | store; "
+                 "otherwise all")
       ->check(CLI::IsMember(kAll));
   app.add_option("--out", options.out, "Folder for CSV tables and SVG plots");
   app.add_option("--seconds", options.seconds, "About how long physics may measure")

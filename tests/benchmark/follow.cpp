@@ -1,0 +1,115 @@
+#include "tests/benchmark/follow.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "station/audio/synth.hpp"
+#include "station/follow/follower.hpp"
+#include "tests/benchmark/stopwatch.hpp"
+
+namespace turnpoint::benchmark {
+
+namespace {
+
+constexpr int kRepeats = 15;
+constexpr int kRate_Hz = 192000, kChannels = 6, kPeriod = 96, kPeriods = 4000;
+
+void synthesise() {
+  audio::Burst burst;
+  burst.start_frame = 9600;
+  burst.length_frames = kPeriods * kPeriod - 2 * 9600;
+  burst.tones.count = 8;
+  for (int i = 0; i < 8; ++i)
+    burst.tones.tones[static_cast<std::size_t>(i)] = {22000.0 + 3000 * i, 0.05, 0.3 * i, 0};
+  const audio::Format format{kRate_Hz, 2, 24};
+  std::vector<std::int32_t> block(2 * kPeriod);
+  audio::Synth synth(format);
+  if (!synth.start(audio::prepare(burst, format))) return;
+  for (std::int64_t at = 0; at < kPeriods * kPeriod; at += kPeriod) synth.render(at, std::span(block));
+}
+
+follow::Bridges bridges() {
+  follow::Bridges wiring;
+  wiring.channels = kChannels;
+  wiring.matrix = {{{12.5, 0, 0}, {12.5, 0, 3.75}, {0, 12.5, 0}}};
+  return wiring;
+}
+
+/// A strip of 0.2 m with friction that falls with displacement, and a sine of 4 mm in a closed loop.
+follow::Plan plan() {
+  follow::Plan plan;
+  std::vector<double> x_m, displacement_m;
+  for (int i = 0; i <= 200; ++i) {
+    x_m.push_back(1e-3 * i);
+    displacement_m.push_back(2.5e-6 * (0.7 + 0.3 * i / 200));
+  }
+  plan.map = follow::GainMap(x_m, displacement_m, physics::FrictionMap{}, 0.008, 1);
+  plan.control = follow::Control::closed;
+  follow::Part sine;
+  sine.shape = follow::Shape::sine, sine.from = 0.5, sine.to = 0.8, sine.cycles_per_m = 250;
+  follow::add(plan.pattern, sine);
+  return plan;
+}
+
+/// Captured frames of one period: a carrier on all channels.
+std::vector<std::int32_t> captured() {
+  std::vector<std::int32_t> frames(kPeriod * kChannels);
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0, 1000);
+  for (int n = 0; n < kPeriod; ++n)
+    for (int c = 0; c < kChannels; ++c)
+      frames[static_cast<std::size_t>(n * kChannels + c)] =
+          static_cast<std::int32_t>(1e9 * std::cos(2 * M_PI * 6 * n / kPeriod) + noise(random));
+  return frames;
+}
+
+/// Forces from the frames of each period, and with `follower` also its gains. The finger strokes to and fro.
+void follow_finger(const std::vector<std::int32_t>& frames, follow::BridgeWindow window,
+                   follow::Follower* follower) {
+  volatile double sum = 0;
+  for (std::int64_t k = 0; k < kPeriods; ++k) {
+    window.push(k * kPeriod, frames.data(), kPeriod);
+    auto sample = window.sample();
+    sum = sum + sample.normal_N;
+    if (follower == nullptr) continue;
+    const double t = 0.5e-3 * static_cast<double>(k);
+    sample.fault = follow::Fault::none;
+    sample.normal_N = 0.5, sample.lateral_N = 0.3 * (std::cos(3 * t) > 0 ? 1 : -1);
+    sample.moment_Nm = 0.5 * (0.1 + 0.05 * std::sin(3 * t));
+    sum = sum + static_cast<double>(follower->update((k + 3) * kPeriod, sample).gain[0]);
+  }
+}
+
+}  // namespace
+
+Report bench_follow() {
+  const auto frames = captured();
+  const follow::BridgeWindow window(bridges());
+  const follow::Follower fresh(plan());
+  const std::vector<Work> works{
+      {"synthesis of eight tones", synthesise},
+      {"following the finger, whole update",
+       [&] {
+         auto follower = fresh;
+         follow_finger(frames, window, &follower);
+       }},
+      {"of it: forces from four captured channels", [&] { follow_finger(frames, window, nullptr); }}};
+  Report report;
+  report.name = "follow";
+  report.title = fmt::format(
+      "Updates of a gain that follows the finger, one in 96 frames at 192 kHz, against the synthesis of "
+      "eight "
+      "tones; medians of {} repeats of processor time",
+      kRepeats);
+  report.table.columns = {"what", "us_per_update", "share_of_core", "ratio", "lowest_ratio", "highest_ratio"};
+  for (const Compared& compared : compare(works, kRepeats))
+    report.table.rows.push_back({compared.name, compared.time_s / kPeriods * 1e6,
+                                 compared.time_s * kRate_Hz / (1.0 * kPeriods * kPeriod), compared.ratio,
+                                 compared.lowest_ratio, compared.highest_ratio});
+  return report;
+}
+
+}  // namespace turnpoint::benchmark
