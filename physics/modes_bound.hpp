@@ -21,8 +21,9 @@ bool modes_bound_applies(const Surface& surface);
 
 // Which solution `modes` is compared with.
 enum class Comparison {
-  finer,   // takes four times as long as `modes`
-  coarser  // takes a tenth as long as `modes`; its bound is larger
+  finer,    // takes four times as long as `modes`, on a thick plate seven times
+  coarser,  // takes half as long as `modes`, with fewer functions across the strip; its bound is larger
+  coarsest  // takes a tenth as long, and is mostly a hundred times as wrong as `modes`
 };
 
 // Solves for `modes` once more, at the resolution that it is compared with. Throws std::domain_error where
@@ -37,6 +38,8 @@ struct LineDifference {
   double ln_gain = 0;                     // of the logarithm of |v| at the last maximum over |v(0)|
   double edge_m = 0;  // of the edge's position; the surface's length if only one of them has the edge
   std::optional<double> peak_m, at_m;  // last maximum and edge of the first
+  // how far |v| of `modes` falls between its last maximum and the drive edge, relative to that maximum
+  double fall = 0;
 };
 
 // Compares `line`, whose logarithm of |v(0)| is `ln_drive`, with a solution of `modes`. Empty if only one of

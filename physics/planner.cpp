@@ -22,12 +22,15 @@ namespace {
 // between the points at which they are compared; and of those from a coarser solution, which misses a part of
 // what the models leave out: of |v|, and of the level and of edges, which are differences at one place.
 constexpr double probe_margin = 1.9, field_margin = 1.25, point_margin = 2;
+// the least fall between a last maximum and the drive edge for which the maximum counts as certain; more if
+// the solution may be wrong by a quarter of it
+constexpr double certain_fall = 0.05;
 // What the error of `modes` near a resonance is at most, divided by the bound from a coarser solution.
-constexpr double resonant_share = 0.125;
+constexpr double resonant_share = 0.25;
 // Only if the bound of `mode` that is known without solving for `modes` is at most this many times the
 // tolerance, a coarse solution of `modes` is tried, which may show that `mode` suffices. On clamped plates
 // that bound says too little.
-constexpr double hopeless = 12;
+constexpr double hopeless = 8;
 constexpr double unknown = 2, unknown_dB = 120;
 // An edge that friction defines lies between the last maximum and this fraction of it.
 constexpr double faint = 0.02;
@@ -207,7 +210,7 @@ RungEstimate compared_modes_estimate(const Surface& surface, const PlanRequest& 
   found.boundary_bound_m =
       (bound ? bound->position_m : surface.length_m) + placed_elsewhere_m(request, reference);
   add_sides(found, request, reference);
-  if (comparison == Comparison::finer || !bound) return found;
+  if (comparison != Comparison::coarsest || !bound) return found;
   ModeBound without = reference.bound;
   without.resonance = 1;
   const double quiet = modes_accuracy(surface, without);
@@ -248,23 +251,30 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
   return e;
 }
 
+// By what the differences between `mode` and a solution of `modes` are multiplied: those of |v|, and those of
+// the level and of edges. A last maximum that slightly more loss would remove is certain if |v| of `modes`
+// falls by `fall` between it and the drive edge.
+struct Margins {
+  double field, points, fall;
+};
+
 // Computes the error bounds of the model `mode` by comparing it with a solution of `modes`, whose own error
 // bounds are `own`: the error is at most the difference, times a margin, plus the error of that solution.
 // What nothing is known of stays as it is: the level and edges of a field without a last maximum, and edges
 // that friction defines.
 RungEstimate compared_mode_estimate(const Surface& surface, const PlanRequest& request,
                                     const Reference& reference, const CentreLine& modes,
-                                    const RungEstimate& own, double of_field, double of_points) {
+                                    const RungEstimate& own, const Margins& margins) {
   RungEstimate e = profile_estimate(surface, request, reference, Model::mode);
   const auto apart = line_difference(surface, reference.f, reference.edge, *reference.mode,
                                      reference.mode->value(0).ln_magnitude(), modes);
-  if (!apart || reference.shallow_peak) return e;
+  if (!apart || (reference.shallow_peak && apart->fall < margins.fall)) return e;
   const double difference = request.normalise == Normalise::peak ? apart->shape : apart->drive;
-  e.amplitude_bound = std::min(e.amplitude_bound, own.amplitude_bound + of_field * difference);
+  e.amplitude_bound = std::min(e.amplitude_bound, own.amplitude_bound + margins.field * difference);
   if (!reference.peak_m) return e;
-  e.level_bound_dB = std::min(e.level_bound_dB, own.level_bound_dB + 8.686 * of_points * apart->ln_gain);
+  e.level_bound_dB = std::min(e.level_bound_dB, own.level_bound_dB + 8.686 * margins.points * apart->ln_gain);
   if (reference.edge.kind == Edge::Kind::percent || reference.edge.kind == Edge::Kind::peak)
-    e.boundary_bound_m = std::min(e.boundary_bound_m, own.boundary_bound_m + of_points * apart->edge_m);
+    e.boundary_bound_m = std::min(e.boundary_bound_m, own.boundary_bound_m + margins.points * apart->edge_m);
   return e;
 }
 
@@ -322,9 +332,11 @@ RungEstimate coarsely_compared_mode(const Surface& surface, const PlanRequest& r
         std::max(one.conditioning, coarse[i]->drive_conditioning(wavenumber_per_m(surface, one.f)));
     const double resonance = coarse_resonance * (one.bound.resonance - 1);
     const double steep = 1 + steep_share * one.bound.steepest * one.bound.steepest;
-    const RungEstimate own = assumed_estimate(surface, request, one, steep * quiet + resonance,
-                                              steep * phase + resonance, conditioning);
-    merge(all, compared_mode_estimate(surface, request, one, *coarse[i], own, field_margin, point_margin));
+    const double accuracy = steep * quiet + resonance;
+    const RungEstimate own =
+        assumed_estimate(surface, request, one, accuracy, steep * phase + resonance, conditioning);
+    const Margins margins{field_margin, point_margin, std::max(certain_fall, 4 * accuracy)};
+    merge(all, compared_mode_estimate(surface, request, one, *coarse[i], own, margins));
   }
   all.reason = "first transverse mode with loss, compared with a coarse two-dimensional field";
   return all;
@@ -374,24 +386,12 @@ std::string numbers(const RungEstimate& e, const Tolerance& tolerance) {
   return text.str();
 }
 
-// True if the first mode has no last maximum because of loss, and would have none with slightly less either.
-bool lacks_peak(const Surface& surface, const Reference& reference) {
-  if (reference.peak_m ||
-      !(Dispersion(surface).wave_quality(reference.f, surface.quality_factor) < lossy_below))
-    return false;
-  Surface less = surface;
-  less.quality_factor /= 0.75;
-  return !make_centre_line(less, reference.f, Model::mode)->last_peak_m();
-}
-
 // True if a coarse solution of `modes` may show that `mode` suffices, whose bounds are known without one. It
-// may not if the last maximum is uncertain.
+// may not if there is no last maximum.
 bool hopeful(const Surface& surface, const PlanRequest& request, const std::vector<Reference>& references,
              const RungEstimate& mode) {
   return (Dispersion(surface).clamped_bending() || inside(mode, request.tolerance, hopeless)) &&
-         std::ranges::all_of(references, [&](const Reference& one) {
-           return one.peak_m ? !one.shallow_peak : lacks_peak(surface, one);
-         });
+         std::ranges::all_of(references, [](const Reference& one) { return one.peak_m.has_value(); });
 }
 
 // Solves for `modes`, and compares it with coarser solutions, which may be known already, and then with finer
@@ -408,11 +408,12 @@ void compare_modes(const Surface& surface, const PlanRequest& request,
     return;
   }
   try {
-    if (coarse.empty()) coarse = solve_compared(surface, references, Comparison::coarser);
-    modes = compared_modes(surface, request, references, Comparison::coarser, solved, coarse);
-    if (inside(modes, request.tolerance)) return;
-    const SolvedLines finer = solve_compared(surface, references, Comparison::finer);
-    modes = compared_modes(surface, request, references, Comparison::finer, solved, finer);
+    for (const auto comparison : {Comparison::coarsest, Comparison::coarser, Comparison::finer}) {
+      if (comparison != Comparison::coarsest || coarse.empty())
+        coarse = solve_compared(surface, references, comparison);
+      modes = compared_modes(surface, request, references, comparison, solved, coarse);
+      if (inside(modes, request.tolerance)) return;
+    }
   } catch (const std::domain_error&) {
   }
 }
@@ -429,8 +430,9 @@ RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model 
     return estimate_with(surface, request, references, model);
   RungEstimate all;
   for (const Reference& one : references)
-    merge(all, compared_mode_estimate(surface, request, one, *make_centre_line(surface, one.f, Model::modes),
-                                      modes_estimate(surface, request, one), probe_margin, probe_margin));
+    merge(all,
+          compared_mode_estimate(surface, request, one, *make_centre_line(surface, one.f, Model::modes),
+                                 modes_estimate(surface, request, one), {probe_margin, probe_margin, 2}));
   return all;
 }
 
@@ -454,7 +456,7 @@ PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {
   if (const auto mode = rung(Model::mode);
       comparable && mode < chosen && hopeful(surface, request, references, *mode)) {
     try {
-      coarse = solve_compared(surface, references, Comparison::coarser);
+      coarse = solve_compared(surface, references, Comparison::coarsest);
       *mode = coarsely_compared_mode(surface, request, references, coarse);
     } catch (const std::domain_error&) {  // `modes` does not apply, so nothing more is known of `mode`
     }

@@ -112,9 +112,10 @@ double mean(const std::vector<double>& list) {
   return std::accumulate(list.begin(), list.end(), 0.0) / static_cast<double>(list.size());
 }
 
+/// The value that 99 % of the scenes do not exceed.
 double percentile_99(std::vector<double> list) {
   std::ranges::sort(list);
-  return list[list.size() * 99 / 100];
+  return list[(list.size() * 99 + 99) / 100 - 1];
 }
 
 double operations_of(const std::function<void()>& run) {

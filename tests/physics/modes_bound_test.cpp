@@ -182,11 +182,11 @@ std::ostream& operator<<(std::ostream& out, const Tally& t) {
              << Tally::least(t.boundary);
 }
 
-RungEstimate coarse_estimate(const Surface& s, Normalise normalise, const CentreLine& modes) {
-  const auto coarser = make_compared_line(s, frequency_Hz, Comparison::coarser);
-  const ModesBound bound =
-      modes_bound(s, frequency_Hz, Edge::percent(0.5), Comparison::coarser, modes, *coarser)
-          .value_or(ModesBound{2, 2, 120, s.length_m});
+RungEstimate coarse_estimate(const Surface& s, Normalise normalise, Comparison comparison,
+                             const CentreLine& modes) {
+  const auto other = make_compared_line(s, frequency_Hz, comparison);
+  const ModesBound bound = modes_bound(s, frequency_Hz, Edge::percent(0.5), comparison, modes, *other)
+                               .value_or(ModesBound{2, 2, 120, s.length_m});
   RungEstimate e;
   e.amplitude_bound = normalise == Normalise::drive ? bound.drive : bound.shape;
   e.level_bound_dB = bound.level_dB;
@@ -208,7 +208,7 @@ struct Campaign {
   std::vector<double> error;  // errors of the model `modes`
   // error bounds that `modes` states: by comparing with a finer solution, with a coarser one, and before
   // solving
-  Tally finer, coarser, before;
+  Tally finer, coarser, coarsest, before;
   Tally mode;
   // What choose_model states of its choice for a random tolerance of |v|, level or boundary; how often `mode`
   // truly meets it, and is chosen then; and how often a choice that should meet it does not.
@@ -328,8 +328,9 @@ void Campaign::add(int number, const Surface& s, Normalise normalise, const Coll
       e.level_dB = std::max(1e-12, e.level_dB - own.level_dB);
     }
   }
-  const RungEstimate coarse = coarse_estimate(s, normalise, *line);
-  if (!inside(e, bound) || !inside(e, *prior) || !inside(e, coarse))
+  const RungEstimate coarse = coarse_estimate(s, normalise, Comparison::coarser, *line);
+  const RungEstimate sketch = coarse_estimate(s, normalise, Comparison::coarsest, *line);
+  if (!inside(e, bound) || !inside(e, *prior) || !inside(e, coarse) || !inside(e, sketch))
     std::printf(
         "scene %d is outside: amplitude %.2e of %.2e, %.2e, %.2e; boundary %.2e of %.2e, %.2e, %.2e; "
         "level %.2e of %.2e, %.2e, %.2e\n",
@@ -339,9 +340,11 @@ void Campaign::add(int number, const Surface& s, Normalise normalise, const Coll
   error.push_back(e.amplitude);
   write(number, "modes", e, bound);
   write(number, "coarser", e, coarse);
+  write(number, "coarsest", e, sketch);
   write(number, "before", e, *prior);
   finer.add(e, bound);
   coarser.add(e, coarse);
+  coarsest.add(e, sketch);
   before.add(e, *prior);
   add_map(number, s, *truth, *line);
   const auto one = make_centre_line(s, frequency_Hz, Model::mode);
@@ -369,14 +372,15 @@ void compare_scenes(const char* surface, int usual, std::uint64_t seed, const Co
   for (int i = first; i < first + count; ++i) all.add_scene(seed, i, finest, make);
   if (count > usual)
     WARN(all.error.size() << " scenes from number " << first << ", median error " << median(all.error)
-                          << "\nfiner: " << all.finer << "\ncoarser: " << all.coarser
-                          << "\nbefore solving: " << all.before << "\nmode: " << all.mode
+                          << "\nfiner: " << all.finer << "\ncoarser: " << all.coarser << "\ncoarsest: "
+                          << all.coarsest << "\nbefore solving: " << all.before << "\nmode: " << all.mode
                           << "\nchoice: " << all.choice << "\nmode suffices in " << all.suffices
                           << " scenes and is taken in " << all.taken << " of them\nmap: " << all.map_outside
                           << " outside; bound / error, median " << median(all.map));
   CHECK(all.error.size() > 0.8 * count);
   CHECK(all.finer.outside <= count / 10000);
   CHECK(all.coarser.outside <= count / 10000);
+  CHECK(all.coarsest.outside <= count / 10000);
   CHECK(all.before.outside <= count / 10000);
   CHECK(all.mode.outside <= count / 10000);
   CHECK(all.choice.outside <= count / 10000);
@@ -422,6 +426,7 @@ TEST_CASE("the bounds of modes hold on stepped and on steep clamped plates", "[p
   CHECK(all.error.size() == 4);
   CHECK(all.finer.outside == 0);
   CHECK(all.coarser.outside == 0);
+  CHECK(all.coarsest.outside == 0);
   CHECK(all.before.outside == 0);
 }
 

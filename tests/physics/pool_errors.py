@@ -4,8 +4,8 @@
 Usage: TURNPOINT_ERRORS=errors.txt TURNPOINT_SCENES=1000 test_physics "*random membranes"
        pool_errors.py errors.txt...
 
-Each line of a file holds surface, number of the scene, model, quantity, bound and error. The models "coarser"
-and "before" are the bounds of `modes` from a coarser solution and before solving, and "chosen" those of the
+Each line of a file holds surface, number of the scene, model, quantity, bound and error. The models "coarser",
+"coarsest" and "before" are the bounds of `modes` from coarser solutions and before solving, and "chosen" those of the
 model that choose_model takes for a random tolerance. The lines "taken" are the scenes in which `mode` truly meets
 that tolerance: their bound is 1 if it is taken. A scene that occurs twice counts once.
 """
