@@ -9,6 +9,7 @@
 #include "physics/field.hpp"
 #include "physics/gate.hpp"
 #include "physics/modal_field.hpp"
+#include "physics/operations.hpp"
 #include "physics/smooth_sides.hpp"
 
 namespace turnpoint::physics {
@@ -39,6 +40,7 @@ class MarchedLine final : public CentreLine {
 void CentreLine::evaluate(std::span<const double> x, std::complex<double> phase, double ln_reference,
                           std::span<std::complex<double>> v, std::span<double> ln_amplitude) const {
   for (std::size_t i = 0; i < x.size(); ++i) {
+    count_operations(2 * function_operations);
     const Scaled one = value(x[i]);
     const double ln = one.ln_magnitude();
     ln_amplitude[i] = ln == ln_zero ? ln_zero : ln - ln_reference;

@@ -1,5 +1,7 @@
 #include "physics/condensed.hpp"
 
+#include "physics/operations.hpp"
+
 namespace turnpoint::physics {
 namespace {
 
@@ -23,6 +25,7 @@ Condensed::Condensed(const Eigen::MatrixXd& real, const Eigen::MatrixXd& imagina
                      Eigen::Index right) {
   Eigen::MatrixXd re = bubbles_first(real, left, right), im = bubbles_first(imaginary, left, right);
   const Eigen::Index n = re.rows(), ends = left + right, inner = n - ends;
+  count_elimination(static_cast<double>(n), static_cast<double>(inner));
   eliminate_first(re.data(), im.data(), static_cast<int>(n), static_cast<int>(inner));
   const std::complex<double> i(0, 1);
   const auto block = [&](Eigen::Index row, Eigen::Index column, Eigen::Index rows, Eigen::Index columns) {
@@ -37,6 +40,8 @@ Condensed::Condensed(const Eigen::MatrixXd& real, const Eigen::MatrixXd& imagina
 }
 
 Condensed::Vector Condensed::follow(const Vector& ends) const {
+  const auto inner = static_cast<double>(bubbles());
+  count_operations(8 * inner * (0.5 * inner + static_cast<double>(ends.size())));
   return -lower_.triangularView<Eigen::UnitLower>().transpose().solve(rows_.transpose() * ends);
 }
 

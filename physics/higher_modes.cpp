@@ -9,6 +9,7 @@
 
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
+#include "physics/operations.hpp"
 #include "physics/taper.hpp"
 #include "physics/taylor_march.hpp"
 
@@ -131,7 +132,7 @@ void ModeWaves::flow(ModeWave& wave, const TaylorMarch& march, double ln_unit, d
   wave.g.assign(points.size(), 0), wave.g_slope.assign(points.size(), 0);
   for (std::size_t i = 0; i < points.size() && points[i].x <= end_m; ++i) {
     const CurvedPoint& point = points[i];
-    const Scaled value = march.value(point.x), derivative = march.slope(point.x);
+    const auto [value, derivative] = march.motion(point.x);
     const double root = std::sqrt(point.w);
     wave.g[i] = root * std::exp(value.ln_scale - ln_unit) * value.mantissa;
     wave.g_slope[i] = root * std::exp(derivative.ln_scale - ln_unit) * derivative.mantissa +
@@ -151,6 +152,7 @@ Complex ModeWaves::excited_by(std::size_t m, std::size_t n) const {
     sum += 0.5 * points[i].bend *
            ((lossy_k * lossy_k - q * q) * from.g[i] * to.g[i] + from.g_slope[i] * to.g_slope[i]);
   }
+  count_operations(25 * static_cast<double>(points.size()));
   sum *= reach_m / static_cast<double>(points.size());
   const double w = taper.half_width_m(0);
   sum += 0.5 * w * w * taper.second_derivative(0) * from.sine * from.kx * to.cosine;
@@ -166,13 +168,14 @@ double wave_envelope(const Scaled& value, const Scaled& slope, double k, double 
 void ModeWaves::add_propagating(const Surface& surface, double f, int n) {
   const TaylorMarch march(taper, mode_equation(surface, f, n));
   const double w = taper.half_width_m(0), q = transverse_q(n) / w, cut = cut_off_half_width_m(surface, f);
-  const Scaled value = march.value(0), slope = march.slope(0);
+  const auto [value, slope] = march.motion(0);
   const double ln_unit = std::log(wave_envelope(value, slope, k, value.ln_scale)) + value.ln_scale;
   ModeWave wave;
   wave.kx = along(q);
   wave.cosine = value.mantissa * std::exp(value.ln_scale - ln_unit);
   wave.sine = slope.mantissa * std::exp(slope.ln_scale - ln_unit) / wave.kx;
-  wave.near = wave_envelope(march.value(near_m), march.slope(near_m), k, ln_unit);
+  const TaylorMarch::Motion near = march.motion(near_m);
+  wave.near = wave_envelope(near.value, near.slope, k, ln_unit);
   if (curved) turn(wave, n);
   wave.phase_error = wedge_phase_error + curved_phase_error * wave.turns;
   if (n == 1) {
@@ -221,6 +224,9 @@ DriveEdgeModes::DriveEdgeModes(const ModeWaves& waves, DriveShape shape) {
   const auto count = static_cast<Eigen::Index>(waves.modes.size());
   cosine = sine = Eigen::MatrixXcd::Zero(count, count);
   drive = Eigen::VectorXcd::Zero(count);
+  // a row of shapes, two sines and two cosines of a complex number for each point and mode
+  count_operations(edge_points * static_cast<double>(count) *
+                   (4 * function_operations + 4.0 * static_cast<double>(count)));
   const double w = waves.taper.half_width_m(0), d = std::max(1e-6, std::abs(waves.taper.slope(0)));
   for (int i = 0; i < edge_points; ++i) {
     const double eta = (i + 0.5) / edge_points, angle = std::atan(d * eta) / std::atan(d);
@@ -255,6 +261,8 @@ void solve_drive_edge(const ModeWaves& waves, const DriveEdgeModes& edge, double
     others.col(n) = edge.sine.col(n) * std::conj(wave.cosine) - edge.cosine.col(n) * std::conj(wave.sine);
   }
   matrix += curvature * others * waves.excited;
+  count_factorisation(static_cast<double>(count), static_cast<double>(count) + 1);
+  count_operations(30 * static_cast<double>(count * count));
   const Eigen::PartialPivLU<Eigen::MatrixXcd> solver(matrix);
   const Eigen::VectorXcd amplitude = solver.solve(edge.drive);
   const Eigen::MatrixXcd effect = solver.solve(turned);

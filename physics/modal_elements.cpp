@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/operations.hpp"
+
 namespace turnpoint::physics {
 namespace {
 
@@ -88,6 +90,7 @@ Eigen::MatrixXcd ModalAssembler::single_matrix(const ModalElement& e) const {
   const auto n = static_cast<std::size_t>(along_.count());
   const double d = 2 / e.h, mass_across = across_.mass(0, 0);
   std::array<Rows, largest_degree + 1> stiffness{}, mass{};
+  count_operations(static_cast<double>(rule_.x.size() * n * (4 * (n + 1) + 25)));
   for (std::size_t q = 0; q < rule_.x.size(); ++q) {
     const double x = e.x0 + e.h * rule_.x[q], w = taper_.half_width_m(x);
     const Form f = single_form(w, taper_.slope(x) / w, taper_.second_derivative(x) / w);
@@ -181,6 +184,10 @@ Eigen::MatrixXcd ModalAssembler::matrix(const ModalElement& e) const {
     for (int i = 0; i < functions; ++i) index.emplace_back(a, i);
   }
   const auto size = static_cast<Eigen::Index>(index.size());
+  // products over the quadrature points, and the terms that each pair of unknowns sums
+  const double products = equation_.plate() ? 5 + 16 : 5, terms = equation_.plate() ? 14 + 48 : 14;
+  count_operations(2 * products * static_cast<double>(rows * n * n) +
+                   0.5 * terms * static_cast<double>(size * (size + 1)));
   Eigen::MatrixXcd k(size, size);
   for (Eigen::Index row = 0; row < size; ++row) {
     const auto [a, i] = index[static_cast<std::size_t>(row)];

@@ -10,6 +10,7 @@
 #include "physics/field.hpp"
 #include "physics/line_search.hpp"
 #include "physics/modal_setup.hpp"
+#include "physics/operations.hpp"
 #include "physics/piston_lift.hpp"
 #include "physics/section_field.hpp"
 #include "physics/smooth_sides.hpp"
@@ -48,6 +49,8 @@ void eliminate_plate(const ModalAssembler& assembler, const ElementBasis& along,
     if (tail.size() > 0) k.bottomRightCorner(tail.rows(), tail.cols()) += tail;
     const Eigen::Index left = along.per_vertex * e->left;
     const Eigen::Index rest = k.rows() - left;
+    count_factorisation(static_cast<double>(rest), static_cast<double>(left));
+    count_operations(8 * static_cast<double>(left * rest * left));
     e->transfer = -k.bottomRightCorner(rest, rest).partialPivLu().solve(k.bottomLeftCorner(rest, left));
     tail = k.topLeftCorner(left, left) + k.topRightCorner(left, rest) * e->transfer;
   }
@@ -67,6 +70,8 @@ void eliminate(const ModalAssembler& assembler, const ElementBasis& along,
     Eigen::PartialPivLU<Eigen::MatrixXcd> right_stiffness;
     Eigen::MatrixXcd seen = ends.topLeftCorner(left, left);
     if (right > 0) {
+      count_factorisation(static_cast<double>(right), static_cast<double>(left));
+      count_operations(8 * static_cast<double>(left * right * left));
       right_stiffness.compute(ends.bottomRightCorner(right, right) + tail);
       e->pull = right_stiffness.solve(ends.bottomLeftCorner(right, left));
       seen -= ends.topRightCorner(left, right) * e->pull;
@@ -78,7 +83,10 @@ void eliminate(const ModalAssembler& assembler, const ElementBasis& along,
 
 // Returns the other unknowns of an element (bubbles and right vertex), given those of its left vertex.
 Eigen::VectorXcd others(const ModalElement& e, const Eigen::VectorXcd& u) {
-  if (e.transfer.size() > 0) return e.transfer * u;
+  if (e.transfer.size() > 0) {
+    count_operations(8 * static_cast<double>(e.transfer.size()));
+    return e.transfer * u;
+  }
   const Eigen::Index right = e.pull.rows(), bubbles = e.inner.bubbles();
   const double load_scale = std::exp(-e.ln_scale);
   Eigen::VectorXcd ends(u.size() + right), rest(bubbles + right);
@@ -130,6 +138,9 @@ Eigen::VectorXcd lift_load(const ModalSetup& s, const PistonLift& lift, const Mo
     shapes.col(static_cast<Eigen::Index>(j)) = across.w[j] * bubbles_at(e.left, 1, Parity::even, across.x[j]);
   Eigen::VectorXcd load = Eigen::VectorXcd::Zero(bubbles_end * e.left + e.right);
   Eigen::VectorXcd source(shapes.cols());
+  // the closed form of the lift has an arc tangent and its derivatives at each point
+  count_operations(static_cast<double>(along.x.size() * across.x.size()) *
+                   (4 * function_operations + 2.0 * e.left));
   for (std::size_t i = 0; i < along.x.size(); ++i) {
     const double x = e.x0 + e.h * along.x[i], w = s.taper.half_width_m(x);
     for (std::size_t j = 0; j < across.x.size(); ++j) {
@@ -228,6 +239,7 @@ Scaled ModalLine::at(double x, int derivative) const {
   if (e == elements_.end()) --e;
   const double t = std::clamp(2 * (x - e->x0) / e->h - 1, -1.0, 1.0);
   const BasisValues basis = along_.at(t);
+  count_operations(24 * along_.bubbles() + 4 * along_.count() + 2 * function_operations);
   const auto& part = derivative == 0 ? basis.value : basis.first;
   std::complex<double> sum = 0;
   for (int a = 0; a < along_.count(); ++a) sum += e->centre[a] * part[static_cast<std::size_t>(a)];

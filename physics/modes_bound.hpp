@@ -21,16 +21,38 @@ bool modes_bound_applies(const Surface& surface);
 
 // Which solution `modes` is compared with.
 enum class Comparison {
-  finer,   // takes four times as long as `modes`
-  coarser  // takes half as long as `modes`; its bound is larger
+  finer,    // takes four times as long as `modes`, on a thick plate seven times
+  coarser,  // takes half as long as `modes`, with fewer functions across the strip; its bound is larger
+  coarsest  // takes a tenth as long, and is mostly a hundred times as wrong as `modes`
 };
 
-// Returns several times the difference between `modes` and another solution. On random surfaces, the true
-// error of |v| was at most 3.1 times the difference from a finer solution
-// (tests/physics/modes_bound_test.cpp). Empty if only one of the two fields has a last maximum. `modes` is
-// the solution at the default resolution, if it is known already.
+// Solves for `modes` once more, at the resolution that it is compared with. Throws std::domain_error where
+// `modes` does not apply.
+std::unique_ptr<CentreLine> make_compared_line(const Surface& surface, double frequency_Hz,
+                                               Comparison comparison);
+
+// How far two solutions are apart, in the quantities of ModesBound, and near the last maximum of the first.
+struct LineDifference {
+  double shape = 0, drive = 0;            // of |v|, relative to the largest value
+  double near_shape = 0, near_drive = 0;  // the same near the last maximum; relative to that maximum
+  double ln_gain = 0;                     // of the logarithm of |v| at the last maximum over |v(0)|
+  double edge_m = 0;  // of the edge's position; the surface's length if only one of them has the edge
+  std::optional<double> peak_m, at_m;  // last maximum and edge of the first
+  // how far |v| of `modes` falls between its last maximum and the drive edge, relative to that maximum
+  double fall = 0;
+};
+
+// Compares `line`, whose logarithm of |v(0)| is `ln_drive`, with a solution of `modes`. Empty if only one of
+// the two fields has a last maximum.
+std::optional<LineDifference> line_difference(const Surface& surface, double frequency_Hz, const Edge& edge,
+                                              const CentreLine& line, double ln_drive,
+                                              const CentreLine& modes);
+
+// Returns several times the difference between a solution of `modes` at the default resolution and one at
+// another. On random surfaces, the true error of |v| was at most 3.1 times the difference from a finer
+// solution (tests/physics/modes_bound_test.cpp). Empty if only one of the two fields has a last maximum.
 std::optional<ModesBound> modes_bound(const Surface& surface, double frequency_Hz, const Edge& edge,
-                                      Comparison comparison = Comparison::finer,
-                                      const CentreLine* modes = nullptr);
+                                      Comparison comparison, const CentreLine& modes,
+                                      const CentreLine& compared);
 
 }  // namespace turnpoint::physics

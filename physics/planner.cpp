@@ -18,9 +18,19 @@
 namespace turnpoint::physics {
 namespace {
 
-// safety factor, because models may differ more between the probe points than at them
-constexpr double probe_margin = 1.9;
-constexpr int probes = 160;
+// Margins of the differences between `mode` and `modes`, because what the models leave out may differ more
+// between the points at which they are compared; and of those from a coarser solution, which misses a part of
+// what the models leave out: of |v|, and of the level and of edges, which are differences at one place.
+constexpr double probe_margin = 1.9, field_margin = 1.25, point_margin = 2;
+// the least fall between a last maximum and the drive edge for which the maximum counts as certain; more if
+// the solution may be wrong by a quarter of it
+constexpr double certain_fall = 0.05;
+// What the error of `modes` near a resonance is at most, divided by the bound from a coarser solution.
+constexpr double resonant_share = 0.25;
+// Only if the bound of `mode` that is known without solving for `modes` is at most this many times the
+// tolerance, a coarse solution of `modes` is tried, which may show that `mode` suffices. On clamped plates
+// that bound says too little.
+constexpr double hopeless = 8;
 constexpr double unknown = 2, unknown_dB = 120;
 // An edge that friction defines lies between the last maximum and this fraction of it.
 constexpr double faint = 0.02;
@@ -31,73 +41,17 @@ constexpr double membrane_accuracy = 2e-3, plate_accuracy = 2.5e-3, tense_plate_
                  thick_plate_accuracy = 4e-3, plate_piston_accuracy = 0.15;
 // how much the square of the largest slope of the sides adds to that on a membrane, relative to it
 constexpr double steep_share = 0.25;
+// Error that is assumed of the coarser solution with which `mode` is compared, if no higher mode resonates;
+// of its wave at the drive edge, whose phase is less exact; and what a resonance adds. The largest
+// differences between coarse solutions and `modes` that the margins above do not hold were half of these.
+constexpr double coarse_accuracy = 2e-3, coarse_thick_accuracy = 5e-3, coarse_membrane_phase = 5e-3,
+                 coarse_plate_phase = 3e-2, coarse_resonance = 1e-4;
 // how much a resonance of a higher mode adds to the assumed error of `modes`
 constexpr double membrane_resonance = 5e-4, plate_resonance = 6e-3, thick_plate_resonance = 6e-4;
 // shift of an edge relative to the cut-off half-width, divided by the error of `modes`; larger with a quality
 // factor of the wave below 30, because the field is then less steep at its edges. On clamped thin plates the
 // largest shift found was 0.28 of the error that is assumed.
 constexpr double edge_share = 0.8, plate_edge_share = 0.32, lossy_edge_share = 1.2, lossy_below = 30;
-
-// The profile of one model: logarithms of |v| at the probe points, and the positions of its maximum and edge.
-struct Probe {
-  std::shared_ptr<const CentreLine> line;
-  std::vector<double> ln;
-  std::optional<double> peak, edge;
-  double ln_peak = 0, ln_drive = 0;
-};
-
-std::vector<double> probe_points(const Surface& surface) {
-  std::vector<double> x;
-  for (int i = 0; i <= probes; ++i) x.push_back(surface.length_m * i / probes);
-  return x;
-}
-
-Probe probe(const Surface& surface, const Edge& edge, double f, Model model) {
-  Probe p;
-  p.line = make_centre_line(surface, f, model);
-  std::vector<std::complex<double>> v(probes + 1);
-  p.ln.resize(probes + 1);
-  p.peak = p.line->last_peak_m();
-  p.ln_drive = p.line->value(0).ln_magnitude();
-  p.ln_peak = p.peak ? p.line->value(*p.peak).ln_magnitude() : p.ln_drive;
-  p.line->evaluate(probe_points(surface), 1.0, p.ln_peak, v, p.ln);
-  for (double& one : p.ln) one = std::max(one, -700.0);
-  if (edge.kind == Edge::Kind::percent) p.edge = p.line->level_m(edge.level);
-  if (edge.kind == Edge::Kind::peak || edge.kind == Edge::Kind::friction) p.edge = p.peak;
-  return p;
-}
-
-// The differences between two models at the probe points. The members correspond to the bounds of a
-// RungEstimate.
-struct Difference {
-  double amplitude = 0, level_dB = 0, position_m = 0;
-};
-
-Difference compare(const Surface& surface, const PlanRequest& request, const Edge& edge, const Probe& a,
-                   const Probe& b) {
-  Difference d;
-  double worst = 0, most = 0;
-  const bool drive = request.normalise != Normalise::peak;
-  const double shift_a = drive ? a.ln_peak - a.ln_drive : 0, shift_b = drive ? b.ln_peak - b.ln_drive : 0;
-  for (std::size_t i = 0; i < a.ln.size(); ++i) {
-    const double va = std::exp(std::min(300.0, a.ln[i] + shift_a)),
-                 vb = std::exp(std::min(300.0, b.ln[i] + shift_b));
-    worst = std::max(worst, std::abs(va - vb));
-    most = std::max(most, vb);
-  }
-  d.amplitude = probe_margin * worst / most;
-  d.level_dB = 8.686 * std::abs((a.ln_peak - a.ln_drive) - (b.ln_peak - b.ln_drive));
-  // one profile has a last maximum and the other has none: they are normalised differently and cannot be
-  // compared
-  if (a.peak.has_value() != b.peak.has_value()) {
-    d.amplitude += unknown;
-    d.level_dB += unknown_dB;
-  }
-  if (edge.kind == Edge::Kind::turning) return d;
-  if (a.edge.has_value() != b.edge.has_value()) d.position_m = surface.length_m;
-  if (a.edge && b.edge) d.position_m = 1.05 * std::abs(*a.edge - *b.edge);
-  return d;
-}
 
 // Time of an evaluation on one 3 GHz core. The formulas are fitted to measurements by `turnpoint-bench
 // physics`.
@@ -137,20 +91,25 @@ void merge(RungEstimate& all, const RungEstimate& one) {
 struct Reference {
   double f;
   Edge edge;
-  Probe mode;
+  std::shared_ptr<const CentreLine> mode;
+  std::optional<double> peak_m, edge_m;  // the last maximum and the edge of `mode`
   double conditioning;
   ModeBound bound;
   bool shallow_peak;  // true if slightly more loss would remove the last maximum
 };
 
 Reference reference(const Surface& surface, const Edge& edge, double f) {
-  Probe mode = probe(surface, edge, f, Model::mode);
-  const double conditioning = mode.line->drive_conditioning(wavenumber_per_m(surface, f));
+  std::shared_ptr<const CentreLine> mode = make_centre_line(surface, f, Model::mode);
+  const auto peak = mode->last_peak_m();
+  std::optional<double> at;
+  if (edge.kind == Edge::Kind::percent) at = mode->level_m(edge.level);
+  if (edge.kind == Edge::Kind::peak || edge.kind == Edge::Kind::friction) at = peak;
+  const double conditioning = mode->drive_conditioning(wavenumber_per_m(surface, f));
   const auto farthest =
-      edge.kind == Edge::Kind::friction ? mode.line->level_m(faint).value_or(surface.length_m) : mode.edge;
-  const auto bound = mode_bound(surface, f, conditioning, mode.peak, farthest);
-  const bool uncertain_peak = mode.peak && peak_is_shallow(surface, f, *mode.peak);
-  return {f, edge, std::move(mode), conditioning, bound, uncertain_peak};
+      edge.kind == Edge::Kind::friction ? mode->level_m(faint).value_or(surface.length_m) : at;
+  const auto bound = mode_bound(surface, f, conditioning, peak, farthest);
+  const bool uncertain_peak = peak && peak_is_shallow(surface, f, *peak);
+  return {f, edge, std::move(mode), peak, at, conditioning, bound, uncertain_peak};
 }
 
 RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference) {
@@ -163,7 +122,7 @@ RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, c
       reference.edge.kind == Edge::Kind::friction ? Edge::peak() : reference.edge, {}, {}, {}};
   const auto x = solve_edge_m(surface, options, reference.f, Model::edge, Wave::exact);
   e.boundary_bound_m = reference.bound.position_m() + (reference.shallow_peak ? surface.length_m : 0);
-  if (x.has_value() != reference.mode.edge.has_value()) e.boundary_bound_m += surface.length_m;
+  if (x.has_value() != reference.edge_m.has_value()) e.boundary_bound_m += surface.length_m;
   return e;
 }
 
@@ -203,20 +162,16 @@ void add_sides(RungEstimate& e, const PlanRequest& request, const Reference& ref
   if (reference.edge.kind != Edge::Kind::turning) e.boundary_bound_m += sides.position_m;
 }
 
-// Estimates the error bounds of the model `modes` without solving it. They depend on how much the field is
-// larger than the motion of the drive edge. The first mode tells this, but not on a clamped plate on which
-// its error exceeds the field; there nothing can be assumed.
-RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference) {
+// The error bounds of a solution of the two-dimensional field whose |v| is wrong by `accuracy` if the drive
+// edge moves by one, and whose wave at the drive edge by `phase`. `conditioning` says how much the field is
+// larger than the motion of the drive edge.
+RungEstimate assumed_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference,
+                              double accuracy, double phase, double conditioning) {
   RungEstimate e;
   e.cost_s = cost_s(surface, reference.f, Model::modes, request.points);
-  const double accuracy = modes_accuracy(surface, reference.bound);
   const bool drive = request.normalise != Normalise::peak;
-  e.amplitude_bound = accuracy * (drive ? reference.conditioning : 1);
-  e.level_bound_dB = 20 * std::log10(1 + accuracy * reference.conditioning);
-  if (reference.bound.shape > 1 && Dispersion(surface).clamped_bending() && modes_bound_applies(surface)) {
-    if (drive) e.amplitude_bound += unknown;
-    e.level_bound_dB += unknown_dB;
-  }
+  e.amplitude_bound = drive ? phase * conditioning : accuracy;
+  e.level_bound_dB = 20 * std::log10(1 + phase * conditioning);
   const bool lossy = Dispersion(surface).wave_quality(reference.f, surface.quality_factor) < lossy_below;
   const double share = lossy ? lossy_edge_share : is_thin_clamped(surface) ? plate_edge_share : edge_share;
   e.boundary_bound_m =
@@ -226,20 +181,47 @@ RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, 
   return e;
 }
 
-// Computes the error bounds of the model `modes` by solving a second time.
+// Estimates the error bounds of the model `modes` without solving it. How high the field is, the first mode
+// tells, but not on a clamped plate on which its error exceeds the field; there nothing can be assumed.
+RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference) {
+  const double accuracy = modes_accuracy(surface, reference.bound);
+  RungEstimate e = assumed_estimate(surface, request, reference, accuracy, accuracy, reference.conditioning);
+  if (reference.bound.shape > 1 && Dispersion(surface).clamped_bending() && modes_bound_applies(surface)) {
+    if (request.normalise != Normalise::peak) e.amplitude_bound += unknown;
+    e.level_bound_dB += unknown_dB;
+  }
+  return e;
+}
+
+// Computes the error bounds of the model `modes` by comparing it with another solution. A coarser one shows
+// what a resonance of a higher mode adds, so that only the error without resonances is assumed beside it.
 RungEstimate compared_modes_estimate(const Surface& surface, const PlanRequest& request,
                                      const Reference& reference, Comparison comparison,
-                                     const CentreLine& modes) {
-  RungEstimate e = modes_estimate(surface, request, reference);
-  const auto bound = modes_bound(surface, reference.f, reference.edge, comparison, &modes);
-  e.reason = std::string("two-dimensional field, compared with a ") +
-             (comparison == Comparison::finer ? "finer" : "coarser") + " solution";
-  e.amplitude_bound = !bound ? unknown : request.normalise == Normalise::peak ? bound->shape : bound->drive;
-  e.level_bound_dB = bound ? bound->level_dB : unknown_dB;
-  e.boundary_bound_m =
+                                     const CentreLine& modes, const CentreLine& compared) {
+  const auto bound = modes_bound(surface, reference.f, reference.edge, comparison, modes, compared);
+  RungEstimate found;
+  found.cost_s = cost_s(surface, reference.f, Model::modes, request.points);
+  found.reason = std::string("two-dimensional field, compared with a ") +
+                 (comparison == Comparison::finer ? "finer" : "coarser") + " solution";
+  found.amplitude_bound = !bound                                 ? unknown
+                          : request.normalise == Normalise::peak ? bound->shape
+                                                                 : bound->drive;
+  found.level_bound_dB = bound ? bound->level_dB : unknown_dB;
+  found.boundary_bound_m =
       (bound ? bound->position_m : surface.length_m) + placed_elsewhere_m(request, reference);
-  add_sides(e, request, reference);
-  return e;
+  add_sides(found, request, reference);
+  if (comparison != Comparison::coarsest || !bound) return found;
+  ModeBound without = reference.bound;
+  without.resonance = 1;
+  const double quiet = modes_accuracy(surface, without);
+  const double conditioning =
+      std::max(reference.conditioning, modes.drive_conditioning(wavenumber_per_m(surface, reference.f)));
+  const RungEstimate assumed = assumed_estimate(surface, request, reference, quiet, quiet, conditioning);
+  const auto better = [](double& one, double other) { one = std::min(one, resonant_share * one + other); };
+  better(found.amplitude_bound, assumed.amplitude_bound);
+  better(found.level_bound_dB, assumed.level_bound_dB);
+  better(found.boundary_bound_m, assumed.boundary_bound_m);
+  return found;
 }
 
 RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference,
@@ -262,23 +244,37 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
   // The two-dimensional field may have a last maximum although the model `mode` has none, or have it at
   // another place.
   if (reference.shallow_peak) e.boundary_bound_m += surface.length_m;
-  if (!reference.mode.peak || reference.shallow_peak) {
+  if (!reference.peak_m || reference.shallow_peak) {
     e.amplitude_bound += unknown;
     e.level_bound_dB += unknown_dB;
   }
   return e;
 }
 
-// Computes the error bounds of the model `mode` by solving for `modes`. The error of |v| is at most the
-// difference between the two plus the error of `modes`.
+// By what the differences between `mode` and a solution of `modes` are multiplied: those of |v|, and those of
+// the level and of edges. A last maximum that slightly more loss would remove is certain if |v| of `modes`
+// falls by `fall` between it and the drive edge.
+struct Margins {
+  double field, points, fall;
+};
+
+// Computes the error bounds of the model `mode` by comparing it with a solution of `modes`, whose own error
+// bounds are `own`: the error is at most the difference, times a margin, plus the error of that solution.
+// What nothing is known of stays as it is: the level and edges of a field without a last maximum, and edges
+// that friction defines.
 RungEstimate compared_mode_estimate(const Surface& surface, const PlanRequest& request,
-                                    const Reference& reference) {
+                                    const Reference& reference, const CentreLine& modes,
+                                    const RungEstimate& own, const Margins& margins) {
   RungEstimate e = profile_estimate(surface, request, reference, Model::mode);
-  const RungEstimate modes = modes_estimate(surface, request, reference);
-  const Difference d = compare(surface, request, reference.edge, reference.mode,
-                               probe(surface, reference.edge, reference.f, Model::modes));
-  e.amplitude_bound = std::min(e.amplitude_bound, modes.amplitude_bound + d.amplitude);
-  e.level_bound_dB = std::min(e.level_bound_dB, modes.level_bound_dB + probe_margin * d.level_dB);
+  const auto apart = line_difference(surface, reference.f, reference.edge, *reference.mode,
+                                     reference.mode->value(0).ln_magnitude(), modes);
+  if (!apart || (reference.shallow_peak && apart->fall < margins.fall)) return e;
+  const double difference = request.normalise == Normalise::peak ? apart->shape : apart->drive;
+  e.amplitude_bound = std::min(e.amplitude_bound, own.amplitude_bound + margins.field * difference);
+  if (!reference.peak_m) return e;
+  e.level_bound_dB = std::min(e.level_bound_dB, own.level_bound_dB + 8.686 * margins.points * apart->ln_gain);
+  if (reference.edge.kind == Edge::Kind::percent || reference.edge.kind == Edge::Kind::peak)
+    e.boundary_bound_m = std::min(e.boundary_bound_m, own.boundary_bound_m + margins.points * apart->edge_m);
   return e;
 }
 
@@ -298,16 +294,51 @@ RungEstimate estimate_with(const Surface& surface, const PlanRequest& request,
   return all;
 }
 
-// `solved` holds the solutions of `modes`, or nothing at first.
+// The solutions of all tones by `modes` at the default resolution.
+SolvedLines solve_modes(const Surface& surface, const std::vector<Reference>& references) {
+  SolvedLines solved;
+  for (const Reference& one : references) solved.push_back(make_centre_line(surface, one.f, Model::modes));
+  return solved;
+}
+
+// The solutions of all tones by `modes` at another resolution.
+SolvedLines solve_compared(const Surface& surface, const std::vector<Reference>& references,
+                           Comparison comparison) {
+  SolvedLines solved;
+  for (const Reference& one : references) solved.push_back(make_compared_line(surface, one.f, comparison));
+  return solved;
+}
+
 RungEstimate compared_modes(const Surface& surface, const PlanRequest& request,
                             const std::vector<Reference>& references, Comparison comparison,
-                            SolvedLines& solved) {
+                            const SolvedLines& modes, const SolvedLines& compared) {
   RungEstimate all;
   all.model = Model::modes;
-  for (std::size_t i = solved.size(); i < references.size(); ++i)
-    solved.push_back(make_centre_line(surface, references[i].f, Model::modes));
   for (std::size_t i = 0; i < references.size(); ++i)
-    merge(all, compared_modes_estimate(surface, request, references[i], comparison, *solved[i]));
+    merge(all, compared_modes_estimate(surface, request, references[i], comparison, *modes[i], *compared[i]));
+  return all;
+}
+
+// The error bounds of `mode` by comparison with coarse solutions of `modes`.
+RungEstimate coarsely_compared_mode(const Surface& surface, const PlanRequest& request,
+                                    const std::vector<Reference>& references, const SolvedLines& coarse) {
+  const double phase = Dispersion(surface).clamped_bending() ? coarse_plate_phase : coarse_membrane_phase;
+  const double quiet = surface.theory == PlateTheory::mindlin ? coarse_thick_accuracy : coarse_accuracy;
+  RungEstimate all;
+  all.model = Model::mode;
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    const Reference& one = references[i];
+    const double conditioning =
+        std::max(one.conditioning, coarse[i]->drive_conditioning(wavenumber_per_m(surface, one.f)));
+    const double resonance = coarse_resonance * (one.bound.resonance - 1);
+    const double steep = 1 + steep_share * one.bound.steepest * one.bound.steepest;
+    const double accuracy = steep * quiet + resonance;
+    const RungEstimate own =
+        assumed_estimate(surface, request, one, accuracy, steep * phase + resonance, conditioning);
+    const Margins margins{field_margin, point_margin, std::max(certain_fall, 4 * accuracy)};
+    merge(all, compared_mode_estimate(surface, request, one, *coarse[i], own, margins));
+  }
+  all.reason = "first transverse mode with loss, compared with a coarse two-dimensional field";
   return all;
 }
 
@@ -319,10 +350,11 @@ std::vector<Reference> references_for(const Surface& surface, const PlanRequest&
   return list;
 }
 
-bool inside(const RungEstimate& e, const Tolerance& tolerance) {
-  return e.usable && (!tolerance.boundary_m || e.boundary_bound_m <= *tolerance.boundary_m) &&
-         (!tolerance.amplitude || e.amplitude_bound <= *tolerance.amplitude) &&
-         (!tolerance.level_dB || e.level_bound_dB <= *tolerance.level_dB);
+// True if all bounds that a tolerance limits are at most `times` the tolerance.
+bool inside(const RungEstimate& e, const Tolerance& tolerance, double times = 1) {
+  return e.usable && (!tolerance.boundary_m || e.boundary_bound_m <= times * *tolerance.boundary_m) &&
+         (!tolerance.amplitude || e.amplitude_bound <= times * *tolerance.amplitude) &&
+         (!tolerance.level_dB || e.level_bound_dB <= times * *tolerance.level_dB);
 }
 
 void check(const Surface& surface, const PlanRequest& request) {
@@ -354,19 +386,53 @@ std::string numbers(const RungEstimate& e, const Tolerance& tolerance) {
   return text.str();
 }
 
+// True if a coarse solution of `modes` may show that `mode` suffices, whose bounds are known without one. It
+// may not if there is no last maximum.
+bool hopeful(const Surface& surface, const PlanRequest& request, const std::vector<Reference>& references,
+             const RungEstimate& mode) {
+  return (Dispersion(surface).clamped_bending() || inside(mode, request.tolerance, hopeless)) &&
+         std::ranges::all_of(references, [](const Reference& one) { return one.peak_m.has_value(); });
+}
+
+// Solves for `modes`, and compares it with coarser solutions, which may be known already, and then with finer
+// ones, until its bounds are inside the tolerance. If a comparison is impossible, the bounds found before it
+// stay.
+void compare_modes(const Surface& surface, const PlanRequest& request,
+                   const std::vector<Reference>& references, SolvedLines coarse, SolvedLines& solved,
+                   RungEstimate& modes) {
+  try {
+    solved = solve_modes(surface, references);
+  } catch (const std::domain_error& error) {
+    modes.usable = false;
+    modes.reason = error.what();
+    return;
+  }
+  try {
+    for (const auto comparison : {Comparison::coarsest, Comparison::coarser, Comparison::finer}) {
+      if (comparison != Comparison::coarsest || coarse.empty())
+        coarse = solve_compared(surface, references, comparison);
+      modes = compared_modes(surface, request, references, comparison, solved, coarse);
+      if (inside(modes, request.tolerance)) return;
+    }
+  } catch (const std::domain_error&) {
+  }
+}
+
 }  // namespace
 
 RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model model) {
   check(surface, request);
   const auto references = references_for(surface, request);
-  if (model == Model::modes && modes_bound_applies(surface)) {
-    SolvedLines solved;
-    return compared_modes(surface, request, references, Comparison::finer, solved);
-  }
+  if (model == Model::modes && modes_bound_applies(surface))
+    return compared_modes(surface, request, references, Comparison::finer, solve_modes(surface, references),
+                          solve_compared(surface, references, Comparison::finer));
   if (model != Model::mode || !modes_bound_applies(surface) || !Dispersion(surface).clamped_bending())
     return estimate_with(surface, request, references, model);
   RungEstimate all;
-  for (const Reference& one : references) merge(all, compared_mode_estimate(surface, request, one));
+  for (const Reference& one : references)
+    merge(all,
+          compared_mode_estimate(surface, request, one, *make_centre_line(surface, one.f, Model::modes),
+                                 modes_estimate(surface, request, one), {probe_margin, probe_margin, 2}));
   return all;
 }
 
@@ -380,28 +446,36 @@ PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {
   std::stable_sort(choice.considered.begin(), choice.considered.end(),
                    [](const RungEstimate& a, const RungEstimate& b) { return a.cost_s < b.cost_s; });
   auto& rungs = choice.considered;
-  SolvedLines by_modes;
-  auto chosen = std::find_if(rungs.begin(), rungs.end(),
-                             [&](const RungEstimate& e) { return inside(e, request.tolerance); });
-  if (chosen == rungs.end() && modes_bound_applies(surface)) {
-    chosen = std::find_if(rungs.begin(), rungs.end(), [](const auto& e) { return e.model == Model::modes; });
-    for (const auto comparison : {Comparison::coarser, Comparison::finer}) {
-      *chosen = compared_modes(surface, request, references, comparison, by_modes);
-      if (inside(*chosen, request.tolerance)) break;
+  const auto rung = [&rungs](Model model) { return std::ranges::find(rungs, model, &RungEstimate::model); };
+  const auto first_inside = [&] {
+    return std::ranges::find_if(rungs, [&](const auto& e) { return inside(e, request.tolerance); });
+  };
+  auto chosen = first_inside();
+  const bool comparable = modes_bound_applies(surface);
+  SolvedLines coarse, by_modes;
+  if (const auto mode = rung(Model::mode);
+      comparable && mode < chosen && hopeful(surface, request, references, *mode)) {
+    try {
+      coarse = solve_compared(surface, references, Comparison::coarsest);
+      *mode = coarsely_compared_mode(surface, request, references, coarse);
+    } catch (const std::domain_error&) {  // `modes` does not apply, so nothing more is known of `mode`
     }
-    if (!inside(*chosen, request.tolerance)) chosen = rungs.end();
+    chosen = first_inside();
+  }
+  if (const auto modes = rung(Model::modes); comparable && chosen == rungs.end()) {
+    compare_modes(surface, request, references, std::move(coarse), by_modes, *modes);
+    if (inside(*modes, request.tolerance)) chosen = modes;
   }
   choice.inside = chosen != rungs.end();
   if (!choice.inside) {
-    chosen = std::find_if(rungs.begin(), rungs.end(), [&](const RungEstimate& e) {
-      return e.model == (surface.theory == PlateTheory::elastic ? Model::mode : Model::modes);
-    });
+    chosen = rung(Model::modes);
+    if (const auto mode = rung(Model::mode); !chosen->usable && mode != rungs.end()) chosen = mode;
   }
   choice.model = chosen->model;
   if (choice.model == Model::modes)
     choice.solved = std::move(by_modes);
   else
-    for (const Reference& one : references) choice.solved.push_back(one.mode.line);
+    for (const Reference& one : references) choice.solved.push_back(one.mode);
   choice.bound = *chosen;
   std::ostringstream text;
   const auto bounds = numbers(*chosen, request.tolerance);

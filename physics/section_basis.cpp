@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "physics/dispersion.hpp"
+#include "physics/operations.hpp"
 #include "physics/root.hpp"
 #include "physics/section_elements.hpp"
 #include "physics/transverse_basis.hpp"
@@ -25,7 +26,9 @@ SectionMatrix weighted_gram(const Components& a, const SectionMatrix& law, const
     if (a[i].isZero(0)) continue;
     for (std::size_t j = 0; j < b.size(); ++j) {
       const double part = law(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-      if (part != 0 && !b[j].isZero(0)) sum += part * a[i] * weight.asDiagonal() * b[j].transpose();
+      if (part == 0 || b[j].isZero(0)) continue;
+      count_operations(2 * static_cast<double>(a[i].size() * b[j].rows()));
+      sum += part * a[i] * weight.asDiagonal() * b[j].transpose();
     }
   }
   return sum;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "physics/element_basis.hpp"
+#include "physics/operations.hpp"
 #include "physics/transverse_basis.hpp"
 
 namespace turnpoint::physics {
@@ -170,10 +171,13 @@ Eigen::VectorXd SectionElements::thickening(const Eigen::VectorXd& along) const 
 }
 
 SectionCutOff section_cut_off(const SectionPencil& pencil) {
+  const auto n = static_cast<double>(pencil.plane.rows());
+  count_operations(n * n * n / 3);
   const Eigen::LLT<MatrixXd> solver(pencil.plane);
   Eigen::VectorXd x = Eigen::VectorXd::Ones(pencil.plane.rows());
   double omega2 = 0;
   for (int i = 0; i < 60; ++i) {
+    count_operations(6 * n * n);
     x /= std::sqrt(x.dot(pencil.mass * x));
     const Eigen::VectorXd next = solver.solve(pencil.mass * x);
     const double now = 1 / x.dot(pencil.mass * next);
@@ -187,12 +191,16 @@ SectionCutOff section_cut_off(const SectionPencil& pencil) {
 
 SectionShapes section_shapes_of(const SectionPencil& p) {
   const SectionCutOff at = section_cut_off(p);
+  const auto n = static_cast<double>(p.shear.rows());
+  count_operations(2 * n * n * n / 3);
   const Eigen::PartialPivLU<MatrixXd> along(p.shear - at.omega * at.omega * p.along_mass);
   return {at.shape, along.solve(-p.coupling * at.shape), along.solve(-p.stretching * at.shape)};
 }
 
 SectionShapes section_shapes_of(const SectionPencil& p, double omega, double along2) {
   const double o2 = omega * omega;
+  const auto na = static_cast<double>(p.shear.rows()), nb = static_cast<double>(p.plane.rows());
+  count_operations(na * na * na / 3 + 2 * na * nb * (na + nb) + 2 * nb * nb * nb / 3);
   const Eigen::LDLT<MatrixXd> along(p.shear + along2 * p.along - o2 * p.along_mass);
   // the matrix that remains for B after A is eliminated
   const Eigen::PartialPivLU<MatrixXd> cross(p.plane + along2 * p.cross - o2 * p.mass -

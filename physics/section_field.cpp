@@ -7,6 +7,7 @@
 
 #include "physics/condensed.hpp"
 #include "physics/dispersion.hpp"
+#include "physics/operations.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -56,6 +57,10 @@ SectionElement section_element(const SectionBasis& section, const ModalSetup& se
   const auto both = [&k](S::Part i, S::Part j) -> Matrix { return k[i][j] + k[i][j].transpose(); };
   const Matrix stretch_across = both(S::stretch, S::across), stretch_local = both(S::stretch, S::local),
                across_local = both(S::across, S::local);
+  // ten products over the quadrature points, and ten matrices of the section for each pair of functions along
+  // x
+  count_operations(20 * static_cast<double>(points * count * count) +
+                   14 * static_cast<double>(n * n * count * (count + 1)));
   SectionElement all{Matrix(n * count, n * count), Matrix(n * count, n * count)};
   for (Eigen::Index a = 0; a < count; ++a) {
     for (Eigen::Index b = 0; b <= a; ++b) {
@@ -103,8 +108,10 @@ void solve_section_elements(const Surface& surface, double f, Losses losses,
     if (tail.size() == 0) {
       link.pull = Eigen::MatrixXcd::Zero(n, n);
     } else {
+      count_factorisation(static_cast<double>(n), static_cast<double>(n));
       link.pull = (ends.bottomRightCorner(n, n) + tail).partialPivLu().solve(ends.bottomLeftCorner(n, n));
     }
+    count_operations(8 * static_cast<double>(n * n * n));
     tail = ends.topLeftCorner(n, n) - ends.topRightCorner(n, n) * link.pull;
   }
   Eigen::VectorXcd u = section.drive.cast<std::complex<double>>();

@@ -8,6 +8,7 @@
 
 #include "physics/field.hpp"
 #include "physics/gate.hpp"
+#include "physics/operations.hpp"
 #include "physics/root.hpp"
 #include "physics/taylor_kernel.hpp"
 #include "physics/taylor_series.hpp"
@@ -24,7 +25,20 @@ struct Local {
   std::complex<double> dg;  // the derivative dg/dx
 };
 
+// The value of `at` without the derivative.
+std::complex<double> value_at(const TaylorStep& step, double x) {
+  count_operations(4.0 * step.order);
+  const double tau = (step.x_start - x) / step.scale;
+  double re = step.re[step.order], im = step.im[step.order];
+  for (int k = step.order - 1; k >= 0; --k) {
+    re = re * tau + step.re[k];
+    im = im * tau + step.im[k];
+  }
+  return {re, im};
+}
+
 Local at(const TaylorStep& step, double x) {
+  count_operations(8.0 * step.order);
   const double tau = (step.x_start - x) / step.scale;
   double re = step.re[step.order], im = step.im[step.order];
   double dre = 0, dim = 0;
@@ -55,6 +69,9 @@ struct TaylorMarch::State {
   void march(TaylorState from, Until until);
   const TaylorStep* step_at(double x) const;
   Local local(double x, double& ln_scale) const;
+  std::complex<double> local_value(double x, double& ln_scale) const;
+  Scaled value_of(std::complex<double> g, double x, double ln_scale) const;
+  Scaled slope_of(const Local& g, double x, double ln_scale) const;
   double rise(const Local& g, double x) const;
   double bend(const Local& g, double x) const;
   std::optional<double> peak_in(const TaylorStep& step, double outermost) const;
@@ -111,6 +128,24 @@ Local TaylorMarch::State::local(double x, double& ln_scale) const {
   const TaylorState state = apex->at(x);
   ln_scale = state.ln_scale();
   return {state.g, state.dg};
+}
+
+std::complex<double> TaylorMarch::State::local_value(double x, double& ln_scale) const {
+  const TaylorStep* step = step_at(x);
+  if (step == nullptr) return local(x, ln_scale).g;
+  ln_scale = step->ln_scale;
+  return value_at(*step, x);
+}
+
+Scaled TaylorMarch::State::value_of(std::complex<double> g, double x, double ln_scale) const {
+  if (equation.w_power == 0 || g == 0.0) return {g, ln_scale};
+  return {g * std::pow(taper.half_width_m(x), -equation.w_power), ln_scale};
+}
+
+Scaled TaylorMarch::State::slope_of(const Local& g, double x, double ln_scale) const {
+  const double power = equation.w_power, w = taper.half_width_m(x);
+  if (power == 0 || !(w > 0)) return {g.dg, ln_scale};
+  return {std::pow(w, -power) * (g.dg - power * taper.slope(x) / w * g.g), ln_scale};
 }
 
 // Returns half of d|v|^2/dx times W^(2 w_power). It is positive where |v| rises with x.
@@ -214,27 +249,17 @@ TaylorMarch& TaylorMarch::operator=(TaylorMarch&&) noexcept = default;
 int TaylorMarch::steps() const { return static_cast<int>(state_->steps.size()); }
 
 Scaled TaylorMarch::value(double x) const {
-  Scaled result;
-  const Local g = state_->local(x, result.ln_scale);
-  if (state_->equation.w_power == 0 || g.g == 0.0) {
-    result.mantissa = g.g;
-  } else {
-    result.mantissa = g.g * std::pow(state_->taper.half_width_m(x), -state_->equation.w_power);
-  }
-  return result;
+  double ln_scale = 0;
+  const std::complex<double> g = state_->local_value(x, ln_scale);
+  return state_->value_of(g, x, ln_scale);
 }
 
-Scaled TaylorMarch::slope(double x) const {
-  Scaled result;
-  const Local g = state_->local(x, result.ln_scale);
-  const double power = state_->equation.w_power;
-  const double w = state_->taper.half_width_m(x);
-  if (power == 0 || !(w > 0)) {
-    result.mantissa = g.dg;
-  } else {
-    result.mantissa = std::pow(w, -power) * (g.dg - power * state_->taper.slope(x) / w * g.g);
-  }
-  return result;
+Scaled TaylorMarch::slope(double x) const { return motion(x).slope; }
+
+TaylorMarch::Motion TaylorMarch::motion(double x) const {
+  double ln_scale = 0;
+  const Local g = state_->local(x, ln_scale);
+  return {state_->value_of(g.g, x, ln_scale), state_->slope_of(g, x, ln_scale)};
 }
 
 std::optional<double> TaylorMarch::last_peak_m() const {
@@ -321,6 +346,9 @@ std::size_t run_length(std::span<const double> x, std::size_t first, const Taylo
 // Computes v = g W^-power for consecutive points that lie within one step.
 void TaylorMarch::State::run(const TaylorStep& step, std::span<const double> x, double* re,
                              double* im) const {
+  // the polynomial, the root of the width, the rotation, and the logarithm of the magnitude
+  count_operations(static_cast<double>(x.size()) *
+                   ((equation.a.imag() != 0 ? 4 : 2) * step.order + 2 * function_operations));
   if (equation.a.imag() != 0) {
     horner_complex(step, x.data(), x.size(), re, im);
   } else {

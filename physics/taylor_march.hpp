@@ -47,6 +47,10 @@ class TaylorMarch {
   // The displacement v and its derivative dv/dx at one point of [0, length_m].
   Scaled value(double x_m) const;
   Scaled slope(double x_m) const;
+  struct Motion {
+    Scaled value, slope;
+  };
+  Motion motion(double x_m) const;  // both, which takes as long as the slope alone
 
   // Computes v exp(-ln_reference) / phase_reference at many points, and ln|v| - ln_reference. Any order of
   // `x_m` is allowed; ascending is fastest. Where v underflows it is 0, but the logarithm is still correct.

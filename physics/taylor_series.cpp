@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "physics/operations.hpp"
+
 namespace turnpoint::physics {
 namespace {
 
@@ -153,6 +155,8 @@ int SeriesMaker::potential_series(double x, double knot, double scale,
 void SeriesMaker::convolved(double x, double knot, TaylorStep& step) const {
   std::array<double, taylor_order> q;
   const int count = potential_series(x, knot, step.scale, q);
+  // the potential's series by recurrences, and its product with the solution's
+  count_operations(20 * taylor_order + 4.0 * count * (taylor_order - 0.5 * count) + 8 * taylor_order);
   const double square = step.scale * step.scale;
   const double ai = equation_.a.imag();
   double* re = step.re;
@@ -194,6 +198,7 @@ void SeriesMaker::fill(const TaylorState& from, TaylorStep& step) const {
   step.im[1] = dg.imag();
   const auto* taper = std::get_if<LinearTaper>(&taper_.form());
   if (taper != nullptr && taper->slope > 0) {
+    count_operations((equation_.a.imag() != 0 ? 26 : 14) * taylor_order);
     equation_.a.imag() != 0 ? linear<true>(from.x, step) : linear<false>(from.x, step);
   } else {
     convolved(from.x, knot, step);
@@ -223,6 +228,7 @@ TaylorState ApexSeries::at(double x) const {
   std::complex<double> term = 1, sum = 1, derivative = 0;
   for (int j = 1; j < 60; ++j) {
     term *= z / (j * (j + mu_));
+    count_operations(20);
     sum += term;
     derivative += 2.0 * j * term;
     if (std::abs(term) * j < 1e-18 * std::abs(sum)) break;

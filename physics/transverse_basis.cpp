@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "physics/operations.hpp"
+
 namespace turnpoint::physics {
 
 namespace {
@@ -133,6 +135,7 @@ void TransverseBasis::integrate() {
   const std::array<Matrix, 4> parts{value_, first_ * eta.asDiagonal(),
                                     second_ * eta.cwiseProduct(eta).asDiagonal(), second_};
   const auto gram = [&](const Matrix& a, const Matrix& b) -> Matrix {
+    count_operations(2 * static_cast<double>(a.size() * b.rows()));
     return a * weight.asDiagonal() * b.transpose();
   };
   mass = gram(value_, value_);

@@ -8,8 +8,9 @@ namespace turnpoint::benchmark {
 /// same run.
 Report bench_planning();
 
-/// Measures how long it takes on average to choose a model and compute the field with it, on random membranes
-/// with random tolerances. The baseline is to use `modes` everywhere.
+/// Measures what it costs on average to choose a model and compute the field with it, on random surfaces of
+/// three kinds with random tolerances, in operations of the solvers and in processor time. It is compared
+/// with using `modes` everywhere, and with the cheapest model that truly suffices.
 Report bench_planner();
 
 }  // namespace turnpoint::benchmark

@@ -182,8 +182,10 @@ std::ostream& operator<<(std::ostream& out, const Tally& t) {
              << Tally::least(t.boundary);
 }
 
-RungEstimate coarse_estimate(const Surface& s, Normalise normalise) {
-  const ModesBound bound = modes_bound(s, frequency_Hz, Edge::percent(0.5), Comparison::coarser)
+RungEstimate coarse_estimate(const Surface& s, Normalise normalise, Comparison comparison,
+                             const CentreLine& modes) {
+  const auto other = make_compared_line(s, frequency_Hz, comparison);
+  const ModesBound bound = modes_bound(s, frequency_Hz, Edge::percent(0.5), comparison, modes, *other)
                                .value_or(ModesBound{2, 2, 120, s.length_m});
   RungEstimate e;
   e.amplitude_bound = normalise == Normalise::drive ? bound.drive : bound.shape;
@@ -206,8 +208,12 @@ struct Campaign {
   std::vector<double> error;  // errors of the model `modes`
   // error bounds that `modes` states: by comparing with a finer solution, with a coarser one, and before
   // solving
-  Tally finer, coarser, before;
+  Tally finer, coarser, coarsest, before;
   Tally mode;
+  // What choose_model states of its choice for a random tolerance of |v|, level or boundary; how often `mode`
+  // truly meets it, and is chosen then; and how often a choice that should meet it does not.
+  Tally choice;
+  int suffices = 0, taken = 0, beyond = 0;
   std::vector<double> map;  // error bounds of the boundary map, divided by its true errors
   int map_outside = 0;
 
@@ -220,6 +226,8 @@ struct Campaign {
   }
   void add(int number, const Surface& s, Normalise normalise, const CollocationGrid& finest);
   void add_map(int number, const Surface& s, const CollocatedField& truth, const CentreLine& line);
+  void add_choice(int number, const Surface& s, Normalise normalise, const Errors& of_mode,
+                  const Errors& of_modes);
 
  private:
   static std::ofstream open_lines() {
@@ -260,6 +268,39 @@ void Campaign::add_map(int number, const Surface& s, const CollocatedField& trut
   std::printf("scene %d: map %.2e of %.2e\n", number, miss, answer.error_bound_m);
 }
 
+bool meets(const Errors& e, const Tolerance& tolerance) {
+  return e.amplitude <= tolerance.amplitude.value_or(1e9) && e.level_dB <= tolerance.level_dB.value_or(1e9) &&
+         e.boundary_m <= tolerance.boundary_m.value_or(1e9);
+}
+
+void Campaign::add_choice(int number, const Surface& s, Normalise normalise, const Errors& of_mode,
+                          const Errors& of_modes) {
+  PlanRequest request = request_for(normalise);
+  Draw draw(static_cast<std::uint64_t>(number));
+  switch (draw.next() % 3) {
+    case 0:
+      request.tolerance.amplitude = draw.spread(3e-3, 1);
+      break;
+    case 1:
+      request.tolerance.level_dB = draw.spread(0.03, 3);
+      break;
+    default:
+      request.tolerance.boundary_m = draw.spread(2e-5, 2e-3);
+  }
+  const PlanChoice chosen = choose_model(s, request);
+  const bool is_mode = chosen.model == Model::mode, enough = meets(of_mode, request.tolerance);
+  const Errors& e = is_mode ? of_mode : of_modes;
+  choice.add(e, chosen.bound);
+  suffices += enough ? 1 : 0;
+  taken += enough && is_mode ? 1 : 0;
+  beyond += chosen.inside && !meets(e, request.tolerance) ? 1 : 0;
+  write(number, "chosen", e, chosen.bound);
+  if (enough) write(number, "taken", "mode", is_mode ? 1 : 0, 1);
+  if (!inside(e, chosen.bound) || (chosen.inside && !meets(e, request.tolerance)))
+    std::printf("scene %d: the choice is outside: %s; amplitude %.2e, boundary %.2e, level %.2e\n", number,
+                chosen.reason.c_str(), e.amplitude, e.boundary_m, e.level_dB);
+}
+
 void Campaign::add(int number, const Surface& s, Normalise normalise, const CollocationGrid& finest) {
   const auto x0 = turning_point_m(s, frequency_Hz);
   if (!x0 || *x0 < 0.02 * s.length_m) return;
@@ -268,8 +309,8 @@ void Campaign::add(int number, const Surface& s, Normalise normalise, const Coll
   PlanRequest request = request_for(normalise);
   const RungEstimate bound = estimate(s, request, Model::modes);
   request.tolerance.amplitude = 1e9;
-  const auto choice = choose_model(s, request);
-  const auto prior = std::ranges::find(choice.considered, Model::modes, &RungEstimate::model);
+  const auto loose = choose_model(s, request);
+  const auto prior = std::ranges::find(loose.considered, Model::modes, &RungEstimate::model);
   auto truth = std::make_unique<CollocatedField>(s, frequency_Hz);
   Errors e = errors(s, *line, 0, *truth, normalise);
   // the error is large, but that may be because the reference is not accurate enough
@@ -287,8 +328,9 @@ void Campaign::add(int number, const Surface& s, Normalise normalise, const Coll
       e.level_dB = std::max(1e-12, e.level_dB - own.level_dB);
     }
   }
-  const RungEstimate coarse = coarse_estimate(s, normalise);
-  if (!inside(e, bound) || !inside(e, *prior) || !inside(e, coarse))
+  const RungEstimate coarse = coarse_estimate(s, normalise, Comparison::coarser, *line);
+  const RungEstimate sketch = coarse_estimate(s, normalise, Comparison::coarsest, *line);
+  if (!inside(e, bound) || !inside(e, *prior) || !inside(e, coarse) || !inside(e, sketch))
     std::printf(
         "scene %d is outside: amplitude %.2e of %.2e, %.2e, %.2e; boundary %.2e of %.2e, %.2e, %.2e; "
         "level %.2e of %.2e, %.2e, %.2e\n",
@@ -298,9 +340,11 @@ void Campaign::add(int number, const Surface& s, Normalise normalise, const Coll
   error.push_back(e.amplitude);
   write(number, "modes", e, bound);
   write(number, "coarser", e, coarse);
+  write(number, "coarsest", e, sketch);
   write(number, "before", e, *prior);
   finer.add(e, bound);
   coarser.add(e, coarse);
+  coarsest.add(e, sketch);
   before.add(e, *prior);
   add_map(number, s, *truth, *line);
   const auto one = make_centre_line(s, frequency_Hz, Model::mode);
@@ -309,6 +353,7 @@ void Campaign::add(int number, const Surface& s, Normalise normalise, const Coll
   const Errors of_mode = errors(s, *one, one->value(0).ln_magnitude(), *truth, normalise);
   write(number, "mode", of_mode, stated);
   mode.add(of_mode, stated);
+  add_choice(number, s, normalise, of_mode, e);
   if (!inside(of_mode, stated))
     std::printf(
         "scene %d: mode is outside: amplitude %.2e of %.2e; boundary %.2e of %.2e; level %.2e of %.2e\n",
@@ -327,16 +372,22 @@ void compare_scenes(const char* surface, int usual, std::uint64_t seed, const Co
   for (int i = first; i < first + count; ++i) all.add_scene(seed, i, finest, make);
   if (count > usual)
     WARN(all.error.size() << " scenes from number " << first << ", median error " << median(all.error)
-                          << "\nfiner: " << all.finer << "\ncoarser: " << all.coarser << "\nbefore solving: "
-                          << all.before << "\nmode: " << all.mode << "\nmap: " << all.map_outside
+                          << "\nfiner: " << all.finer << "\ncoarser: " << all.coarser << "\ncoarsest: "
+                          << all.coarsest << "\nbefore solving: " << all.before << "\nmode: " << all.mode
+                          << "\nchoice: " << all.choice << "\nmode suffices in " << all.suffices
+                          << " scenes and is taken in " << all.taken << " of them\nmap: " << all.map_outside
                           << " outside; bound / error, median " << median(all.map));
   CHECK(all.error.size() > 0.8 * count);
   CHECK(all.finer.outside <= count / 10000);
   CHECK(all.coarser.outside <= count / 10000);
+  CHECK(all.coarsest.outside <= count / 10000);
   CHECK(all.before.outside <= count / 10000);
   CHECK(all.mode.outside <= count / 10000);
+  CHECK(all.choice.outside <= count / 10000);
+  CHECK(all.beyond <= count / 10000);
   CHECK(all.map_outside <= count / 10000);
   if (count < std::max(usual, 16)) return;  // the median of a few scenes means nothing
+  CHECK(all.taken >= 0.7 * all.suffices);
   CHECK(median(all.finer.amplitude) < 10);
   CHECK(median(all.finer.level) < 10);
   CHECK(median(all.finer.boundary) < 10);
@@ -375,6 +426,7 @@ TEST_CASE("the bounds of modes hold on stepped and on steep clamped plates", "[p
   CHECK(all.error.size() == 4);
   CHECK(all.finer.outside == 0);
   CHECK(all.coarser.outside == 0);
+  CHECK(all.coarsest.outside == 0);
   CHECK(all.before.outside == 0);
 }
 
@@ -465,6 +517,8 @@ TEST_CASE("the bounds of modes hold on tables with close, uneven and noisy point
         const RungEstimate bound = estimate(s, request, model);
         request.coarsest = model;
         const RungEstimate assumed = choose_model(s, request).bound;  // before solving
+        request.tolerance.amplitude = 0.7 * assumed.amplitude_bound;  // so that solutions are compared
+        const PlanChoice tight = choose_model(s, request);
         const double ln_unit = model == Model::modes ? 0 : line->value(0).ln_magnitude();
         double worst = 0, most = 0;
         for (int i = 0; i <= 300; ++i) {
@@ -493,6 +547,10 @@ TEST_CASE("the bounds of modes hold on tables with close, uneven and noisy point
         CHECK(worst / most <= assumed.amplitude_bound);
         CHECK(level_dB <= assumed.level_bound_dB);
         CHECK(moved_m <= assumed.boundary_bound_m);
+        if (tight.model != model) continue;
+        CHECK(worst / most <= tight.bound.amplitude_bound);
+        CHECK(level_dB <= tight.bound.level_bound_dB);
+        CHECK(moved_m <= tight.bound.boundary_bound_m);
       }
     }
   }

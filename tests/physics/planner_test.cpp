@@ -6,6 +6,7 @@
 #include "physics/boundary_map.hpp"
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
+#include "physics/field.hpp"
 #include "physics/higher_modes.hpp"
 #include "tests/physics/random_scenes.hpp"
 #include "tests/physics/random_surfaces.hpp"
@@ -236,6 +237,56 @@ TEST_CASE("if only positions are needed, the planner chooses the closed form, al
         lossy.bound.boundary_bound_m);
   request.tolerance.boundary_m = 1e-12;
   CHECK_FALSE(choose_model(s, request).inside);
+}
+
+TEST_CASE("where the two-dimensional field cannot be solved, the choice is mode, and is not inside",
+          "[physics]") {
+  Surface wide = seed_brass();
+  const double cut = cut_off_half_width_m(wide, frequency_Hz);
+  wide.taper = LinearTaper{80 * cut, 0.5};
+  wide.length_m = 155 * cut;
+  wide.quality_factor = 50;
+  Surface piston = turnpoint::physics_test::tapered_plate(PlateTheory::mindlin);
+  piston.drive = DriveShape::piston;
+  for (const Surface& s : {wide, piston}) {
+    for (const int tones : {1, 2}) {
+      PlanRequest request = request_for(Normalise::drive);
+      if (tones == 2) request.tones.push_back({1.01 * frequency_Hz, 1, 0});
+      request.tolerance.amplitude = 1e-4;
+      const PlanChoice choice = choose_model(s, request);
+      CHECK(choice.model == Model::mode);
+      CHECK_FALSE(choice.inside);
+      CHECK(choice.bound.model == Model::mode);
+      CHECK(choice.bound.amplitude_bound > 1e-4);
+      CHECK_FALSE(std::ranges::find(choice.considered, Model::modes, &RungEstimate::model)->usable);
+      REQUIRE(choice.solved.size() == request.tones.size());
+      const auto x = linspace_points(s, 20);
+      const auto given = evaluate(s, request.tones, x, choice.model, request.normalise, choice.solved),
+                 again = evaluate(s, request.tones, x, choice.model, request.normalise);
+      CHECK(given.amplitude == again.amplitude);
+    }
+  }
+}
+
+TEST_CASE("what a choice has solved is the field whose error it bounds", "[physics]") {
+  Draw draw(20311130);
+  int solved = 0, by_modes = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Surface s = i % 2 == 0 ? turnpoint::physics_test::random_membrane(draw)
+                                 : turnpoint::physics_test::random_thin_plate(draw);
+    PlanRequest request = request_for(Normalise::peak);
+    request.tolerance.amplitude = draw.spread(1e-4, 0.3);
+    const PlanChoice choice = choose_model(s, request);
+    CHECK(choice.bound.model == choice.model);
+    if (choice.solved.empty()) continue;
+    const auto x = linspace_points(s, 50);
+    const auto given = evaluate(s, request.tones, x, choice.model, request.normalise, choice.solved),
+               again = evaluate(s, request.tones, x, choice.model, request.normalise);
+    CHECK(given.amplitude == again.amplitude);
+    ++solved, by_modes += choice.model == Model::modes;
+  }
+  CHECK(solved > 15);
+  CHECK(by_modes > 5);
 }
 
 namespace {

@@ -4,9 +4,10 @@
 Usage: TURNPOINT_ERRORS=errors.txt TURNPOINT_SCENES=1000 test_physics "*random membranes"
        pool_errors.py errors.txt...
 
-Each line of a file holds surface, number of the scene, model, quantity, bound and error. The models "coarser"
-and "before" are the bounds of `modes` from a coarser solution and before solving. A scene that occurs twice
-counts once.
+Each line of a file holds surface, number of the scene, model, quantity, bound and error. The models "coarser",
+"coarsest" and "before" are the bounds of `modes` from coarser solutions and before solving, and "chosen" those of the
+model that choose_model takes for a random tolerance. The lines "taken" are the scenes in which `mode` truly meets
+that tolerance: their bound is 1 if it is taken. A scene that occurs twice counts once.
 """
 import statistics
 import sys
@@ -29,6 +30,10 @@ for model, quantity in sorted({key[2:] for key in found}):
             if key[2:] == (model, quantity) and surface in (key[0], "all")
         ]
         if not pairs:
+            continue
+        if model == "taken":
+            taken = sum(bound for bound, _ in pairs)
+            print(f"{model:7} {quantity:10} {surface:9} {taken:.0f} of {len(pairs)}, {100 * taken / len(pairs):.0f} %")
             continue
         slack = REFERENCE_M if model == "map" else 0
         outside = sum(error > bound + slack for bound, error in pairs)
