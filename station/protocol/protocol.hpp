@@ -41,6 +41,9 @@ enum class Device { touch, buttons, either };
 enum class Sound { none, masking_noise };
 enum class Odd { target, standard, either };
 
+/// The largest number of scenes in an interval of several parts.
+constexpr int most_parts = 8;
+
 /// The largest number of answers to one question.
 constexpr int most_choices = 9;
 
@@ -72,13 +75,27 @@ struct Confidence {
   std::vector<Localised> labels;  ///< the possible answers, from the least sure to the surest
 };
 
+/// A part of an interval that is presented without a pause: a scene, or two of which the second follows the
+/// first.
+struct Part {
+  std::vector<std::string> scenes;
+  /// its length; empty if it is that of the task, or if it lasts until the answer
+  std::optional<Linear> duration_s;
+  /// its length in the first trial of a block, after a break, and after an interruption
+  std::optional<double> first_s;
+  std::vector<Linear> silences_s;  ///< silences before it
+};
+
 struct Task {
   TaskKind kind = TaskKind::single_interval;
-  std::vector<std::vector<std::string>> intervals;  ///< scene names; an interval is a sequence of scenes
+  /// The scene of each interval, or two scenes of which the second follows the first, or the name of `parts`
+  std::vector<std::vector<std::string>> intervals;
+  std::map<std::string, std::vector<Part>> parts;  ///< intervals of several parts, by their names
   /// the two scenes that the task compares, if its kind has a standard and a target
   std::string standard, target;
   Odd odd = Odd::either;
-  std::optional<double> duration_s, gap_s;
+  /// length of each interval or part that has no length of its own, and silence between two intervals
+  std::optional<Linear> duration_s, gap_s;
   std::optional<Distribution> foreperiod_s;  ///< time from the start of an interval to its second scene
   std::optional<double> transition_ms;
   Device device = Device::touch;

@@ -45,6 +45,12 @@ Localised read_localised(TableReader& reader, const std::string& key, const Read
   return value ? localised_from(*value, key, reading) : Localised{};
 }
 
+std::optional<Linear> read_expression(TableReader& reader, const std::string& key, const Reading& reading) {
+  const auto* value = reader.take(key);
+  return value ? linear_from(*value, key, reader.range(key), reading.protocol.factors, reading.findings)
+               : std::nullopt;
+}
+
 std::optional<Distribution> read_distribution(TableReader& reader, const std::string& key) {
   const auto* value = reader.take(key);
   if (!value) return std::nullopt;

@@ -12,12 +12,6 @@ using core::Value;
 
 namespace {
 
-std::optional<Linear> read_expression(TableReader& reader, const std::string& key, const Reading& reading) {
-  const auto* value = reader.take(key);
-  return value ? linear_from(*value, key, reader.range(key), reading.protocol.factors, reading.findings)
-               : std::nullopt;
-}
-
 void read_buzz(TableReader& reader, ResponseSignal& signal, const Reading& reading) {
   if (signal.by != ResponseSignal::By::buzz) return;
   signal.scene = read_scene_name(reader, "scene", reading);

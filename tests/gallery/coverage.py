@@ -135,6 +135,10 @@ GALLERY = {
     "both-hands": ("sim:threshold=0.4,slope=1.5", {
         **conditions(("left", "right"), {**curve(0.4, 1.5, 0.02), **BEFORE}),
         "share of second": 0.5}),
+    "adaptation": ("sim:threshold=0.4,slope=1.5", {
+        **conditions(("adaptor 0.2 µm", "adaptor 1.5 µm"), {**curve(0.4, 1.5, 0.02), **BEFORE}), "share of second": 0.5}),
+    "pause-as-condition": ("sim:threshold=0.4,slope=1.5", {
+        **conditions(("pause 0.5 s", "pause 3 s", "pause 8 s"), {**curve(0.4, 1.5, 0.02), **BEFORE}), "share of second": 0.5}),
     "tracks-in-passes": ("sim:threshold=0.4,slope=1.5", {**curve(0.4, 1.5, 0.02), "share of second": 0.5}),
     "double-staircase": ("sim:threshold=6,bias=4", two_sides(4.0, 6.0, 0.02)),
     "two-sided-comparison": ("sim:threshold=0.2", {**two_sides(0.0, 0.2, 0.02), **BEFORE, "share of second": 0.5}),
