@@ -253,6 +253,7 @@ std::vector<Linear> stimulus_times(const Task& task) {
   std::vector<Linear> times;
   for (const auto* time : {&task.duration_s, &task.gap_s})
     if (*time) times.push_back(**time);
+  if (task.foreperiod_s && task.foreperiod_s->expression) times.push_back(*task.foreperiod_s->expression);
   for (const auto& part : parts_of(task)) {
     if (part.duration_s) times.push_back(*part.duration_s);
     times.insert(times.end(), part.silences_s.begin(), part.silences_s.end());
@@ -332,7 +333,7 @@ std::optional<StimulusEnd> stimulus_end(const Protocol& protocol, const Factors&
   const auto scenes = part->scenes.size();
   if (zero != ResponseZero::change || scenes < 2) return std::nullopt;
   const double even = *whole / static_cast<double>(scenes);
-  const auto change = task.foreperiod_s.value_or(Distribution{even, even});
+  const auto change = task.foreperiod_s.value_or(Distribution{even, even, {}});
   return StimulusEnd{*whole - change.high, *whole - change.low};
 }
 

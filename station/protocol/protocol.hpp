@@ -19,9 +19,10 @@ namespace turnpoint::protocol {
 /// A text in each of the protocol's languages.
 using Localised = std::map<std::string, std::string>;
 
-/// A fixed value, or a uniform distribution between two values.
+/// A fixed value, a uniform distribution between two values, or an expression of the trial's factors.
 struct Distribution {
-  double low = 0, high = 0;
+  double low = 0, high = 0;          ///< of an expression: the smallest and the largest value
+  std::optional<Linear> expression;  ///< empty if the value does not depend on factors
 };
 
 enum class TaskKind {
@@ -40,9 +41,6 @@ enum class TaskKind {
 enum class Device { touch, buttons, either };
 enum class Sound { none, masking_noise };
 enum class Odd { target, standard, either };
-
-/// The largest number of scenes in an interval of several parts.
-constexpr int most_parts = 8;
 
 /// The largest number of answers to one question.
 constexpr int most_choices = 9;

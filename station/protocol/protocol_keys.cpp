@@ -37,11 +37,11 @@ Key name(const char* key, const char* help) {
       .required();
 }
 
-/// A number of seconds, fixed or drawn evenly between two.
+/// A number of seconds, fixed, drawn evenly between two, or depending on factors.
 Key time(const char* key, const char* help) {
   return several(
       key,
-      {number("", seconds, ""),
+      {expression("", seconds, ""),
        table("", {interval("uniform", seconds, "the shortest and the longest time").required()}, "")},
       help);
 }

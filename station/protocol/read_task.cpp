@@ -3,6 +3,7 @@
 #include <set>
 #include <utility>
 
+#include "station/core/limits.hpp"
 #include "station/core/number.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
@@ -114,9 +115,9 @@ std::vector<Part> read_part_list(const core::Value& list, const std::string& nam
     reading.findings.add(is_silence(list.items.front()) ? list.items.front().place : list.items.back().place,
                          phrase("\"%1\" begins or ends with a silence", {plain(name)}),
                          phrase("silences stand between scenes; use \"gap_s\" between two intervals"));
-  if (list.items.empty() || parts.size() > most_parts)
-    reading.findings.add(list.place, phrase("\"%1\" has %2 scenes", {plain(name), plain(parts.size())}),
-                         phrase("from 1 to %1", {plain(most_parts)}));
+  if (list.items.empty())
+    reading.findings.add(list.place, phrase("\"%1\" has no parts", {plain(name)}),
+                         phrase("write a list of parts: %1", {plain("[{ scene = \"edge\" }]")}));
   return parts;
 }
 
@@ -148,8 +149,23 @@ void check_slider_times(const Task& task, const Reading& reading) {
                              phrase("use another factor"));
 }
 
+/// The largest number of parts that a trial can have.
+std::size_t most_parts_of_trial(const Task& task, const TaskForm& kind) {
+  if (!compares(task.kind)) {
+    auto intervals = task.intervals;
+    if (!task.standard.empty()) intervals.push_back({task.standard});
+    std::size_t sum = 0;
+    for (const auto& interval : intervals) sum += parts_of(task, interval).size();
+    return sum;
+  }
+  const bool of_two = task.kind == TaskKind::same_different;
+  const bool of_three = task.kind == TaskKind::abx || task.kind == TaskKind::match_to_sample;
+  const std::size_t intervals = of_two ? 2 : of_three ? 3 : kind.most;
+  return intervals * std::max(parts_of(task, {task.standard}).size(), parts_of(task, {task.target}).size());
+}
+
 /// Reports parts without a length, parts that cannot have one, and lists of parts that no interval names.
-void check_parts(const Task& task, const Reading& reading) {
+void check_parts(const Task& task, const TaskForm& kind, const Reading& reading) {
   std::vector<std::string> named{task.standard, task.target};
   for (const auto& interval : task.intervals) named.insert(named.end(), interval.begin(), interval.end());
   const bool until_answer = explored(task);
@@ -177,6 +193,11 @@ void check_parts(const Task& task, const Reading& reading) {
     }
   }
   if (task.kind == TaskKind::adjustment) check_slider_times(task, reading);
+  const auto most = most_parts_of_trial(task, kind);
+  if (most > core::kMostParts)
+    reading.findings.add(reading.places.of("task.parts"),
+                         phrase("the intervals of a trial have up to %1 scenes", {plain(most)}),
+                         phrase("at most %1", {plain(core::kMostParts)}));
 }
 
 void read_intervals(TableReader& reader, Task& task, const Reading& reading) {
@@ -233,7 +254,7 @@ void read_times(TableReader& reader, Task& task, const Reading& reading) {
   const bool change = std::any_of(task.intervals.begin(), task.intervals.end(), sequence);
   if (change) {
     reader.require("foreperiod_s");
-    task.foreperiod_s = read_distribution(reader, "foreperiod_s");
+    task.foreperiod_s = read_distribution(reader, "foreperiod_s", reading);
     task.transition_ms = reader.number("transition_ms");
   } else {
     for (const auto* key : {"foreperiod_s", "transition_ms"})
@@ -593,7 +614,7 @@ void read_task(TableReader& file, Reading& reading) {
     read_correct(reader, task, reading);
     read_unsure(reader, task, reading);
   }
-  check_parts(task, reading);
+  check_parts(task, *kind, reading);
   reader.finish();
 }
 

@@ -77,8 +77,9 @@ std::string read_scene_name(core::TableReader& reader, const std::string& key, c
 std::optional<Linear> read_expression(core::TableReader& reader, const std::string& key,
                                       const Reading& reading);
 
-/// Reads a number, or { uniform = [low, high] }.
-std::optional<Distribution> read_distribution(core::TableReader& reader, const std::string& key);
+/// Reads a number, an expression of factors, or { uniform = [low, high] }.
+std::optional<Distribution> read_distribution(core::TableReader& reader, const std::string& key,
+                                              const Reading& reading);
 
 /// Reads a value of a factor and checks it against the factor's range or levels.
 std::optional<FactorValue> read_factor_value(const core::Value& value, const Factor& factor,

@@ -129,6 +129,7 @@ std::set<std::string> factors_used(const Protocol& protocol) {
   if (const auto& present = protocol.task.present) add(present->left, names), add(present->right, names);
   const auto& timing = protocol.timing;
   for (const auto& time : stimulus_times(protocol.task)) add(time, names);
+  if (timing.iti_s.expression) add(*timing.iti_s.expression, names);
   add(timing.anticipation_s, names);
   for (const auto* delay : {&timing.delay_s.wrong, &timing.delay_s.late, &timing.delay_s.early})
     add(*delay, names);

@@ -62,8 +62,14 @@ Interval CueObserver::interval_of(const std::vector<std::string>& scenes, const 
     const double length_s =
         length ? protocol::evaluate(*length, factors) : protocol_.timing.explore_s.value_or(0);
     interval.duration_s += silence_s + length_s;
-    if (!interval.lengths_s.empty()) interval.lengths_s.push_back(silence_s);
+    if (!interval.lengths_s.empty()) interval.lengths_s.push_back(silence_s);  // before a second part
     if (parts.size() > 1) interval.lengths_s.push_back(length_s);
+    // A change under the finger whose time depends on factors divides the interval in two.
+    if (const auto& foreperiod = protocol_.task.foreperiod_s;
+        part.scenes.size() > 1 && foreperiod && foreperiod->expression) {
+      const double before_s = protocol::evaluate(*foreperiod->expression, factors);
+      interval.lengths_s.insert(interval.lengths_s.end(), {before_s, length_s - before_s});
+    }
     for (const auto& scene : part.scenes) {
       interval.scenes.push_back(cues(scene));
       interval.rove_dB.push_back(protocol_.scenes.at(part.scenes.front()).rove_dB);
@@ -283,6 +289,8 @@ std::vector<Feature> CueObserver::features_of(const CueKind& kind) const {
     for (std::size_t i = 0; i < ones; ++i) features.push_back(feature_of_one(i));
     return features;
   }
+  if (kind.source == Source::duration && task.foreperiod_s && task.foreperiod_s->expression)
+    return {Feature::last, feature_of_one(0), feature_of_one(1)};
   const bool change = kind.source == Source::surface && task.kind == TaskKind::single_interval &&
                       task.intervals.front().size() > 1;
   if (change) return {Feature::last, Feature::change, Feature::first};

@@ -157,10 +157,13 @@ void Director::State::complete(TrialSpec& spec) const {
       spec.rove_dB.push_back(range(part) == widest ? drawn : drawn * range(part) / widest);
   }
   set_times(spec);
-  const auto& iti = protocol.timing.iti_s;
-  spec.iti_s = draws(Stream::intertrial, key).uniform(iti.low, iti.high);
+  const auto time_s = [&](const protocol::Distribution& from, Stream stream) {
+    return from.expression ? protocol::evaluate(*from.expression, spec.factors)
+                           : draws(stream, key).uniform(from.low, from.high);
+  };
+  spec.iti_s = time_s(protocol.timing.iti_s, Stream::intertrial);
   if (const auto& foreperiod = protocol.task.foreperiod_s)
-    spec.foreperiod_s = draws(Stream::foreperiod, key).uniform(foreperiod->low, foreperiod->high);
+    spec.foreperiod_s = time_s(*foreperiod, Stream::foreperiod);
 }
 
 /// Returns the window that the slider shows. It is a fifth wider than the factor's range. This surplus is
@@ -243,7 +246,8 @@ std::optional<TrialSpec> Director::State::strokes_trial() const {
   spec.deadline_s = kMeasured_s;
   spec.timeouts_are_data = false;
   if (training) spec.correct = 0;
-  const auto& iti = protocol.timing.iti_s;
+  const auto& iti =
+      protocol.timing.iti_s;  // such a trial has no factors: of an expression, any value will do
   spec.iti_s = draws(Stream::intertrial, trial).uniform(iti.low, iti.high);
   return spec;
 }

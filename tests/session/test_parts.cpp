@@ -399,6 +399,35 @@ TEST_CASE("an interval of parts that lasts until the answer takes answers in its
   for (const auto& trial : session_of(text)) CHECK(trial.timing.response_time_s.value_or(0) > 0.1);
 }
 
+TEST_CASE(
+    "the pause between trials and the foreperiod can be factors, and a foreperiod that tells the answer is "
+    "found",
+    "[session][parts][cues]") {
+  const auto pauses = replaced(kPauses, "iti_s = 1.0", "iti_s = \"1 + isi_s\"");
+  const auto protocol = protocol::parse(pauses, "p.toml");
+  trial::Director with(protocol, 0, 3);
+  for (int k = 0; k < 6; ++k) {
+    const auto spec = *with.next();
+    CHECK(spec.iti_s == 1 + number(spec.factors, "isi_s"));
+    with.record({core::Outcome::answered, 0, true, {}, {}});
+  }
+  auto change = replaced(
+      kPauses,
+      "kind = \"2ifc\"\nintervals = [\"adaptor\", \"test\"]\nduration_s = \"lead_s\"\ngap_s = \"2 * isi_s\"",
+      "kind = \"single-interval\"\nintervals = [[\"adaptor\", \"test\"]]\nduration_s = 2.5\n"
+      "foreperiod_s = \"isi_s\"\ntransition_ms = 50");
+  change = replaced(change, "{ test = \"offset_mm > 0\", adaptor = \"offset_mm < 0\" }",
+                    "{ first = \"offset_mm > 0\", second = \"offset_mm < 0\" }");
+  const auto foreperiods = protocol::parse(change, "p.toml");
+  trial::Director changes(foreperiods, 0, 3);
+  const auto spec = *changes.next();
+  CHECK(spec.foreperiod_s == number(spec.factors, "isi_s"));
+  CHECK(trial::parts_of(foreperiods, spec).front().starts_s.front() == spec.foreperiod_s);
+  CHECK(accuracy(change, "duration") < 0.55);
+  CHECK(accuracy(replaced(change, "foreperiod_s = \"isi_s\"", "foreperiod_s = \"0.8 + 0.02 * offset_mm\""),
+                 "duration") > 0.99);
+}
+
 TEST_CASE("check counts the parts, the silences and the long adaptors of a session", "[session][parts]") {
   const auto minutes = [](const std::string& text) {
     return rehearsal::session_length(protocol::parse(text, "p.toml"), 1).duration_s;
