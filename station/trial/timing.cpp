@@ -32,10 +32,12 @@ std::vector<Part> task_parts(const protocol::Protocol& protocol, const TrialSpec
       // A part that is explored lasts until the answer, but at most explore_s or, if that is not set, until
       // the deadline.
       const auto* length = protocol::length_of(task, from);
-      const double whole =
-          length ? value(*length) : protocol.timing.explore_s.value_or(spec.foreperiod_s + spec.deadline_s);
-      const bool is_first = from.first_s && std::exchange(fresh, fresh && !from.first_s);
-      part.length_s = spec.length_s.value_or(is_first ? *from.first_s : whole);
+      const double whole = spec.length_s ? *spec.length_s
+                           : length      ? value(*length)
+                                    : protocol.timing.explore_s.value_or(spec.foreperiod_s + spec.deadline_s);
+      const bool is_long = fresh && from.first_s.has_value();
+      part.length_s = is_long ? *from.first_s : whole;
+      fresh = fresh && !is_long;
       part.scenes = from.scenes;
       part.changes = part.scenes.size() - 1;
       const double even = whole / static_cast<double>(part.scenes.size());
@@ -89,8 +91,9 @@ SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSp
   const auto last = parts_of(protocol, spec).back();
   SimulatedTimes times{onset_ns, onset_ns, {}, {}, onset_ns};
   if (spec.strokes || !protocol::explored(protocol.task)) times.open_ns += whole_ns(last.length_s);
-  if (const auto parts = task_parts(protocol, spec); !spec.strokes && !parts.back().starts_s.empty())
-    times.slider_ns += whole_ns(parts.back().starts_s.back());
+  if (!spec.strokes)
+    if (const auto parts = task_parts(protocol, spec); !parts.back().starts_s.empty())
+      times.slider_ns += whole_ns(parts.back().starts_s.back());
   switch (zero_of(protocol, spec)) {
     case core::ResponseZero::go_cue:
       break;

@@ -304,7 +304,7 @@ TEST_CASE("a session of parts that is cut at any page goes on with the same tria
     std::ostringstream messages;
     const auto resumed = session::prepare_resume({database, "", "resume", true}, messages);
     REQUIRE(resumed.has_value());
-    const auto done = trials_of(database, resumed->session_id).size();
+    const auto done = trials_of(database, resumed->resume_session).size();
     const auto summary = session::run(*resumed, nullptr, inputs);
     CHECK(summary.status == core::SessionStatus::completed);
     const auto trials = trials_of(database, summary.session_id);
