@@ -6,7 +6,7 @@
 
 #include "station/audio/oscillator.hpp"
 #include "station/audio/prepared_burst.hpp"
-#include "station/core/limits.hpp"
+#include "station/core/parts.hpp"
 #include "station/system/memory_range.hpp"
 
 namespace turnpoint::audio {

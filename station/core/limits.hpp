@@ -29,13 +29,6 @@ static_assert(kOneTouch_ns < kTouchToAnswer_ns && kTouchToAnswer_ns < kWatermark
 inline constexpr std::int64_t kConfidenceGuard_ns = 350'000'000;
 inline constexpr double kConfidenceGuard_s = 0.35;
 
-/// The largest number of parts of a trial's intervals. Each part is a burst of the drive, and all bursts of a
-/// trial are scheduled at once.
-inline constexpr int kMostParts = 16;
-
-/// A silence that is shorter than this does not count as a rest of the finger.
-inline constexpr double kRest_s = 0.5;
-
 /// Length of the tone that asks for an answer (a response signal on headphones).
 inline constexpr double kSignal_s = 0.05;
 /// Length of a frame of an ordinary screen, which shows 60 of them in a second.

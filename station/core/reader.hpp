@@ -66,8 +66,7 @@ class TableReader {
   std::optional<std::pair<double, double>> maybe_interval(const std::string& key);
   std::vector<std::string> strings(const std::string& key);
   const Value* table(const std::string& key);
-  /// The declared range (of its form that is an expression, if it has several forms) and words of a key, and
-  /// the keys of the table that it is.
+  /// The declared range and words of a key, and the keys of the table that it is.
   const Range& range(const std::string& key) const;
   const std::vector<std::string>& words(const std::string& key) const;
   const Keys& keys(const std::string& key) const;

@@ -3,8 +3,8 @@
 #include <set>
 #include <utility>
 
-#include "station/core/limits.hpp"
 #include "station/core/number.hpp"
+#include "station/core/parts.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"

@@ -11,6 +11,7 @@
 #include "physics/boundary_map.hpp"
 #include "station/core/limits.hpp"
 #include "station/core/number.hpp"
+#include "station/core/parts.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/carrier_advice.hpp"
 #include "station/protocol/combinations.hpp"

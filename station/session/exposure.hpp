@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "station/core/limits.hpp"
+#include "station/core/parts.hpp"
 #include "station/core/texts.hpp"
 
 namespace turnpoint::session {

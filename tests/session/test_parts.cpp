@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "station/audio/synth.hpp"
+#include "station/core/read_file.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/survey.hpp"
 #include "station/rehearsal/check.hpp"
@@ -15,6 +16,7 @@
 #include "station/rehearsal/rehearsal.hpp"
 #include "station/session/pages.hpp"
 #include "station/session/plan_ahead.hpp"
+#include "station/session/resume.hpp"
 #include "station/session/stage.hpp"
 #include "station/trial/timing.hpp"
 #include "tests/session/measured_session.hpp"
