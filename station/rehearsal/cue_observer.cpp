@@ -146,7 +146,9 @@ Strategy CueObserver::best_strategy(const CueKind& kind, const Grain& grain, con
   double most = -1;
   for (const auto feature : features_of(kind)) {
     const auto looked = looks(kind, feature, all, Draws::to_choose);
-    const Strategy strategy{feature, best_rule(asked_, looked, grain)};
+    // a difference of two scenes can be 0 but for rounding errors, so a share of it means nothing
+    const Grain own = feature == Feature::change ? Grain{grain.absolute, 0} : grain;
+    const Strategy strategy{feature, best_rule(asked_, looked, own)};
     const double right = accuracy(strategy.rule, asked_, looked);
     if (right > most) most = right, best = strategy;
   }
