@@ -11,7 +11,7 @@
 namespace turnpoint::audio {
 namespace {
 
-constexpr const char* not_taken = "burst refused: the audio thread has not processed the last 16 commands";
+constexpr const char* not_taken = "burst refused: the audio thread has not processed the last 32 commands";
 
 }  // namespace
 

@@ -80,7 +80,7 @@ class EngineCore {
   std::deque<Event> gathered_;
   std::unique_ptr<Command> outgoing_ = std::make_unique<Command>();
   std::unique_ptr<Command> incoming_ = std::make_unique<Command>();
-  std::unique_ptr<Ring<Command, 16>> commands_ = std::make_unique<Ring<Command, 16>>();
+  std::unique_ptr<Ring<Command, 32>> commands_ = std::make_unique<Ring<Command, 32>>();
   std::unique_ptr<Ring<Event, 256>> events_ = std::make_unique<Ring<Event, 256>>();
   Atomics atomics_;
   Synth synth_;

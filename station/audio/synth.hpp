@@ -6,6 +6,7 @@
 
 #include "station/audio/oscillator.hpp"
 #include "station/audio/prepared_burst.hpp"
+#include "station/core/parts.hpp"
 #include "station/system/memory_range.hpp"
 
 namespace turnpoint::audio {
@@ -28,8 +29,8 @@ struct SynthEvent {
 class Synth {
  public:
   static constexpr int max_block = 512;
-  /// Bursts that can wait or sound at the same time: the four intervals of a trial, and codes of its events.
-  static constexpr int max_voices = 8;
+  /// Bursts that can wait or sound at the same time: the parts of a trial's intervals, and codes of its events.
+  static constexpr int max_voices = core::kMostParts + 4;
 
   /// Throws core::UsageError for a format outside 8-768 kHz, 1-8 channels or 8-32 bits.
   explicit Synth(const Format& format);

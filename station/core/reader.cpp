@@ -91,7 +91,12 @@ const Key& TableReader::declared(const std::string& key, Key::Kind kind) const {
   throw std::logic_error("the key \"" + path(key) + "\" is declared as another kind of value");
 }
 
-const Range& TableReader::range(const std::string& key) const { return declared(key).range; }
+const Range& TableReader::range(const std::string& key) const {
+  const auto& known = declared(key);
+  for (const auto& form : known.forms)
+    if (form.kind == Key::Kind::expression) return form.range;
+  return known.range;
+}
 const std::vector<std::string>& TableReader::words(const std::string& key) const {
   return declared(key).words;
 }

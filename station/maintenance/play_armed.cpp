@@ -9,6 +9,7 @@
 #include "station/core/number.hpp"
 #include "station/core/texts.hpp"
 #include "station/io/amplifier.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/session/burst.hpp"
 #include "station/session/stage.hpp"
 #include "station/system/clocks.hpp"
@@ -163,8 +164,12 @@ constexpr double kLongest_s = 5, kUsual_s = 2, kShortestRest_s = 0.5;
 FeltScene feel_scene(const rig::Rig& rig, const protocol::Protocol& protocol, const std::string& scene,
                      const protocol::Factors& factors, const std::stop_token& stop) {
   FeltScene felt;
-  felt.length_s = std::min({protocol.task.duration_s.value_or(protocol.timing.explore_s.value_or(kUsual_s)),
-                            kLongest_s, rig.limits.continuous_s});
+  double length_s = protocol.timing.explore_s.value_or(kUsual_s);
+  for (const auto& part : protocol::parts_of(protocol.task))
+    if (std::find(part.scenes.begin(), part.scenes.end(), scene) != part.scenes.end() &&
+        protocol::length_of(protocol.task, part) != nullptr)
+      length_s = protocol::length_range_s(protocol, part).second;
+  felt.length_s = std::min({length_s, kLongest_s, rig.limits.continuous_s});
   felt.rest_s = std::max(kShortestRest_s, felt.length_s * (1 / rig.limits.duty - 1));
   const auto burst = session::scene_burst(rig, protocol, scene, factors, felt.length_s);
   felt.tones = burst.tones.count;

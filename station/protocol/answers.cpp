@@ -232,32 +232,130 @@ procedure::Answer learned_from(const procedure::Spec& spec, const std::string& r
   return one ? procedure::Answer::one : procedure::Answer::zero;
 }
 
-bool explored(const Task& task) {
-  return (task.kind == TaskKind::single_interval && task.standard.empty() && !task.duration_s) ||
-         task.kind == TaskKind::adjustment;
+std::vector<Part> parts_of(const Task& task, const std::vector<std::string>& interval) {
+  if (interval.size() == 1)
+    if (const auto named = task.parts.find(interval.front()); named != task.parts.end()) return named->second;
+  return {{interval, {}, {}, {}}};
 }
 
+std::vector<Part> parts_of(const Task& task) {
+  std::vector<Part> all;
+  const auto add = [&](const std::vector<std::string>& interval) {
+    for (auto& part : parts_of(task, interval)) all.push_back(std::move(part));
+  };
+  for (const auto* name : {&task.standard, &task.target})
+    if (!name->empty()) add({*name});
+  for (const auto& interval : task.intervals) add(interval);
+  return all;
+}
+
+std::vector<Linear> stimulus_times(const Task& task) {
+  std::vector<Linear> times;
+  for (const auto* time : {&task.duration_s, &task.gap_s})
+    if (*time) times.push_back(**time);
+  if (task.foreperiod_s && task.foreperiod_s->expression) times.push_back(*task.foreperiod_s->expression);
+  for (const auto& part : parts_of(task)) {
+    if (part.duration_s) times.push_back(*part.duration_s);
+    times.insert(times.end(), part.silences_s.begin(), part.silences_s.end());
+  }
+  return times;
+}
+
+const Linear* length_of(const Task& task, const Part& part) {
+  return part.duration_s ? &*part.duration_s : task.duration_s ? &*task.duration_s : nullptr;
+}
+
+std::pair<double, double> length_range_s(const Protocol& protocol, const Part& part) {
+  const auto* length = length_of(protocol.task, part);
+  const double explored_s = protocol.timing.explore_s.value_or(0);
+  auto [low, high] = length ? bounds(*length, protocol.factors) : std::pair(explored_s, explored_s);
+  if (part.first_s) low = std::min(low, *part.first_s), high = std::max(high, *part.first_s);
+  return {low, high};
+}
+
+bool explored(const Task& task) {
+  if (task.kind == TaskKind::adjustment) return true;
+  if (task.kind != TaskKind::single_interval || !task.standard.empty() || task.intervals.empty())
+    return task.kind == TaskKind::single_interval && task.standard.empty() && !task.duration_s;
+  const auto parts = parts_of(task, task.intervals.back());
+  return parts.empty() ? !task.duration_s : length_of(task, parts.back()) == nullptr;
+}
+
+namespace {
+
+/// The last part that the task presents; empty if it can be one of several with other lengths.
+std::optional<Part> last_part(const Task& task) {
+  std::vector<std::vector<std::string>> last;
+  if (!task.intervals.empty()) last.push_back(task.intervals.back());
+  if (task.kind == TaskKind::two_interval && task.intervals.size() == 2) last.push_back(task.intervals[0]);
+  for (const auto* name : {&task.standard, &task.target})
+    if (task.intervals.empty() && !name->empty()) last.push_back({*name});
+  std::optional<Part> found;
+  for (const auto& interval : last) {
+    const auto parts = parts_of(task, interval);
+    if (parts.empty()) return std::nullopt;
+    const auto source = [&](const Part& part) {
+      const auto* length = length_of(task, part);
+      return length ? length->source : "";
+    };
+    if (found && source(*found) != source(parts.back())) return std::nullopt;
+    found = parts.back();
+  }
+  return found;
+}
+
+}  // namespace
+
 std::optional<StimulusEnd> stimulus_end(const Protocol& protocol) {
+  const auto part = last_part(protocol.task);
+  const auto* length = part ? length_of(protocol.task, *part) : nullptr;
+  if (length == nullptr) return stimulus_end(protocol, {});
+  std::optional<StimulusEnd> all;
+  for (const auto& corner : corners({length}, protocol.factors)) {
+    const auto end = stimulus_end(protocol, corner);
+    if (!end) return std::nullopt;
+    if (!all) all = end;
+    all = {std::min(all->earliest_s, end->earliest_s), std::max(all->latest_s, end->latest_s)};
+  }
+  return all;
+}
+
+std::optional<StimulusEnd> stimulus_end(const Protocol& protocol, const Factors& factors) {
   const auto& task = protocol.task;
-  const auto whole = task.duration_s ? task.duration_s : protocol.timing.explore_s;
   const auto zero = protocol.timing.response_zero;
   if (zero == ResponseZero::interval_off) return StimulusEnd{};
+  const auto part = last_part(task);
+  if (!part) return std::nullopt;
+  const auto* length = length_of(task, *part);
+  const auto whole = length ? std::optional(evaluate(*length, factors)) : protocol.timing.explore_s;
   if (!whole || task.intervals.empty()) return std::nullopt;
   if (zero == ResponseZero::go_cue) return StimulusEnd{*whole, *whole};
-  const auto scenes = task.intervals.back().size();
+  const auto scenes = part->scenes.size();
   if (zero != ResponseZero::change || scenes < 2) return std::nullopt;
   const double even = *whole / static_cast<double>(scenes);
-  const auto change = task.foreperiod_s.value_or(Distribution{even, even});
+  const auto change = task.foreperiod_s.value_or(Distribution{even, even, {}});
   return StimulusEnd{*whole - change.high, *whole - change.low};
 }
 
 double quick_trial_s(const Protocol& protocol, double answer_s) {
   const auto mean = [](const Distribution& times_s) { return 0.5 * (times_s.low + times_s.high); };
+  const auto middle = [&](const Linear& expression) {
+    const auto [low, high] = bounds(expression, protocol.factors);
+    return 0.5 * (low + high);
+  };
   const auto& task = protocol.task;
-  const double gaps = static_cast<double>(std::max<std::size_t>(1, task.intervals.size()) - 1);
-  const double stimuli_s = explored(task)
-                               ? (task.foreperiod_s ? mean(*task.foreperiod_s) : 0)
-                               : task.duration_s.value_or(0) * (gaps + 1) + task.gap_s.value_or(0) * gaps;
+  const auto intervals =
+      task.intervals.empty() ? std::vector<std::vector<std::string>>{{task.standard}} : task.intervals;
+  double stimuli_s = 0;
+  for (const auto& interval : intervals)
+    for (const auto& part : parts_of(task, interval)) {
+      for (const auto& silence : part.silences_s) stimuli_s += middle(silence);
+      if (const auto* length = length_of(task, part))
+        stimuli_s += middle(*length);
+      else if (task.foreperiod_s)
+        stimuli_s += mean(*task.foreperiod_s);
+    }
+  if (task.gap_s) stimuli_s += static_cast<double>(intervals.size() - 1) * middle(*task.gap_s);
   return kCue_s + stimuli_s + answer_s + mean(protocol.timing.iti_s);
 }
 

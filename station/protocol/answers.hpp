@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "station/procedure/procedure.hpp"
@@ -40,7 +41,24 @@ std::optional<int> answer_index(const Task& task, const std::string& id);
 procedure::Answer learned_from(const procedure::Spec& spec, const std::string& response,
                                const std::optional<bool>& correct);
 
-/// True if the participant may answer while the surface moves.
+/// The parts of an interval that the task lists.
+std::vector<Part> parts_of(const Task& task, const std::vector<std::string>& interval);
+
+/// All parts that the task presents, in the order of the task: those of its intervals, or of standard and
+/// target.
+std::vector<Part> parts_of(const Task& task);
+
+/// All lengths and silences of the stimuli of a trial.
+std::vector<Linear> stimulus_times(const Task& task);
+
+/// The length of a part; null if it lasts until the answer.
+const Linear* length_of(const Task& task, const Part& part);
+
+/// The shortest and the longest time for which a part lasts, in s; 0 if the file does not say it. A part that
+/// lasts until the answer lasts for explore_s of [timing] at most, which is then both.
+std::pair<double, double> length_range_s(const Protocol& protocol, const Part& part);
+
+/// True if the participant may answer while the surface moves: in the last part of the last interval.
 bool explored(const Task& task);
 
 /// The earliest and the latest time from response_zero to the end of the last interval, in s; empty if they
@@ -49,6 +67,8 @@ struct StimulusEnd {
   double earliest_s = 0, latest_s = 0;
 };
 std::optional<StimulusEnd> stimulus_end(const Protocol& protocol);
+/// The same for these values of the factors on which the length of the last part depends.
+std::optional<StimulusEnd> stimulus_end(const Protocol& protocol, const Factors& factors);
 
 /// About how long a trial lasts that is answered `answer_s` after its stimuli: the get-ready cue, the
 /// stimuli, the answer and the pause.

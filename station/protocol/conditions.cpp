@@ -4,6 +4,7 @@
 #include <set>
 
 #include "station/core/number.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/protocol/visits.hpp"
@@ -37,11 +38,12 @@ std::vector<protocol::Factors> combinations_of_by(const protocol::Protocol& prot
 std::string presented(const Protocol& protocol, const procedure::Spec& spec,
                       const std::vector<std::string>& scenes) {
   std::set<std::string> found;
-  for (const auto& scene : scenes)
-    if (const auto known = protocol.scenes.find(scene); known != protocol.scenes.end())
-      for (const auto& name : factors_of(known->second))
-        if (name == spec.level || std::ranges::find(spec.against, name) != spec.against.end())
-          found.insert(name);
+  for (const auto& part : parts_of(protocol.task, scenes))
+    for (const auto& scene : part.scenes)
+      if (const auto known = protocol.scenes.find(scene); known != protocol.scenes.end())
+        for (const auto& name : factors_of(known->second))
+          if (name == spec.level || std::ranges::find(spec.against, name) != spec.against.end())
+            found.insert(name);
   return found.size() == 1 ? *found.begin() : "";
 }
 

@@ -75,18 +75,21 @@ void check_words(AdviceList& advice) {
 
 void check_ramps(AdviceList& advice) {
   const auto& protocol = advice.protocol;
-  const bool several = protocol.task.duration_s.has_value();
-  const double longest_s = protocol.task.duration_s.value_or(protocol.timing.explore_s.value_or(0));
-  for (const auto& name : scenes_used(protocol)) {
-    const double ramp_ms = protocol.scenes.at(name).ramp_ms;
-    if (longest_s <= 0 || 2e-3 * ramp_ms < longest_s) continue;
-    const bool stated = advice.places.has("scene." + name + ".ramp_ms") && ramp_ms > 500;
-    return advice.add(stated    ? "scene." + name + ".ramp_ms"
-                      : several ? "task.duration_s"
-                                : "timing.explore_s",
-                      phrase("the ramps of scene \"%1\" take as long as its tones, %2 s",
-                             {plain(name), plain(number(longest_s))}),
-                      phrase("the tones must last longer than both ramps together"));
+  for (const auto& part : parts_of(protocol.task)) {
+    const double shortest_s = length_range_s(protocol, part).first;
+    for (const auto& name : part.scenes) {
+      const auto scene = protocol.scenes.find(name);
+      const double ramp_ms = scene == protocol.scenes.end() ? 0 : scene->second.ramp_ms;
+      if (shortest_s <= 0 || 2e-3 * ramp_ms < shortest_s) continue;
+      const bool stated = advice.places.has("scene." + name + ".ramp_ms") && ramp_ms > 500;
+      return advice.add(stated                                      ? "scene." + name + ".ramp_ms"
+                        : part.duration_s                           ? "task.parts"
+                        : length_of(protocol.task, part) != nullptr ? "task.duration_s"
+                                                                    : "timing.explore_s",
+                        phrase("the ramps of scene \"%1\" take as long as its tones, %2 s",
+                               {plain(name), plain(number(shortest_s))}),
+                        phrase("the tones must last longer than both ramps together"));
+    }
   }
 }
 
@@ -400,7 +403,7 @@ std::vector<Problem> notes(const Protocol& protocol) {
     }
   }
   if (protocol.timing.iti_s.high == 0) notes.add("timing.iti_s", phrase("there is no pause between trials"));
-  if (protocol.task.gap_s == 0.0)
+  if (const auto& gap_s = protocol.task.gap_s; gap_s && bounds(*gap_s, protocol.factors).second == 0)
     notes.add("task.gap_s", phrase("there is no pause between the intervals of a trial"));
   if (protocol.task.foreperiod_s && protocol.task.foreperiod_s->high == 0)
     notes.add("task.foreperiod_s", phrase("the second scene begins at once, without a foreperiod"));

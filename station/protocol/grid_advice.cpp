@@ -3,6 +3,7 @@
 
 #include "station/core/number.hpp"
 #include "station/protocol/advice_list.hpp"
+#include "station/protocol/answers.hpp"
 
 namespace turnpoint::protocol {
 
@@ -14,18 +15,23 @@ using core::number;
 using procedure::Kind;
 using procedure::Spec;
 
+bool depends_on(const Linear& expression, const std::string& level) {
+  double sum = 0;
+  for (const auto& [factor, coefficient] : expression.terms)
+    if (factor == level) sum += coefficient;
+  for (const auto& product : expression.products)
+    if (std::find(product.factors.begin(), product.factors.end(), level) != product.factors.end())
+      return true;
+  return sum != 0;
+}
+
+/// True if the level changes what the surface presents, or when.
 bool depends_on(const Protocol& protocol, const std::string& level) {
   for (const auto& name : scenes_used(protocol))
-    for (const auto* expression : expressions_of(protocol.scenes.at(name))) {
-      double sum = 0;
-      for (const auto& [factor, coefficient] : expression->terms)
-        if (factor == level) sum += coefficient;
-      for (const auto& product : expression->products)
-        if (std::find(product.factors.begin(), product.factors.end(), level) != product.factors.end())
-          return true;
-      if (sum != 0) return true;
-    }
-  return false;
+    for (const auto* expression : expressions_of(protocol.scenes.at(name)))
+      if (depends_on(*expression, level)) return true;
+  const auto times = stimulus_times(protocol.task);
+  return std::any_of(times.begin(), times.end(), [&](const Linear& time) { return depends_on(time, level); });
 }
 
 void check_level(AdviceList& advice, const Spec& spec) {

@@ -58,9 +58,13 @@ void check_devices(const Protocol& protocol, const rig::Rig& rig, Survey& survey
 /// The shortest time from the beginning of an interval, or of its second scene, to the next event.
 double shortest_event_s(const Protocol& protocol) {
   const auto& task = protocol.task;
-  const double length_s = task.duration_s.value_or(protocol.timing.explore_s.value_or(0));
-  if (!task.foreperiod_s) return length_s;
-  return std::min(task.foreperiod_s->low, length_s);
+  std::optional<double> shortest_s;
+  for (const auto& part : parts_of(task)) {
+    const double length_s = length_range_s(protocol, part).first;
+    shortest_s = std::min(shortest_s.value_or(length_s), length_s);
+  }
+  if (!task.foreperiod_s) return shortest_s.value_or(0);
+  return std::min(task.foreperiod_s->low, shortest_s.value_or(0));
 }
 
 void check_triggers(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {

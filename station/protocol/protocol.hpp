@@ -19,9 +19,10 @@ namespace turnpoint::protocol {
 /// A text in each of the protocol's languages.
 using Localised = std::map<std::string, std::string>;
 
-/// A fixed value, or a uniform distribution between two values.
+/// A fixed value, a uniform distribution between two values, or an expression of the trial's factors.
 struct Distribution {
-  double low = 0, high = 0;
+  double low = 0, high = 0;          ///< of an expression: the smallest and the largest value
+  std::optional<Linear> expression;  ///< empty if the value does not depend on factors
 };
 
 enum class TaskKind {
@@ -72,13 +73,27 @@ struct Confidence {
   std::vector<Localised> labels;  ///< the possible answers, from the least sure to the surest
 };
 
+/// A part of an interval that is presented without a pause: a scene, or two of which the second follows the
+/// first.
+struct Part {
+  std::vector<std::string> scenes;
+  /// its length; empty if it is that of the task, or if it lasts until the answer
+  std::optional<Linear> duration_s;
+  /// its length in the first trial of a block, after a break, and after an interruption
+  std::optional<double> first_s;
+  std::vector<Linear> silences_s;  ///< silences before it
+};
+
 struct Task {
   TaskKind kind = TaskKind::single_interval;
-  std::vector<std::vector<std::string>> intervals;  ///< scene names; an interval is a sequence of scenes
+  /// The scene of each interval, or two scenes of which the second follows the first, or the name of `parts`
+  std::vector<std::vector<std::string>> intervals;
+  std::map<std::string, std::vector<Part>> parts;  ///< intervals of several parts, by their names
   /// the two scenes that the task compares, if its kind has a standard and a target
   std::string standard, target;
   Odd odd = Odd::either;
-  std::optional<double> duration_s, gap_s;
+  /// length of each interval or part that has no length of its own, and silence between two intervals
+  std::optional<Linear> duration_s, gap_s;
   std::optional<Distribution> foreperiod_s;  ///< time from the start of an interval to its second scene
   std::optional<double> transition_ms;
   Device device = Device::touch;

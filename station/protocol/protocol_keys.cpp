@@ -37,11 +37,11 @@ Key name(const char* key, const char* help) {
       .required();
 }
 
-/// A number of seconds, fixed or drawn evenly between two.
+/// A number of seconds, fixed, drawn evenly between two, or depending on factors.
 Key time(const char* key, const char* help) {
   return several(
       key,
-      {number("", seconds, ""),
+      {expression("", seconds, ""),
        table("", {interval("uniform", seconds, "the shortest and the longest time").required()}, "")},
       help);
 }
@@ -178,6 +178,20 @@ Key scene() {
       "what the surface presents");
 }
 
+Keys part() {
+  Keys keys{string("scene", "the scene that it presents").only_without("silence_s"),
+            expression("duration_s", {0, 600, Ends::open_low, "s"}, "its length")
+                .without_it("that of [task]; the last part of a single interval: until the answer")
+                .only_with("scene"),
+            number("first_s", {0, 600, Ends::open_low, "s"},
+                   "its length in the first trial of a block, after a break, and after an interruption")
+                .without_it("duration_s")
+                .only_with("scene"),
+            expression("silence_s", {0, 600, Ends::closed, "s"}, "instead of a scene: a silence")
+                .only_without("scene")};
+  return keys.one_of({"scene", "silence_s"});
+}
+
 Keys task() {
   const Words several_scenes{"3ifc", "4ifc", "same-different", "oddity", "abx", "match-to-sample"};
   const Words intervals{"single-interval", "2ifc", "comparison", "adjustment"};
@@ -200,21 +214,26 @@ Keys task() {
            "what a trial is")
           .required(),
       list("intervals", {string("", ""), strings("", "").holding(1, 2)},
-           "the scene of each interval; two scenes for a change after a foreperiod")
+           "the scene of each interval, or the name of its parts; two scenes for a change after a foreperiod")
           .holding(1, 4)
           .required()
           .only_with("kind", intervals),
-      string("standard", "the scene that most intervals present")
+      string("standard", "the scene that most intervals present, or the name of its parts")
           .required()
           .only_with("kind", several_scenes),
-      string("target", "the scene that differs").required().only_with("kind", several_scenes),
+      string("target", "the scene that differs, or the name of its parts")
+          .required()
+          .only_with("kind", several_scenes),
       word("odd", {"either", "target", "standard"}, "which scene may be the odd one")
           .by_default("\"either\"")
           .only_with("kind", {"oddity"}),
-      number("duration_s", {0, 600, Ends::open_low, "s"}, "length of each interval")
+      expression("duration_s", {0, 600, Ends::open_low, "s"},
+                 "length of each interval, and of each part without its own")
           .without_it("until the answer, in one interval; else required"),
-      number("gap_s", {0, 60, Ends::closed, "s"}, "silence between two intervals")
+      expression("gap_s", {0, 60, Ends::closed, "s"}, "silence between two intervals")
           .without_it("required with several intervals"),
+      table("parts", Keys{}.with_free_names(tables("NAME", part(), "the parts of an interval, in order")),
+            "intervals of several parts: scenes with silences between them"),
       time("foreperiod_s", "time before the second scene of an interval")
           .without_it("required with a second scene"),
       number("transition_ms", {1, 5000, Ends::closed, "ms"}, "length of the change to the second scene")

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include "station/core/number.hpp"
 #include "station/protocol/expression.hpp"
@@ -45,7 +46,14 @@ Localised read_localised(TableReader& reader, const std::string& key, const Read
   return value ? localised_from(*value, key, reading) : Localised{};
 }
 
-std::optional<Distribution> read_distribution(TableReader& reader, const std::string& key) {
+std::optional<Linear> read_expression(TableReader& reader, const std::string& key, const Reading& reading) {
+  const auto* value = reader.take(key);
+  return value ? linear_from(*value, key, reader.range(key), reading.protocol.factors, reading.findings)
+               : std::nullopt;
+}
+
+std::optional<Distribution> read_distribution(TableReader& reader, const std::string& key,
+                                              const Reading& reading) {
   const auto* value = reader.take(key);
   if (!value) return std::nullopt;
   if (value->kind == Value::Kind::table) {
@@ -53,10 +61,13 @@ std::optional<Distribution> read_distribution(TableReader& reader, const std::st
     inner.require("uniform");
     const auto interval = inner.maybe_interval("uniform");
     inner.finish();
-    return interval ? std::optional(Distribution{interval->first, interval->second}) : std::nullopt;
+    return interval ? std::optional(Distribution{interval->first, interval->second, {}}) : std::nullopt;
   }
-  const auto fixed = reader.maybe_number(key);
-  return fixed ? std::optional(Distribution{*fixed, *fixed}) : std::nullopt;
+  auto expression = read_expression(reader, key, reading);
+  if (!expression) return std::nullopt;
+  const auto [low, high] = bounds(*expression, reading.protocol.factors);
+  if (expression->is_constant()) expression.reset();
+  return Distribution{low, high, std::move(expression)};
 }
 
 using core::Value;

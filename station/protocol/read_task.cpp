@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "station/core/number.hpp"
+#include "station/core/parts.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
@@ -40,8 +42,10 @@ bool compares(TaskKind kind) {
          kind != TaskKind::comparison && kind != TaskKind::adjustment;
 }
 
+/// Reports a name that is neither that of a scene nor that of parts.
 void check_scene(const std::string& name, const core::Place& place, const Reading& reading) {
-  const auto& known = reading.declared_scenes;
+  auto known = reading.declared_scenes;
+  for (const auto& [parts, list] : reading.protocol.task.parts) known.push_back(parts);
   if (std::find(known.begin(), known.end(), name) == known.end())
     reading.findings.add(place, phrase("unknown scene \"%1\"", {plain(name)}), core::suggestion(name, known));
 }
@@ -53,6 +57,12 @@ std::vector<std::string> read_interval(const Value& item, const Reading& reading
       return reading.findings.add(value.place, phrase("an interval holds %1", {describe(value)}),
                                   phrase("write the name of a scene in quotes"));
     check_scene(value.string, value.place, reading);
+    if (item.kind == Value::Kind::array && item.items.size() > 1 &&
+        reading.protocol.task.parts.count(value.string))
+      reading.findings.add(
+          value.place,
+          phrase("\"%1\" has several parts, so it cannot be one of two scenes", {plain(value.string)}),
+          phrase("write its name alone, or name a scene"));
     scenes.push_back(value.string);
   };
   if (item.kind != Value::Kind::array)
@@ -64,6 +74,130 @@ std::vector<std::string> read_interval(const Value& item, const Reading& reading
         item.place, phrase("an interval has %1 scenes", {plain(item.items.size())}),
         phrase("an interval must have one scene, or two scenes with a foreperiod before the second"));
   return scenes;
+}
+
+/// Reads a length. One that could not be read, which has been reported, is 1 s for what depends on it.
+std::optional<Linear> read_length(TableReader& reader, const Reading& reading) {
+  auto length = read_expression(reader, "duration_s", reading);
+  if (!length && reader.has("duration_s")) {
+    length.emplace();
+    length->constant = 1;
+  }
+  return length;
+}
+
+/// Reads one list of parts. A silence belongs to the scene after it.
+std::vector<Part> read_part_list(const core::Value& list, const std::string& name, const Reading& reading) {
+  std::vector<Part> parts;
+  std::vector<Linear> silences_s;
+  const std::string path = "task.parts." + name;
+  for (const auto& item : list.items) {
+    if (item.kind != Value::Kind::table) {
+      reading.findings.add(item.place, phrase("a part is %1", {describe(item)}),
+                           phrase("write %1 or %2", {plain("{ scene = \"edge\", duration_s = 1.0 }"),
+                                                     plain("{ silence_s = 0.3 }")}));
+      continue;
+    }
+    TableReader reader(item, path, reading.findings, keys_of("task.parts.NAME"));
+    if (reader.has("silence_s")) {
+      if (auto silence_s = read_expression(reader, "silence_s", reading))
+        silences_s.push_back(std::move(*silence_s));
+    } else if (reader.require("scene")) {
+      Part part{{read_scene_name(reader, "scene", reading)}, {}, {}, std::exchange(silences_s, {})};
+      part.duration_s = read_length(reader, reading);
+      part.first_s = reader.maybe_number("first_s");
+      parts.push_back(std::move(part));
+    }
+    reader.finish();
+  }
+  const auto is_silence = [](const core::Value& item) { return item.find("silence_s") != nullptr; };
+  if (!list.items.empty() && (is_silence(list.items.front()) || is_silence(list.items.back())))
+    reading.findings.add(is_silence(list.items.front()) ? list.items.front().place : list.items.back().place,
+                         phrase("\"%1\" begins or ends with a silence", {plain(name)}),
+                         phrase("silences stand between scenes; use \"gap_s\" between two intervals"));
+  if (list.items.empty())
+    reading.findings.add(list.place, phrase("\"%1\" has no parts", {plain(name)}),
+                         phrase("write a list of parts: %1", {plain("[{ scene = \"edge\" }]")}));
+  return parts;
+}
+
+void read_parts(TableReader& reader, Task& task, const Reading& reading) {
+  const auto* table = reader.maybe_table("parts");
+  if (!table) return;
+  const auto& scenes = reading.declared_scenes;
+  for (const auto& entry : table->entries) {
+    if (std::find(scenes.begin(), scenes.end(), entry.key) != scenes.end())
+      reading.findings.add(entry.place, phrase("there is already a scene \"%1\"", {plain(entry.key)}),
+                           phrase("give the parts another name"));
+    if (entry.value.kind == Value::Kind::array)
+      task.parts[entry.key] = read_part_list(entry.value, entry.key, reading);
+    else
+      reading.findings.add(entry.value.place,
+                           phrase("\"%1\" is %2", {plain(entry.key), describe(entry.value)}),
+                           phrase("write a list of parts: %1",
+                                  {plain("[{ scene = \"a\" }, { silence_s = 0.3 }, { scene = \"b\" }]")}));
+  }
+}
+
+/// The factor that the slider moves changes only the last part, so no time may depend on it.
+void check_slider_times(const Task& task, const Reading& reading) {
+  for (const auto& time : stimulus_times(task))
+    for (const auto& name : factors_in(time))
+      if (name == task.adjusts)
+        reading.findings.add(time.place,
+                             phrase("a time depends on \"%1\", which the slider moves", {plain(name)}),
+                             phrase("use another factor"));
+}
+
+/// The largest number of parts that a trial can have.
+std::size_t most_parts_of_trial(const Task& task, const TaskForm& kind) {
+  if (!compares(task.kind)) {
+    auto intervals = task.intervals;
+    if (!task.standard.empty()) intervals.push_back({task.standard});
+    std::size_t sum = 0;
+    for (const auto& interval : intervals) sum += parts_of(task, interval).size();
+    return sum;
+  }
+  const bool of_two = task.kind == TaskKind::same_different;
+  const bool of_three = task.kind == TaskKind::abx || task.kind == TaskKind::match_to_sample;
+  const std::size_t intervals = of_two ? 2 : of_three ? 3 : kind.most;
+  return intervals * std::max(parts_of(task, {task.standard}).size(), parts_of(task, {task.target}).size());
+}
+
+/// Reports parts without a length, parts that cannot have one, and lists of parts that no interval names.
+void check_parts(const Task& task, const TaskForm& kind, const Reading& reading) {
+  std::vector<std::string> named{task.standard, task.target};
+  for (const auto& interval : task.intervals) named.insert(named.end(), interval.begin(), interval.end());
+  const bool until_answer = explored(task);
+  for (const auto& [name, parts] : task.parts) {
+    const auto place = reading.places.of("task.parts." + name);
+    if (std::find(named.begin(), named.end(), name) == named.end())
+      reading.findings.add(place, phrase("no interval presents the parts \"%1\"", {plain(name)}),
+                           phrase("name them in \"intervals\", \"standard\" or \"target\""));
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const bool last = i + 1 == parts.size();
+      const bool open = last && until_answer;
+      if (!open && length_of(task, parts[i]) == nullptr)
+        reading.findings.add(place, phrase("part %1 of \"%2\" has no length", {plain(i + 1), plain(name)}),
+                             phrase("give it \"duration_s\""));
+      if (open && task.kind == TaskKind::adjustment && parts[i].duration_s)
+        reading.findings.add(
+            parts[i].duration_s->place,
+            phrase("the last part lasts until the slider is set, so it has no \"duration_s\""),
+            phrase("leave it out; \"explore_s\" in [timing] is the longest time"));
+      if (open && parts[i].first_s)
+        reading.findings.add(
+            place,
+            phrase("the last part of \"%1\" lasts until the answer, so it has no \"first_s\"", {plain(name)}),
+            phrase("leave it out"));
+    }
+  }
+  if (task.kind == TaskKind::adjustment) check_slider_times(task, reading);
+  const auto most = most_parts_of_trial(task, kind);
+  if (most > core::kMostParts)
+    reading.findings.add(reading.places.of("task.parts"),
+                         phrase("the intervals of a trial have up to %1 scenes", {plain(most)}),
+                         phrase("at most %1", {plain(core::kMostParts)}));
 }
 
 void read_intervals(TableReader& reader, Task& task, const Reading& reading) {
@@ -97,13 +231,20 @@ void read_intervals(TableReader& reader, Task& task, const Reading& reading) {
                    phrase("%1 must be given for this kind of task", {plain(needed)}));
 }
 
-void read_times(TableReader& reader, Task& task) {
-  if (!explored(task)) {
-    task.duration_s = reader.number("duration_s");
-    task.gap_s = reader.number("gap_s");
-  } else {
-    task.duration_s = reader.maybe_number("duration_s");  // with it, the interval is not explored
-  }
+void read_times(TableReader& reader, Task& task, const Reading& reading) {
+  // A single interval needs no length: without one, it lasts until the answer.
+  const bool single = task.kind == TaskKind::single_interval && task.standard.empty();
+  const bool several = !single && task.kind != TaskKind::adjustment;
+  std::vector<std::vector<std::string>> listed = task.intervals;
+  for (const auto* name : {&task.standard, &task.target})
+    if (!name->empty()) listed.push_back({*name});
+  const bool plain_interval = std::any_of(listed.begin(), listed.end(), [&](const auto& interval) {
+    return interval.size() != 1 || task.parts.count(interval.front()) == 0;
+  });
+  if (several && (plain_interval || listed.empty())) reader.require("duration_s");
+  task.duration_s = read_length(reader, reading);  // with it, no interval is explored
+  if (several) reader.require("gap_s");
+  if (several) task.gap_s = read_expression(reader, "gap_s", reading);
   if (task.duration_s && task.kind == TaskKind::adjustment)
     reader.problem(
         "duration_s",
@@ -113,7 +254,7 @@ void read_times(TableReader& reader, Task& task) {
   const bool change = std::any_of(task.intervals.begin(), task.intervals.end(), sequence);
   if (change) {
     reader.require("foreperiod_s");
-    task.foreperiod_s = read_distribution(reader, "foreperiod_s");
+    task.foreperiod_s = read_distribution(reader, "foreperiod_s", reading);
     task.transition_ms = reader.number("transition_ms");
   } else {
     for (const auto* key : {"foreperiod_s", "transition_ms"})
@@ -454,6 +595,7 @@ void read_task(TableReader& file, Reading& reading) {
                                   [&word](const TaskForm& known) { return known.name == word; });
   if (kind == std::end(task_forms)) kind = std::begin(task_forms);
   task.kind = kind->kind;
+  read_parts(reader, task, reading);
   read_intervals(reader, task, reading);
   const auto device = reader.word("device");
   task.device_place = reader.place("device");
@@ -466,12 +608,13 @@ void read_task(TableReader& file, Reading& reading) {
   read_shown(reader, task, reading);
   read_judgement(reader, task, reading);
   read_confidence(reader, task, reading);
-  read_times(reader, task);
+  read_times(reader, task, reading);
   if (!judges(task) && !reader.has("rating") && !reader.has("number")) {
     read_choices(reader, task, *kind, reading);
     read_correct(reader, task, reading);
     read_unsure(reader, task, reading);
   }
+  check_parts(task, *kind, reading);
   reader.finish();
 }
 

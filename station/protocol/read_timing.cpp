@@ -12,12 +12,6 @@ using core::Value;
 
 namespace {
 
-std::optional<Linear> read_expression(TableReader& reader, const std::string& key, const Reading& reading) {
-  const auto* value = reader.take(key);
-  return value ? linear_from(*value, key, reader.range(key), reading.protocol.factors, reading.findings)
-               : std::nullopt;
-}
-
 void read_buzz(TableReader& reader, ResponseSignal& signal, const Reading& reading) {
   if (signal.by != ResponseSignal::By::buzz) return;
   signal.scene = read_scene_name(reader, "scene", reading);
@@ -59,7 +53,7 @@ void read_timing(TableReader& file, Reading& reading) {
   read_signal(reader, reading);
   timing.deadline_s = read_expression(reader, "deadline_s", reading);
   reader.require("iti_s");
-  timing.iti_s = read_distribution(reader, "iti_s").value_or(Distribution{1, 1});
+  timing.iti_s = read_distribution(reader, "iti_s", reading).value_or(Distribution{1, 1, {}});
   if (const auto* delays = reader.maybe_table("delay_s")) {
     TableReader inner(*delays, "timing.delay_s", reading.findings, reader.keys("delay_s"));
     for (const auto& [key, delay] : {std::pair{"wrong", &timing.delay_s.wrong},

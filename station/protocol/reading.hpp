@@ -73,8 +73,13 @@ std::vector<Choice> read_choice_list(core::TableReader& reader, const std::strin
 /// Reads the name of a scene. Reports a problem if the file has no such scene.
 std::string read_scene_name(core::TableReader& reader, const std::string& key, const Reading& reading);
 
-/// Reads a number, or { uniform = [low, high] }.
-std::optional<Distribution> read_distribution(core::TableReader& reader, const std::string& key);
+/// Reads a number or an expression of factors; empty if the key is not there.
+std::optional<Linear> read_expression(core::TableReader& reader, const std::string& key,
+                                      const Reading& reading);
+
+/// Reads a number, an expression of factors, or { uniform = [low, high] }.
+std::optional<Distribution> read_distribution(core::TableReader& reader, const std::string& key,
+                                              const Reading& reading);
 
 /// Reads a value of a factor and checks it against the factor's range or levels.
 std::optional<FactorValue> read_factor_value(const core::Value& value, const Factor& factor,

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "station/procedure/limits.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
 
 namespace turnpoint::protocol {
@@ -108,9 +109,13 @@ std::vector<std::string> scenes_used(const Protocol& protocol) {
     if (protocol.scenes.count(name) && std::find(names.begin(), names.end(), name) == names.end())
       names.push_back(name);
   };
-  for (const auto& interval : protocol.task.intervals)
-    for (const auto& name : interval) add_name(name);
-  add_name(protocol.task.standard), add_name(protocol.task.target);
+  const auto& task = protocol.task;
+  const auto add_interval = [&](const std::vector<std::string>& interval) {
+    for (const auto& part : parts_of(task, interval))
+      for (const auto& name : part.scenes) add_name(name);
+  };
+  for (const auto& interval : task.intervals) add_interval(interval);
+  add_interval({task.standard}), add_interval({task.target});
   if (protocol.timing.signal) add_name(protocol.timing.signal->scene);
   return names;
 }
@@ -123,6 +128,8 @@ std::set<std::string> factors_used(const Protocol& protocol) {
     add(comparison.left, names), add(comparison.right, names);
   if (const auto& present = protocol.task.present) add(present->left, names), add(present->right, names);
   const auto& timing = protocol.timing;
+  for (const auto& time : stimulus_times(protocol.task)) add(time, names);
+  if (timing.iti_s.expression) add(*timing.iti_s.expression, names);
   add(timing.anticipation_s, names);
   for (const auto* delay : {&timing.delay_s.wrong, &timing.delay_s.late, &timing.delay_s.early})
     add(*delay, names);

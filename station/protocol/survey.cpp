@@ -11,8 +11,11 @@
 #include "physics/boundary_map.hpp"
 #include "station/core/limits.hpp"
 #include "station/core/number.hpp"
+#include "station/core/parts.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/protocol/carrier_advice.hpp"
 #include "station/protocol/combinations.hpp"
+#include "station/protocol/expression.hpp"
 #include "station/protocol/key_places.hpp"
 #include "station/protocol/needs.hpp"
 #include "station/protocol/resolve.hpp"
@@ -302,15 +305,30 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
 }
 
 void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
-  const double longest_s =
-      protocol.task.duration_s ? *protocol.task.duration_s : protocol.timing.explore_s.value_or(0);
-  if (longest_s > rig.limits.continuous_s)
-    survey.problems.push_back(
-        {KeyPlaces(protocol.source, protocol.path)
-             .of(protocol.task.duration_s ? "task.duration_s" : "timing.explore_s"),
-         phrase("tones last up to %1 s without a pause", {plain(core::number(longest_s))}),
-         phrase("the rig allows at most continuous_s = %1 s",
-                {plain(core::number(rig.limits.continuous_s))})});
+  const auto& task = protocol.task;
+  const KeyPlaces places(protocol.source, protocol.path);
+  std::set<std::string> told;
+  const auto check = [&](double longest_s, const std::string& key) {
+    if (longest_s > rig.limits.continuous_s && told.insert(key).second)
+      survey.problems.push_back(
+          {places.of(key), phrase("tones last up to %1 s without a pause", {plain(core::number(longest_s))}),
+           phrase("the rig allows at most continuous_s = %1 s",
+                  {plain(core::number(rig.limits.continuous_s))})});
+  };
+  for (const auto& part : parts_of(task))
+    check(length_range_s(protocol, part).second, part.duration_s || part.first_s    ? "task.parts"
+                                                 : length_of(task, part) != nullptr ? "task.duration_s"
+                                                                                    : "timing.explore_s");
+  // A silence that is too short to count as a rest does not end a vibration.
+  for (const auto& [name, parts] : task.parts) {
+    double run_s = 0;
+    for (const auto& part : parts) {
+      double silence_s = 0;
+      for (const auto& silence : part.silences_s) silence_s += bounds(silence, protocol.factors).first;
+      run_s = (silence_s < core::kRest_s ? run_s + silence_s : 0) + length_range_s(protocol, part).second;
+      check(run_s, "task.parts");
+    }
+  }
 }
 
 }  // namespace

@@ -29,12 +29,27 @@ constexpr double longest_after_s = 30;
 
 /// Warns of a deadline that nobody can meet, because answers are accepted only when the intervals have ended,
 /// and of one so long after the stimulus that it was probably meant otherwise.
-void check_reach(AdviceList& advice, const std::string& key, double shortest, double longest) {
-  const auto end = stimulus_end(advice.protocol);
-  const std::string zero = name(advice.protocol.timing.response_zero);
-  const double tones_s = advice.protocol.task.duration_s.value_or(0);
-  if (advice.protocol.timing.response_zero == ResponseZero::first_contact &&
-      !explored(advice.protocol.task) && shortest < tones_s)
+void check_reach(AdviceList& advice, const std::string& key, const Linear& deadline) {
+  const auto& protocol = advice.protocol;
+  const std::string zero = name(protocol.timing.response_zero);
+  const bool explores = explored(protocol.task);
+  const auto parts = parts_of(protocol.task);
+  const auto* length = parts.empty() ? nullptr : length_of(protocol.task, parts.back());
+  const Linear none;
+  // The deadline may depend on the factors that set the length, so both are compared at the same values. Of
+  // all values, those count at which the deadline comes soonest after the end.
+  std::optional<StimulusEnd> end;
+  double shortest = 0, longest = 0, tones_s = 0, least_s = 0, most_s = 0;
+  bool is_first = true;
+  for (const auto& corner : corners({&deadline, length ? length : &none}, protocol.factors)) {
+    const auto here = stimulus_end(protocol, corner);
+    const double at_s = evaluate(deadline, corner), long_s = length ? evaluate(*length, corner) : 0;
+    const double left_s = at_s - (here ? here->latest_s : long_s);
+    if (is_first || left_s < least_s) least_s = left_s, shortest = at_s, tones_s = long_s, end = here;
+    if (is_first || left_s > most_s) most_s = left_s, longest = at_s;
+    is_first = false;
+  }
+  if (protocol.timing.response_zero == ResponseZero::first_contact && !explores && shortest < tones_s)
     advice.add(key,
                phrase("people who touch the surface at once cannot meet the deadline of %1 s after \"%2\": "
                       "answers are accepted when the last interval of %3 s has ended",
@@ -42,7 +57,7 @@ void check_reach(AdviceList& advice, const std::string& key, double shortest, do
                phrase("%1 s or more, or %2", {plain(number(tones_s + shortest_deadline_s)),
                                               plain("response_zero = \"interval_off\"")}));
   if (!end) return;
-  const double answers_from_s = explored(advice.protocol.task) ? 0 : end->latest_s;
+  const double answers_from_s = explores ? 0 : end->latest_s;
   if (answers_from_s > 0 && shortest < answers_from_s + shortest_deadline_s)
     advice.add(key,
                phrase("the deadline of %1 s cannot be met: answers are accepted when the last interval has "
@@ -50,18 +65,16 @@ void check_reach(AdviceList& advice, const std::string& key, double shortest, do
                       {plain(number(shortest)), plain(number(answers_from_s)), plain(zero)}),
                phrase("%1 s or more, or %2", {plain(number(answers_from_s + shortest_deadline_s)),
                                               plain("response_zero = \"interval_off\"")}));
-  else if (!advice.protocol.task.value && longest - end->latest_s > longest_after_s && longest <= longest_s)
-    advice.add(
-        key,
-        phrase("the deadline is %1 s after the stimulus has ended", {plain(number(longest - end->latest_s))}),
-        phrase("nobody remembers for longer than %1 s what was felt: at most %2 s",
-               {plain(number(longest_after_s)), plain(number(end->latest_s + longest_after_s))}));
+  else if (!protocol.task.value && most_s > longest_after_s && longest <= longest_s)
+    advice.add(key, phrase("the deadline is %1 s after the stimulus has ended", {plain(number(most_s))}),
+               phrase("nobody remembers for longer than %1 s what was felt: at most %2 s",
+                      {plain(number(longest_after_s)), plain(number(longest - most_s + longest_after_s))}));
 }
 
 void check_deadline(AdviceList& advice, const std::string& key, const Linear& deadline) {
   const auto [seconds, longest] = bounds(deadline, advice.protocol.factors);
   check_length(advice, key, longest);
-  if (seconds >= shortest_deadline_s) check_reach(advice, key, seconds, longest);
+  if (seconds >= shortest_deadline_s) check_reach(advice, key, deadline);
   if (seconds < shortest_deadline_s)
     advice.add(key, phrase("nobody can answer within %1 s", {plain(number(seconds))}),
                phrase("%1 s or more", {plain(number(shortest_deadline_s))}));
@@ -77,7 +90,10 @@ void check_deadline(AdviceList& advice, const std::string& key, const Linear& de
 void check_change(AdviceList& advice) {
   const auto& task = advice.protocol.task;
   if (!task.foreperiod_s) return;
-  const double whole_s = task.duration_s.value_or(advice.protocol.timing.explore_s.value_or(0));
+  std::optional<double> shortest_s;
+  for (const auto& part : parts_of(task))
+    if (part.scenes.size() > 1) shortest_s = length_range_s(advice.protocol, part).first;
+  const double whole_s = shortest_s.value_or(0);
   const double latest_s = task.foreperiod_s->high + 1e-3 * task.transition_ms.value_or(0);
   if (whole_s > 0 && latest_s >= whole_s)
     advice.add(
@@ -119,7 +135,16 @@ void advise_on_times(AdviceList& advice) {
   if (timing.signal) check_lag(advice, *timing.signal);
   check_length(advice, "timing.iti_s", timing.iti_s.high);
   check_length(advice, "timing.explore_s", timing.explore_s.value_or(0));
-  check_length(advice, "task.duration_s", task.duration_s.value_or(0));
+  const auto longest = [&](const std::optional<Linear>& time) {
+    return time ? bounds(*time, advice.protocol.factors).second : 0;
+  };
+  check_length(advice, "task.duration_s", longest(task.duration_s));
+  for (const auto& [name, parts] : task.parts)
+    for (const auto& part : parts) {
+      check_length(advice, "task.parts." + name, longest(part.duration_s));
+      for (const auto& silence : part.silences_s)
+        check_length(advice, "task.parts." + name, longest(silence));
+    }
   check_length(advice, "task.foreperiod_s", task.foreperiod_s.value_or(Distribution{}).high);
   check_change(advice);
 }

@@ -51,9 +51,8 @@ struct Estimate {
   double duration_s() const { return std::accumulate(durations_s.begin(), durations_s.end(), 0.0); }
 };
 
-double longest_s(const Protocol& protocol) {
-  return protocol.task.duration_s.value_or(protocol.timing.explore_s.value_or(0));
-}
+/// The longest time for which people explore the surface in a trial.
+double longest_s(const Protocol& protocol) { return protocol.timing.explore_s.value_or(0); }
 
 /// Returns the observer of `run --observer sim`, except that setting a slider takes as long as it would take
 /// a person, and that this observer is as quick as a deadline asks, if people can be so quick, and never too

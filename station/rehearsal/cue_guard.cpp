@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <tuple>
 
 #include "station/protocol/answers.hpp"
 #include "station/rehearsal/cue_search.hpp"
@@ -36,6 +37,9 @@ CueReport report_on(CueObserver& observer, CueSearch& search, const Protocol& pr
   if (!kind.in_dB())
     grain = {smallest_difference * std::max(std::fabs(low), std::fabs(high)), smallest_difference};
   const auto best = observer.best_strategy(kind, grain, all);
+  if (kind.source == Source::duration)  // those of the part that tells most
+    std::tie(report.low, report.high) =
+        range_of(observer.looks(kind, best.feature, all, Draws::to_choose), observer.asked().intervals);
   const auto reached = observer.score(kind, best, all);
   report.chance = observer.chance(reached);
   report.accuracy = std::max(reached.accuracy(), report.chance);

@@ -1,5 +1,6 @@
 #pragma once
 #include <string_view>
+#include <vector>
 
 #include "station/rehearsal/cue_table.hpp"
 #include "station/scene/planner.hpp"
@@ -33,19 +34,27 @@ inline constexpr CueKind cue_kinds[] = {
     {"always the same key", "", 1, Source::nothing, nullptr, false},
 };
 
-/// Which value of a cue (pitch, loudness, ...) the observer uses in an interval that changes from one scene
-/// to another.
-enum class Feature { last, change, first };
+/// Which value of a cue (pitch, loudness, ...) the observer uses in an interval of several scenes: that of
+/// the last scene, its difference from the first, or that of the first. Features from `one` on are one scene
+/// each, counted from 0. Of durations, `last` is that of the whole interval, and from `one` on come those of
+/// its scenes and of the silences between them, in order.
+enum class Feature { last, change, first, one };
 
-/// The cues of one interval's first and last scene, for any strength that roving may draw.
+inline Feature feature_of_one(std::size_t number) {
+  return static_cast<Feature>(static_cast<int>(Feature::one) + static_cast<int>(number));
+}
+
+/// The cues of the scenes of an interval, for any strength that roving may draw.
 struct Interval {
-  RovedCues first, last;
+  std::vector<RovedCues> scenes;
+  std::vector<double> rove_dB;  ///< for each scene: by how much its strength may be roved
   double duration_s = 0;
+  std::vector<double> lengths_s;  ///< of scenes and silences; empty if the interval has only one part
 };
 
-/// Returns the value of a cue in an interval whose strength was roved by `rove_dB`, in SI units. Returns 0 if
-/// there is no cue.
-double value_of(const CueKind& kind, const Interval& interval, Feature feature, double rove_dB);
+/// Returns the value of a cue in an interval whose scenes were roved by `share` of what they allow, from -1
+/// to 1, in SI units. Returns 0 if there is no cue.
+double value_of(const CueKind& kind, const Interval& interval, Feature feature, double share);
 
 /// True if roving can change the value of this cue in this interval.
 bool roves(const CueKind& kind, const Interval& interval);

@@ -1,5 +1,6 @@
 #include "station/rehearsal/cue_observer.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "station/core/draws.hpp"
@@ -52,9 +53,30 @@ Interval CueObserver::interval_of(const std::vector<std::string>& scenes, const 
     if (!found) throw NotPlanned("scene \"" + scene + "\" at " + protocol::format(factors));
     return *found;
   };
-  const double longest_s = protocol_.task.duration_s.value_or(protocol_.timing.explore_s.value_or(0));
-  return {cues(scenes.front()), cues(scenes.back()),
-          longest_s - 1e-3 * protocol_.scenes.at(scenes.front()).ramp_ms};
+  const auto parts = protocol::parts_of(protocol_.task, scenes);
+  Interval interval;
+  for (const auto& part : parts) {
+    double silence_s = 0;
+    for (const auto& silence : part.silences_s) silence_s += protocol::evaluate(silence, factors);
+    const auto* length = protocol::length_of(protocol_.task, part);
+    const double length_s =
+        length ? protocol::evaluate(*length, factors) : protocol_.timing.explore_s.value_or(0);
+    interval.duration_s += silence_s + length_s;
+    if (!interval.lengths_s.empty()) interval.lengths_s.push_back(silence_s);  // before a second part
+    if (parts.size() > 1) interval.lengths_s.push_back(length_s);
+    // A change under the finger whose time depends on factors divides the interval in two.
+    if (const auto& foreperiod = protocol_.task.foreperiod_s;
+        part.scenes.size() > 1 && foreperiod && foreperiod->expression) {
+      const double before_s = protocol::evaluate(*foreperiod->expression, factors);
+      interval.lengths_s.insert(interval.lengths_s.end(), {before_s, length_s - before_s});
+    }
+    for (const auto& scene : part.scenes) {
+      interval.scenes.push_back(cues(scene));
+      interval.rove_dB.push_back(protocol_.scenes.at(part.scenes.front()).rove_dB);
+    }
+  }
+  interval.duration_s -= 1e-3 * protocol_.scenes.at(parts.front().scenes.front()).ramp_ms;
+  return interval;
 }
 
 const std::vector<Interval>& CueObserver::intervals_of(const TrialSpec& trial) {
@@ -112,7 +134,7 @@ std::vector<Look> CueObserver::looks(const CueKind& kind, Feature feature, const
         look.correct = presentation.correct, look.weight = trials * presentation.share / points;
         for (std::size_t i = 0; i < intervals.size(); ++i) {
           const double u = points == 1 ? 0.5 : std::fmod(presentation.turn + k * steps[i], 1.0);
-          look.x[i] = value_of(kind, intervals[i], feature, intervals[i].first.rove_dB * (2 * u - 1));
+          look.x[i] = value_of(kind, intervals[i], feature, 2 * u - 1);
         }
         looks.push_back(look);
       }
@@ -125,7 +147,9 @@ Strategy CueObserver::best_strategy(const CueKind& kind, const Grain& grain, con
   double most = -1;
   for (const auto feature : features_of(kind)) {
     const auto looked = looks(kind, feature, all, Draws::to_choose);
-    const Strategy strategy{feature, best_rule(asked_, looked, grain)};
+    // a difference of two scenes can be 0 but for rounding errors, so a share of it means nothing
+    const Grain own = feature == Feature::change ? Grain{grain.absolute, 0} : grain;
+    const Strategy strategy{feature, best_rule(asked_, looked, own)};
     const double right = accuracy(strategy.rule, asked_, looked);
     if (right > most) most = right, best = strategy;
   }
@@ -150,8 +174,16 @@ int CueObserver::answer(const CueKind& kind, const Strategy& strategy, const Tri
                         std::uint64_t seed) {
   const auto& intervals = intervals_of(trial);
   CueValues x{};
-  for (std::size_t i = 0; i < intervals.size(); ++i)
-    x[i] = value_of(kind, intervals[i], strategy.feature, trial.rove_dB[i]);
+  std::size_t next = 0;  // the part with which the interval begins
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    double share = 0;
+    for (const auto& part : protocol::parts_of(protocol_.task, trial.intervals[i])) {
+      const double range_dB = protocol_.scenes.at(part.scenes.front()).rove_dB;
+      if (range_dB > 0) share = trial.rove_dB.at(next) / range_dB;
+      ++next;
+    }
+    x[i] = value_of(kind, intervals[i], strategy.feature, share);
+  }
   const auto answers = shares(strategy.rule, asked_, x);
   core::Draws draws({seed, core::Stream::observer, trial.block_index, trial.attempt, trial.trial_in_block});
   double left = draws.uniform();
@@ -250,8 +282,20 @@ Reached CueObserver::by_itself(const CueKind& kind, const Strategy& strategy, co
 }
 
 std::vector<Feature> CueObserver::features_of(const CueKind& kind) const {
-  const bool change = kind.source == Source::surface && protocol_.task.kind == TaskKind::single_interval &&
-                      protocol_.task.intervals.front().size() > 1;
+  const auto& task = protocol_.task;
+  std::size_t most = 0;  // number of parts of an interval
+  for (const auto& [name, parts] : task.parts) most = std::max(most, parts.size());
+  if (most > 1 && kind.source != Source::nothing) {
+    std::vector<Feature> features{Feature::last};
+    if (kind.source == Source::surface) features.push_back(Feature::change);
+    const auto ones = kind.source == Source::surface ? most : 2 * most - 1;
+    for (std::size_t i = 0; i < ones; ++i) features.push_back(feature_of_one(i));
+    return features;
+  }
+  if (kind.source == Source::duration && task.foreperiod_s && task.foreperiod_s->expression)
+    return {Feature::last, feature_of_one(0), feature_of_one(1)};
+  const bool change = kind.source == Source::surface && task.kind == TaskKind::single_interval &&
+                      task.intervals.front().size() > 1;
   if (change) return {Feature::last, Feature::change, Feature::first};
   return {Feature::last};
 }

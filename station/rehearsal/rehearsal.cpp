@@ -82,12 +82,12 @@ class Bench {
     }
   }
 
-  /// Presents all intervals without any fault. Returns the onset of the last one.
+  /// Presents all parts without any fault. Returns the onset of the last one.
   std::int64_t present(std::int64_t onset_ns, const Doing& doing) {
-    const auto times = trial::interval_times(protocol_, spec_);
-    for (int i = 0; i < static_cast<int>(times.size()); ++i) {
-      if (i > 0)
-        onset_ns += ns(times[static_cast<std::size_t>(i) - 1].length_s + protocol_.task.gap_s.value_or(0));
+    const auto parts = trial::parts_of(protocol_, spec_);
+    for (int i = 0; i < static_cast<int>(parts.size()); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (i > 0) onset_ns += ns(parts[at - 1].length_s + parts[at].silence_s);
       perform(machine_.handle({onset_ns, trial::EventKind::onset, i}), doing);
       perform(machine_.handle({now_ns_, trial::EventKind::heard, i}), doing);
     }
@@ -112,7 +112,7 @@ Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol:
   const auto set = rehearser.adjust(spec, trial::adjustment_of(spec, protocol, seed));
   trial::Slider slider(*spec.slider, spec.level.value_or(spec.slider->low));
   // Ignore slider movements after the tones have ended: the participant could not feel their effect.
-  const double sounds_s = trial::interval_times(protocol, spec).back().length_s -
+  const double sounds_s = trial::parts_of(protocol, spec).back().length_s -
                           1e-9 * static_cast<double>(trial::simulated_times(protocol, spec, 0).slider_ns);
   for (const auto& move : set.moves)
     if (move.time_s < sounds_s) slider.move(move.value);
@@ -135,6 +135,7 @@ Rehearsal rehearse(const protocol::Protocol& protocol, const protocol::Visit& vi
     auto& record = rehearsal.blocks.emplace_back();
     record.start = trial::block_start(*block, director.block_index(), director.attempt());
     now_ns += page_ns;
+    int trials = 0;
     while (const auto spec = director.next()) {
       auto row = trial::row_of(*spec, protocol, rehearsal.trials);
       Bench bench(protocol, *block, *spec, now_ns);
@@ -147,6 +148,7 @@ Rehearsal rehearse(const protocol::Protocol& protocol, const protocol::Visit& vi
       director.spend(row.timing.duration_s);
       now_ns = bench.now_ns();
       record.trials.push_back(std::move(row));
+      if (block->break_after && ++trials % block->break_after->trials == 0) director.rested();
       if (++rehearsal.trials > most_trials)
         throw core::Failure(
             core::phrase("block \"%1\" does not end: a simulated observer leaves too many trials unanswered",

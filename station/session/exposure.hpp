@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "station/core/parts.hpp"
 #include "station/core/texts.hpp"
 
 namespace turnpoint::session {
@@ -39,7 +40,7 @@ class LimitExceeded : public std::runtime_error {
 class Exposure {
  public:
   static constexpr double window_s = 60;
-  static constexpr double rest_s = 0.5;
+  static constexpr double rest_s = core::kRest_s;
 
   /// Throws std::invalid_argument for limits that are not positive, or a duty above 1.
   Exposure(const ExposureLimits& limits, double session_start_s, const std::vector<Exposed>& history = {});

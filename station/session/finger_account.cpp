@@ -141,9 +141,10 @@ void FingerAccount::add(std::int64_t on_ns, std::int64_t off_ns) {
 std::vector<Exposed> stimuli_of(const protocol::Protocol& protocol, const trial::TrialSpec& trial) {
   std::vector<Exposed> stimuli;
   double at_s = protocol::kCue_s;
-  for (const auto& interval : trial::interval_times(protocol, trial)) {
-    stimuli.push_back({at_s, at_s + interval.length_s});
-    at_s += interval.length_s + protocol.task.gap_s.value_or(0);
+  for (const auto& part : trial::parts_of(protocol, trial)) {
+    at_s += part.silence_s;
+    stimuli.push_back({at_s, at_s + part.length_s});
+    at_s += part.length_s;
   }
   return stimuli;
 }

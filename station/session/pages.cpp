@@ -12,6 +12,7 @@
 #include "station/protocol/answers.hpp"
 #include "station/protocol/interludes.hpp"
 #include "station/scene/planner.hpp"
+#include "station/trial/timing.hpp"
 
 namespace turnpoint::session {
 
@@ -203,9 +204,14 @@ std::optional<Page> Pages::block_over(const protocol::Block& block, const BlockS
 
 void Pages::add_mark(Page& page, const trial::TrialSpec& first) const { page.mark_mm = mark_of(first); }
 
-Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, const protocol::Block& block,
+Page Pages::of_phase(Phase phase, int part, const trial::TrialSpec& spec, const protocol::Block& block,
                      const trial::Result& result, const trial::Director& director) const {
-  auto page = blank(kind_of(phase), &block, &director);
+  const auto parts = trial::parts_of(setup_.protocol, spec);
+  const auto at = static_cast<std::size_t>(part);
+  const int interval = parts.at(at).interval;
+  const bool last = at + 1 == parts.size();
+  const bool within = phase == Phase::gap && !last && parts[at + 1].interval == interval;
+  auto page = blank(kind_of(within ? Phase::stimulus : phase), &block, &director);
   const auto& task = setup_.protocol.task;
   const bool explored = task.kind == protocol::TaskKind::single_interval && protocol::explored(task);
   if (spec.strokes) {
@@ -217,7 +223,7 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
   page.mark_mm = mark_of(spec);
   page.interval = {interval + 1, static_cast<int>(spec.intervals.size()), interval_names(task.kind)};
   page.text = question_in(&spec);
-  page.answers_open = phase == Phase::response || (phase == Phase::stimulus && explored);
+  page.answers_open = phase == Phase::response || (phase == Phase::stimulus && explored && last);
   for (const auto& choice : task.choices)
     page.answers.push_back({choice.id, task.rating ? choice.id : text(choice.label)});
   if (!task.unsure.empty()) page.answers.push_back({protocol::kUnsure, text(task.unsure)});

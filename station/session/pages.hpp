@@ -23,8 +23,9 @@ class Pages {
   Page instructions(const protocol::Block& block, const trial::Director& director) const;
   /// Adds the mark on the surface that the question of the block's first trial refers to.
   void add_mark(Page& page, const trial::TrialSpec& first) const;
-  /// Makes the page for one phase of a trial.
-  Page of_phase(trial::Phase phase, int interval, const trial::TrialSpec& spec, const protocol::Block& block,
+  /// Makes the page for one phase of a trial. `part` is the part that is presented, or was presented last: an
+  /// index of trial::parts_of. During a silence within an interval, the page stays as it is.
+  Page of_phase(trial::Phase phase, int part, const trial::TrialSpec& spec, const protocol::Block& block,
                 const trial::Result& result, const trial::Director& director) const;
   /// Returns the text that tells the participant what to change after a wrong movement. `word` is the name of
   /// the wrong movement in the trial's row, such as "light".

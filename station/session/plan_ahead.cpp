@@ -91,14 +91,14 @@ PlanAhead::Planned PlanAhead::plan(const trial::TrialSpec& trial, double drift) 
     planned.bursts = bursts_of(trial, planned.plans);
     return planned;
   }
-  const auto presented = trial::presented_scenes(protocol_, trial);
-  for (std::size_t i = 0; i < presented.size(); ++i) {
+  const auto parts = trial::parts_of(protocol_, trial);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
     auto& scenes = planned.plans.emplace_back();
-    const auto of_the_task = trial.intervals[i].size();
-    for (const auto& name : presented[i]) {
+    const auto of_the_task = parts[i].changes + 1;
+    for (const auto& name : parts[i].scenes) {
       // A buzz, which follows the task's scenes, is the same in all trials: compared with it, a strength that
       // was roved could be recognised.
-      const bool is_buzz = presented[i].size() > of_the_task && scenes.size() == of_the_task;
+      const bool is_buzz = parts[i].scenes.size() > of_the_task && scenes.size() == of_the_task;
       const double rove_dB = is_buzz ? 0 : trial.rove_dB[i];
       scenes.push_back(planner_.plan(protocol::resolve(protocol_, name, trial.factors, rove_dB)));
     }
@@ -132,7 +132,7 @@ std::vector<audio::PreparedBurst> PlanAhead::bursts_of(const trial::TrialSpec& t
                                                        const Plans& plans) const {
   const auto stream = stream_of(rig_);
   const int rate_Hz = stream.output.rate_Hz;
-  const auto times = trial::interval_times(protocol_, trial);
+  const auto parts = trial::parts_of(protocol_, trial);
   const auto& task = protocol_.task;
   core::Draws noise(
       {seed_, core::Stream::masking_noise, trial.block_index, trial.attempt, trial.trial_in_block});
@@ -141,8 +141,9 @@ std::vector<audio::PreparedBurst> PlanAhead::bursts_of(const trial::TrialSpec& t
   std::vector<audio::PreparedBurst> bursts;
   std::int64_t start_frame = 0;
   for (std::size_t i = 0; i < plans.size(); ++i) {
-    auto burst = burst_of(plans[i], times[i].starts_s, times[i].transitions_s, times[i].length_s, rate_Hz);
-    codes.changes = trial.intervals[i].size() - 1;
+    const auto& part = parts[i];
+    auto burst = burst_of(plans[i], part.starts_s, part.transitions_s, part.length_s, rate_Hz);
+    codes.changes = part.changes;
     if (rig_.marker) mark(burst, *rig_.marker, rate_Hz, codes);
     if (rig_.noise && task.sound == protocol::Sound::masking_noise) mask(burst, *rig_.noise, noise.bits());
     const auto& response = protocol_.timing.signal;
@@ -150,8 +151,8 @@ std::vector<audio::PreparedBurst> PlanAhead::bursts_of(const trial::TrialSpec& t
     if (const auto at_s = trial::signal_in_stimulus_s(protocol_, trial);
         at_s && tone && rig_.noise && rig_.noise->signal && i + 1 == plans.size())
       signal(burst, *rig_.noise, *at_s, rate_Hz);
-    burst.start_frame = start_frame;
-    start_frame += burst.length_frames + std::llround(task.gap_s.value_or(0) * rate_Hz);
+    burst.start_frame = start_frame += std::llround(part.silence_s * rate_Hz);
+    start_frame += burst.length_frames;
     bursts.push_back(audio::prepare(burst, audio::format_of(stream.output), stream.limits));
   }
   return bursts;

@@ -21,8 +21,8 @@ namespace turnpoint::session {
 /// do not depend on when they are computed, so stimuli do not depend on timing.
 class PlanAhead {
  public:
-  /// For each interval of a trial: the plans of its scenes, and the checked burst with its peaks. The start
-  /// frames of bursts count from the first interval's onset.
+  /// For each part of a trial (trial::parts_of): the plans of its scenes, and the checked burst with its
+  /// peaks. The start frames of bursts count from the first part's onset.
   using Plans = std::vector<std::vector<scene::DrivePlan>>;
   struct Planned {
     Plans plans;

@@ -137,6 +137,7 @@ trial::Director replayed(const Setup& setup, const store::StoredSession& stored,
   switch (setup.resume_at) {
     case ResumeAt::next_trial:
       if (director.trials_done() > 0) director.warm_up(setup.protocol.resume.warmup);
+      director.rested();
       break;
     case ResumeAt::block_start:
       director.restart_block();

@@ -122,12 +122,14 @@ void add_tones(core::TrialRow& row, const std::vector<scene::DrivePlan>& scenes,
   take_last(row, scenes.back());
 }
 
-void set_scene(core::TrialRow& row, const scene::DrivePlan& scene, std::int64_t frame) {
+void set_scene(core::TrialRow& row, const scene::DrivePlan& scene, int interval, std::int64_t frame) {
   std::int64_t end = 0;
   for (const auto& tone : row.tones) end = std::max(end, tone.onset_frame + tone.length_frames);
-  std::erase_if(row.tones, [](const auto& tone) { return tone.scene_index == 1; });
-  for (auto& tone : row.tones) tone.length_frames = std::min(tone.length_frames, frame - tone.onset_frame);
-  add_scene(row, scene, {0, 1, frame, end - frame});
+  const auto here = [interval](const auto& tone) { return tone.interval_index == interval; };
+  std::erase_if(row.tones, [&](const auto& tone) { return here(tone) && tone.scene_index == 1; });
+  for (auto& tone : row.tones)
+    if (here(tone)) tone.length_frames = std::min(tone.length_frames, frame - tone.onset_frame);
+  add_scene(row, scene, {interval, 1, frame, end - frame});
   take_last(row, scene);
 }
 

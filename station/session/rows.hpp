@@ -20,10 +20,10 @@ namespace turnpoint::session {
 void add_tones(core::TrialRow& row, const std::vector<scene::DrivePlan>& scenes, int interval,
                std::int64_t onset_frame, const audio::PreparedBurst& burst);
 
-/// Records that the surface begins to follow the slider of an adjustment at `frame`. In the row, scene 0
-/// remains the scene at the start of the trial, and `scene` becomes scene 1. The boundary, frequency and
-/// amplitude of the trial become those of scene 1.
-void set_scene(core::TrialRow& row, const scene::DrivePlan& scene, std::int64_t frame);
+/// Records that the surface begins to follow the slider of an adjustment at `frame`, in this interval. In the
+/// row, scene 0 remains the scene at the start of the interval, and `scene` becomes scene 1. The boundary,
+/// frequency and amplitude of the trial become those of scene 1.
+void set_scene(core::TrialRow& row, const scene::DrivePlan& scene, int interval, std::int64_t frame);
 
 /// Adds the measurements of an interval to the row: to the tones of the interval, and to the verdict on the
 /// trial, which is that of the worst interval. `first` means that no interval of this trial has been added

@@ -142,6 +142,7 @@ Flow SessionRun::rest_if_due(int trials) {
   const auto& block = *director_.block();
   if (!block.break_after || trials % block.break_after->trials != 0) return Flow::go_on;
   if (!next_trial()) return Flow::go_on;  // a block's last trial is not followed by a break
+  director_.rested();
   return gate_.show_and_wait(pages_.rest(block, block.break_after->min_s, director_),
                              block.break_after->min_s);
 }
@@ -254,10 +255,10 @@ Flow SessionRun::keep_limits(const trial::TrialSpec& spec) {
 /// Checks the scenes against the rig's limits, just before they are presented. Throws LimitExceeded.
 void SessionRun::check_plans(const trial::TrialSpec& spec) {
   const auto& plans = plans_.take(spec).plans;
-  const auto times = trial::interval_times(setup_.protocol, spec);
+  const auto parts = trial::parts_of(setup_.protocol, spec);
   for (std::size_t i = 0; i < plans.size(); ++i)
     for (const auto& plan : plans[i]) {
-      account_.check(plan.peak_displacement_m, times[i].length_s);
+      account_.check(plan.peak_displacement_m, parts[i].length_s);
       if (setup_.run_mode != core::RunMode::live) continue;
       for (const auto& tone : plan.tones)
         if (const auto problem = session::sound_problem(tone.frequency_Hz, tone.full_scale, setup_.sound))
@@ -393,18 +394,18 @@ void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
     return perform(trial.machine.handle({stage_->now_ns(), trial::EventKind::abort, 0}), trial);
   }
   if (trial.onsets.empty()) return;  // the stage has added a fault with the reason to the inputs
-  const auto times = trial::interval_times(setup_.protocol, trial.spec);
+  const auto parts = trial::parts_of(setup_.protocol, trial.spec);
   for (std::size_t i = 0; i < bursts.size(); ++i) {
     const auto on_ns = trial.onsets[i].time_ns;
-    surface_.push_back({on_ns, on_ns + static_cast<std::int64_t>(times[i].length_s * 1e9)});
+    surface_.push_back({on_ns, on_ns + static_cast<std::int64_t>(parts[i].length_s * 1e9)});
     perform(trial.machine.handle({on_ns, trial::EventKind::onset, static_cast<int>(i)}), trial);
   }
   trigger_intervals(trial);
   ask_observer(trial, trial.onsets.back().time_ns);
 }
 
-/// Appends this interval's tones to the row. This happens only when the interval begins, so that intervals
-/// that are cancelled do not appear in the row.
+/// Appends this part's tones to the row. This happens only when the part begins, so that parts that are
+/// cancelled do not appear in the row.
 void SessionRun::interval_begins(Running& trial) {
   const auto i = trial.begun++;
   const auto& planned = plans_.take(trial.spec);
@@ -507,7 +508,9 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
   page.answer_now = adjusting && trial.machine.signalled() && signal && !protocol::in_stimulus(*signal);
   if (page.answer_now && signal->by == protocol::ResponseSignal::By::flash)
     page.flash_ns = *trial.machine.result().zero_ns + std::llround(1e9 * *trial.spec.signal_s);
-  if (trial.slider && adjusting) pages_.add_slider(page, *trial.spec.slider, trial.slider->setting());
+  const bool before_last = phase == trial::Phase::stimulus && !trial.is_set();
+  if (trial.slider && adjusting && !before_last)
+    pages_.add_slider(page, *trial.spec.slider, trial.slider->setting());
   if (phase == trial::Phase::late && trial.machine.result().outcome == core::Outcome::fault)
     page.text = pages_.movement(trial.row.finger.sensing);
   const bool judged = phase == trial::Phase::feedback || phase == trial::Phase::late;
@@ -543,7 +546,7 @@ std::optional<trial::Event> SessionRun::event_in_trial(const Input& input, Runni
   if (!trial.slider) return event_of(input);
   // Ignore slider movements in silence: the participant could not feel their effect.
   const auto* slider = input.as<input::Slider>();
-  if (slider && trial.machine.phase() == trial::Phase::stimulus) trial.slider->move(slider->value);
+  if (slider && trial.is_set()) trial.slider->move(slider->value);
   if (input.is<input::Next>()) return trial::Event{input.time_ns, trial::EventKind::answer, 0};
   return event_of(input);
 }
@@ -552,17 +555,17 @@ std::optional<trial::Event> SessionRun::event_in_trial(const Input& input, Runni
 /// its onset. All movements in between are in the log of events.
 void SessionRun::glide(Running& trial) {
   const double wanted = trial.slider->glide(stage_->now_ns());
-  if (trial.machine.phase() != trial::Phase::stimulus) return;
+  if (!trial.is_set()) return;
   auto spec = trial.spec;
   spec.factors[setup_.protocol.task.adjusts] = wanted;
   plans_.begin(spec);
   stage_->wait_for([&] { return plans_.ready(spec); });
-  const auto plan = plans_.take(spec).plans.front().back();
-  account_.check(plan.peak_displacement_m, trial::interval_times(setup_.protocol, spec).front().length_s);
+  const auto plan = plans_.take(spec).plans.back().back();
+  account_.check(plan.peak_displacement_m, trial::parts_of(setup_.protocol, spec).back().length_s);
   const auto at_frame = stage_->glide(tones_of(plan), trial::kGlide_s);
   if (!at_frame) return;
   trial.slider->followed();
-  set_scene(trial.row, plan, *at_frame);
+  set_scene(trial.row, plan, static_cast<int>(trial.begun) - 1, *at_frame);
   if (monitor_ != nullptr) monitor_->surface_follows(spec, plan);
 }
 
@@ -691,9 +694,10 @@ void SessionRun::trigger_intervals(const Running& trial) {
     if (trigger.code > 0) stage_->triggers().scheduled(std::move(trigger));
   };
   const auto& bursts = plans_.take(trial.spec).bursts;
+  const auto parts = trial::parts_of(setup_.protocol, trial.spec);
   for (std::size_t i = 0; i < bursts.size(); ++i) {
     add(TriggerEvent::onset, trial.onsets[i], 0);
-    for (std::size_t c = 0; c + 1 < trial.spec.intervals[i].size(); ++c)
+    for (std::size_t c = 0; c < parts[i].changes; ++c)
       add(TriggerEvent::change, trial.onsets[i], bursts[i].changes[c].at_frame);
   }
 }

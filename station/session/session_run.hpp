@@ -51,6 +51,10 @@ class SessionRun {
     bool outside = false;  ///< the finger did not move in the way that the protocol asks for
     /// True if something went wrong. A trial that is repeated because of the finger's movement is not void.
     bool is_void() const { return row.outcome == core::Outcome::fault && !outside; }
+    /// True while the surface follows the slider: in the last part of the trial.
+    bool is_set() const {
+      return machine.phase() == trial::Phase::stimulus && begun > 0 && begun == onsets.size();
+    }
     /// the boundary of the trial's last scene is where the relative friction has this value
     std::optional<double> friction_level = {};
     /// true if the answer came from a button, so that the touch panel's latency does not apply

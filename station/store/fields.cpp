@@ -599,8 +599,9 @@ const Table<ToneRow>& tone_table() {
   static const Table<T> table{
       "tone",
       {"session_id", "trial_index"},
-      {field<&T::interval_index>(
-           {"interval_index", "interval_index", "Number of the interval in the order presented, from 0"}),
+      {field<&T::interval_index>({"interval_index", "interval_index",
+                                  "Number of the interval in the order presented, from 0; the scenes of an "
+                                  "interval of several parts count one by one"}),
        field<&T::scene_index>(
            {"scene_index", "scene_index", "Number of the scene within the interval, from 0"}),
        field<&T::tone_index>({"tone_index", "tone_index", "Number of the tone within the scene, from 0"}),

@@ -31,6 +31,7 @@ void Director::State::enter_block() {
   swapped_orders.clear();
   deviation = {};
   catches_owed = 0;
+  fresh = true;
   runs.clear();
   const auto* b = now();
   if (b == nullptr) return;
@@ -167,6 +168,7 @@ void Director::record(const TrialEnd& end) {
     throw std::logic_error("director: record() was called although no trial had been given out");
   s.last_counts = false;
   if (end.outcome == core::Outcome::fault || end.outcome == core::Outcome::aborted) return;
+  s.fresh = false;
   s.count_runs(*s.current);
   const auto type = s.current->type;
   s.last_counts = type != core::TrialType::warmup;
@@ -225,6 +227,11 @@ void Director::warm_up(int trials) {
     return;
   state_->warmups = trials;
   state_->current.reset();
+}
+
+void Director::rested() {
+  state_->fresh = true;
+  if (auto& current = state_->current) current->fresh = state_->is_fresh();
 }
 
 const std::vector<Director::Stroke>& Director::strokes(int block_index) const {

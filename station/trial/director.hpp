@@ -25,7 +25,11 @@ struct TrialSpec {
   std::optional<double> level;
   protocol::Factors factors;
   std::vector<std::vector<std::string>> intervals;  ///< scene names in the order of presentation
-  std::vector<double> rove_dB;  ///< random change (roving) of the strength of each interval
+  /// random change (roving) of the strength of each part of the intervals, in the order of parts_of(); all
+  /// parts of an interval have the same share of what their scenes allow
+  std::vector<double> rove_dB;
+  /// true in the first trial of a block, after a break, and after an interruption, if that changes lengths
+  bool fresh = false;
   /// index of the right choice; empty if no choice is right
   std::optional<int> correct;
   std::optional<SliderSpan> slider;  ///< the slider; only for an adjustment
@@ -102,6 +106,8 @@ class Director {
   void restart_session();
   /// Inserts this number of warm-up trials before the next trial. They have their own rows and random draws.
   void warm_up(int trials);
+  /// The next trial comes after a break or an interruption: its parts last for their first_s.
+  void rested();
 
   /// why the session ends before its last block; "" if it does not
   const std::string& ended_because() const;

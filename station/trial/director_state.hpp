@@ -31,6 +31,7 @@ struct Director::State {
   int shown = 0, right = 0;
   double spent_s = 0;        ///< duration of the block's trials so far that count
   bool last_counts = false;  ///< whether the last trial counts
+  bool fresh = true;         ///< whether the next trial is the first one of the block, or after a rest
   int warmups = 0, warmups_given = 0;
   int done = 0;
   std::string ended;
@@ -109,6 +110,7 @@ struct Director::State {
   TrialSpec blank(core::TrialType type) const;
   const IntervalOrder& presented_order(int key) const;
   void complete(TrialSpec& spec) const;
+  bool is_fresh() const;
   std::optional<SliderSpan> slider(int key) const;
   TrialSpec warmup_trial() const;
   TrialSpec catch_trial() const;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "station/protocol/answers.hpp"
 #include "station/trial/director_state.hpp"
 #include "station/trial/orders.hpp"
 
@@ -128,6 +129,12 @@ const IntervalOrder& Director::State::presented_order(int key) const {
   return order_for(orders, seed, static_cast<int>(block), attempt, key);
 }
 
+/// True if the next trial is the first one of the block or after a rest, and a part is then longer.
+bool Director::State::is_fresh() const {
+  const auto parts = protocol::parts_of(protocol.task);
+  return fresh && std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part.first_s; });
+}
+
 /// Fills in what follows from the level and the factors: order of intervals, right answer, roving, times.
 void Director::State::complete(TrialSpec& spec) const {
   const int key = spec.type == core::TrialType::warmup ? -1 - warmups_given : trial;
@@ -136,16 +143,27 @@ void Director::State::complete(TrialSpec& spec) const {
   spec.intervals = order.intervals;
   spec.correct = order.correct ? order.correct : correct_choice(protocol.task, spec.factors, order.intervals);
   spec.slider = slider(key);
+  spec.fresh = is_fresh();
   auto rove = draws(Stream::roving, key);
   for (const auto& interval : spec.intervals) {
-    const double range = protocol.scenes.at(interval.front()).rove_dB;
-    spec.rove_dB.push_back(range > 0 ? rove.uniform(-range, range) : 0);
+    const auto parts = protocol::parts_of(protocol.task, interval);
+    const auto range = [&](const protocol::Part& part) {
+      return protocol.scenes.at(part.scenes.front()).rove_dB;
+    };
+    double widest = 0;
+    for (const auto& part : parts) widest = std::max(widest, range(part));
+    const double drawn = widest > 0 ? rove.uniform(-widest, widest) : 0;
+    for (const auto& part : parts)
+      spec.rove_dB.push_back(range(part) == widest ? drawn : drawn * range(part) / widest);
   }
   set_times(spec);
-  const auto& iti = protocol.timing.iti_s;
-  spec.iti_s = draws(Stream::intertrial, key).uniform(iti.low, iti.high);
+  const auto time_s = [&](const protocol::Distribution& from, Stream stream) {
+    return from.expression ? protocol::evaluate(*from.expression, spec.factors)
+                           : draws(stream, key).uniform(from.low, from.high);
+  };
+  spec.iti_s = time_s(protocol.timing.iti_s, Stream::intertrial);
   if (const auto& foreperiod = protocol.task.foreperiod_s)
-    spec.foreperiod_s = draws(Stream::foreperiod, key).uniform(foreperiod->low, foreperiod->high);
+    spec.foreperiod_s = time_s(*foreperiod, Stream::foreperiod);
 }
 
 /// Returns the window that the slider shows. It is a fifth wider than the factor's range. This surplus is
@@ -228,7 +246,8 @@ std::optional<TrialSpec> Director::State::strokes_trial() const {
   spec.deadline_s = kMeasured_s;
   spec.timeouts_are_data = false;
   if (training) spec.correct = 0;
-  const auto& iti = protocol.timing.iti_s;
+  const auto& iti =
+      protocol.timing.iti_s;  // such a trial has no factors: of an expression, any value will do
   spec.iti_s = draws(Stream::intertrial, trial).uniform(iti.low, iti.high);
   return spec;
 }

@@ -17,9 +17,9 @@ void check(const Timing& plan) {
   if (plan.intervals.empty())
     throw std::invalid_argument("trial: there is no interval; at least one is needed");
   if (plan.answers < 1) throw std::invalid_argument("trial: there are no answers; at least one is needed");
-  for (const auto time : {plan.signal_ns.value_or(0), plan.cue_ns, plan.gap_ns, plan.deadline_ns,
-                          plan.anticipation_ns, plan.feedback_ns, plan.late_ns, plan.iti_ns,
-                          plan.wrong_delay_ns, plan.late_delay_ns, plan.early_delay_ns, plan.watermark_ns})
+  for (const auto time : {plan.signal_ns.value_or(0), plan.cue_ns, plan.deadline_ns, plan.anticipation_ns,
+                          plan.feedback_ns, plan.late_ns, plan.iti_ns, plan.wrong_delay_ns,
+                          plan.late_delay_ns, plan.early_delay_ns, plan.watermark_ns})
     if (time < 0) throw std::invalid_argument("trial: a time is negative; all times must be 0 or more");
   for (const auto& interval : plan.intervals) {
     std::int64_t last = 0;
@@ -28,6 +28,8 @@ void check(const Timing& plan) {
         throw std::invalid_argument("trial: scene starts must be in ascending order and within the interval");
       last = start;
     }
+    if (interval.silence_ns < 0)
+      throw std::invalid_argument("trial: a time is negative; all times must be 0 or more");
     if (interval.duration_ns <= 0)
       throw std::invalid_argument("trial: the duration of an interval must be above 0");
   }
@@ -115,7 +117,8 @@ std::optional<std::int64_t> Machine::wake_ns() const {
 
 bool Machine::answers_open() const {
   if (phase_ == Phase::response) return true;
-  return phase_ == Phase::stimulus && plan_.answer_ends_stimulus;
+  const bool last = interval_ + 1 == static_cast<int>(plan_.intervals.size());
+  return phase_ == Phase::stimulus && last && plan_.answer_ends_stimulus;
 }
 
 bool Machine::decided() const {

@@ -26,19 +26,20 @@ enum class Phase {
 
 using core::Outcome;
 
-/// One interval: its duration, and the times at which its later scenes begin, counted from its onset.
+/// One interval, or one part of an interval of several parts: its duration, and the times at which its later
+/// scenes begin, counted from its onset.
 struct IntervalTiming {
   std::int64_t duration_ns = 0;
   std::vector<std::int64_t> scene_starts_ns;  ///< ascending, without the first scene (which starts at 0)
+  std::int64_t silence_ns = 0;                ///< silence before it, from the end of the interval before
 };
 
 /// The timing of a trial; all times in ns. Durations must not be negative.
 struct Timing {
   std::int64_t cue_ns = 0;
   std::vector<IntervalTiming> intervals;
-  std::int64_t gap_ns = 0;
-  /// true: the participant may explore the surface until the answer; false: answers are accepted only after
-  /// the last interval
+  /// true: the participant may explore the surface until the answer, in the last interval; false: answers are
+  /// accepted only after it
   bool answer_ends_stimulus = false;
   ResponseZero response_zero = ResponseZero::go_cue;
   std::int64_t deadline_ns = 0;      ///< longest response time, counted from response_zero
@@ -86,7 +87,7 @@ struct Event {
 
 enum class ActionKind {
   enter,  ///< value: the new phase; show its page
-  /// schedule all intervals, with the gap of Timing between them, the first no earlier than time_ns; the
+  /// schedule all intervals, with the silences of Timing between them, the first no earlier than time_ns; the
   /// caller replies with an `onset` event for each interval, and with a `heard` event when the interval has
   /// been played completely
   present,

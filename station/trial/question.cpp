@@ -168,9 +168,10 @@ double equal_setting(const protocol::Protocol& protocol, const protocol::Factors
   const auto factor = std::find_if(protocol.factors.begin(), protocol.factors.end(),
                                    [&](const auto& entry) { return entry.name == task.adjusts; });
   const auto [low, high] = factor->range.value();
-  if (const auto& scenes = task.intervals.back(); scenes.size() > 1)
-    if (const auto equal =
-            protocol::where_equal(protocol, scenes.front(), scenes.back(), task.adjusts, low, high, factors))
+  const auto parts = protocol::parts_of(task, task.intervals.back());
+  const auto &first = parts.front().scenes.front(), &last = parts.back().scenes.back();
+  if (parts.size() > 1 || parts.front().scenes.size() > 1)
+    if (const auto equal = protocol::where_equal(protocol, first, last, task.adjusts, low, high, factors))
       return *equal;
   return low <= 0 && high >= 0 ? 0 : 0.5 * (low + high);
 }
@@ -188,7 +189,7 @@ simulation::Adjustment adjustment_of(const TrialSpec& spec, const protocol::Prot
   };
   constexpr double least_s = 0.05;  // where there is no time at all, the setting comes too late anyway
   adjustment.within_s =
-      std::max(least_s, std::min(interval_times(protocol, spec).back().length_s + from_slider_s(0),
+      std::max(least_s, std::min(parts_of(protocol, spec).back().length_s + from_slider_s(0),
                                  spec.deadline_s + from_slider_s(times.zero_ns)));
   adjustment.key = {seed, core::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
   return adjustment;
@@ -214,8 +215,10 @@ std::pair<double, double> answers_from_s(const protocol::Protocol& protocol) {
   if (protocol::explored(protocol.task)) return {0, 0};
   if (const auto end = protocol::stimulus_end(protocol)) return {end->earliest_s, end->latest_s};
   if (protocol.timing.response_zero != ResponseZero::first_contact) return {0, 0};
-  const double whole_s = protocol.task.duration_s.value_or(0), open_s = whole_s - reach_s(whole_s);
-  return {open_s, open_s};
+  const auto parts = protocol::parts_of(protocol.task);
+  if (parts.empty()) return {0, 0};
+  const auto [low_s, high_s] = protocol::length_range_s(protocol, parts.back());
+  return {low_s - reach_s(low_s), high_s - reach_s(high_s)};
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "station/core/limits.hpp"
 #include "station/protocol/answers.hpp"
@@ -15,27 +16,40 @@ std::int64_t ns(double s) { return std::llround(s * 1e9); }
 /// Rounds down, as simulated sessions always did.
 std::int64_t whole_ns(double s) { return static_cast<std::int64_t>(s * 1e9); }
 
-/// The times of the scenes that the task names; a buzz, if there is one, is not among them.
-std::vector<IntervalTimes> task_times(const protocol::Protocol& protocol, const TrialSpec& spec) {
+/// The parts that the task names; a buzz, if there is one, is not among them.
+std::vector<Part> task_parts(const protocol::Protocol& protocol, const TrialSpec& spec) {
   const auto& task = protocol.task;
-  std::vector<IntervalTimes> times;
-  for (const auto& scenes : spec.intervals) {
-    IntervalTimes interval;
-    // An explored interval lasts until the answer, but at most explore_s or, if that is not set, until the
-    // deadline.
-    const double whole = protocol::explored(task)
-                             ? protocol.timing.explore_s.value_or(spec.foreperiod_s + spec.deadline_s)
-                             : task.duration_s.value_or(0);
-    interval.length_s = spec.length_s.value_or(whole);
-    const double step =
-        scenes.size() > 1 ? (task.foreperiod_s ? spec.foreperiod_s : whole / scenes.size()) : 0;
-    for (std::size_t i = 1; i < scenes.size(); ++i) {
-      interval.starts_s.push_back(step * static_cast<double>(i));
-      interval.transitions_s.push_back(task.transition_ms.value_or(50) * 1e-3);
+  const auto value = [&](const protocol::Linear& time_s) { return protocol::evaluate(time_s, spec.factors); };
+  std::vector<Part> parts;
+  bool fresh = spec.fresh;  // only one part of a trial is longer
+  for (std::size_t i = 0; i < spec.intervals.size(); ++i) {
+    double silence_s = i > 0 && task.gap_s ? value(*task.gap_s) : 0;
+    for (const auto& from : protocol::parts_of(task, spec.intervals[i])) {
+      Part part;
+      part.interval = static_cast<int>(i);
+      for (const auto& silence : from.silences_s) silence_s += value(silence);
+      part.silence_s = std::exchange(silence_s, 0);
+      // A part that is explored lasts until the answer, but at most explore_s or, if that is not set, until
+      // the deadline.
+      const auto* length = protocol::length_of(task, from);
+      const double whole = spec.length_s ? *spec.length_s
+                           : length      ? value(*length)
+                                    : protocol.timing.explore_s.value_or(spec.foreperiod_s + spec.deadline_s);
+      const bool is_long = fresh && from.first_s.has_value();
+      part.length_s = is_long ? *from.first_s : whole;
+      fresh = fresh && !is_long;
+      part.scenes = from.scenes;
+      part.changes = part.scenes.size() - 1;
+      const double even = whole / static_cast<double>(part.scenes.size());
+      const double step = task.foreperiod_s ? spec.foreperiod_s : even;
+      for (std::size_t s = 1; s < part.scenes.size(); ++s) {
+        part.starts_s.push_back(step * static_cast<double>(s));
+        part.transitions_s.push_back(task.transition_ms.value_or(50) * 1e-3);
+      }
+      parts.push_back(std::move(part));
     }
-    times.push_back(std::move(interval));
   }
-  return times;
+  return parts;
 }
 
 /// The response signal of this trial if it is a buzz of the surface; otherwise null.
@@ -46,33 +60,24 @@ const protocol::ResponseSignal* buzz_of(const protocol::Protocol& protocol, cons
 
 }  // namespace
 
-std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, const TrialSpec& spec) {
-  if (spec.strokes) return {{spec.strokes->duration_s, {}, {}}};
-  auto times = task_times(protocol, spec);
+std::vector<Part> parts_of(const protocol::Protocol& protocol, const TrialSpec& spec) {
+  if (spec.strokes) return {{0, 0, spec.strokes->duration_s, spec.intervals.front(), {}, {}, 0}};
+  auto parts = task_parts(protocol, spec);
   if (const auto* buzz = buzz_of(protocol, spec)) {
     const double at_s = *signal_in_stimulus_s(protocol, spec);
-    auto& last = times.back();
+    auto& last = parts.back();
     last.starts_s.insert(last.starts_s.end(), {at_s, at_s + buzz->length_s});
     last.transitions_s.insert(last.transitions_s.end(), 2, core::kBuzzRamp_s);
+    last.scenes.insert(last.scenes.end(), {buzz->scene, std::string(last.scenes.back())});
   }
-  return times;
-}
-
-std::vector<std::vector<std::string>> presented_scenes(const protocol::Protocol& protocol,
-                                                       const TrialSpec& spec) {
-  auto scenes = spec.intervals;
-  if (const auto* buzz = buzz_of(protocol, spec)) {
-    auto& last = scenes.back();
-    last.insert(last.end(), {buzz->scene, std::string(last.back())});
-  }
-  return scenes;
+  return parts;
 }
 
 std::optional<double> signal_in_stimulus_s(const protocol::Protocol& protocol, const TrialSpec& spec) {
   const auto& signal = protocol.timing.signal;
   if (!spec.signal_s || !signal || !protocol::in_stimulus(*signal)) return std::nullopt;
   const bool at_change = zero_of(protocol, spec) == core::ResponseZero::change;
-  return *spec.signal_s + (at_change ? task_times(protocol, spec).back().starts_s.front() : 0);
+  return *spec.signal_s + (at_change ? task_parts(protocol, spec).back().starts_s.front() : 0);
 }
 
 core::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& spec) {
@@ -83,11 +88,12 @@ double reach_s(double length_s) { return std::min(0.2, 0.5 * length_s); }
 
 SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSpec& spec,
                                std::int64_t onset_ns) {
-  const auto last = interval_times(protocol, spec).back();
+  const auto last = parts_of(protocol, spec).back();
   SimulatedTimes times{onset_ns, onset_ns, {}, {}, onset_ns};
   if (spec.strokes || !protocol::explored(protocol.task)) times.open_ns += whole_ns(last.length_s);
-  if (const auto scenes = task_times(protocol, spec); !spec.strokes && !scenes.back().starts_s.empty())
-    times.slider_ns += whole_ns(scenes.back().starts_s.back());
+  if (!spec.strokes)
+    if (const auto parts = task_parts(protocol, spec); !parts.back().starts_s.empty())
+      times.slider_ns += whole_ns(parts.back().starts_s.back());
   switch (zero_of(protocol, spec)) {
     case core::ResponseZero::go_cue:
       break;
@@ -142,12 +148,11 @@ Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& bloc
   Timing plan;
   plan.cue_ns = ns(protocol::kCue_s);
   plan.watermark_ns = core::kWatermark_ns;
-  for (const auto& interval : interval_times(protocol, spec)) {
-    IntervalTiming timed{ns(interval.length_s), {}};
-    for (const double start : interval.starts_s) timed.scene_starts_ns.push_back(ns(start));
+  for (const auto& part : parts_of(protocol, spec)) {
+    IntervalTiming timed{ns(part.length_s), {}, ns(part.silence_s)};
+    for (const double start : part.starts_s) timed.scene_starts_ns.push_back(ns(start));
     plan.intervals.push_back(std::move(timed));
   }
-  plan.gap_ns = ns(protocol.task.gap_s.value_or(0));
   plan.answer_ends_stimulus = !spec.strokes && protocol::explored(protocol.task);
   plan.response_zero = zero_of(protocol, spec);
   plan.deadline_ns = ns(spec.deadline_s);

@@ -15,7 +15,7 @@ namespace turnpoint::trial {
 /// the surface, it is the end of the interval, because the movement is judged then.
 core::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& spec);
 
-/// When a simulated participant does what it does, given the onset of the last interval. If response times
+/// When a simulated participant does what it does, given the onset of the last part. If response times
 /// count from the finger's contact, the finger touches the surface soon after the onset; if they count from
 /// its lift-off, it is lifted when the interval ends.
 struct SimulatedTimes {
@@ -39,21 +39,24 @@ std::int64_t simulated_done_ns(const SimulatedTimes& times, const TrialSpec& spe
 
 Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec);
 
-/// Length of an interval (s), and the times from its onset at which its second and later scenes begin, each
-/// with a transition from the scene before. A buzz (a response signal on the surface) counts as a scene;
-/// after it, the scene before it begins again.
-struct IntervalTimes {
+/// One part of a trial's intervals: what the surface presents without a pause. An interval of a single scene
+/// is one part.
+struct Part {
+  int interval = 0;      ///< the interval to which it belongs: an index of TrialSpec::intervals
+  double silence_s = 0;  ///< silence before it, from the end of the part before
   double length_s = 0;
+  /// Its scenes. A buzz (a response signal on the surface) counts as a scene; after it, the scene before it
+  /// comes again.
+  std::vector<std::string> scenes;
+  /// times from its onset at which its second and later scenes begin, each with a transition from the scene
+  /// before
   std::vector<double> starts_s, transitions_s;
+  std::size_t changes = 0;  ///< number of changes of scene without those of a buzz
 };
-std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, const TrialSpec& spec);
+/// All parts of a trial, in the order of presentation.
+std::vector<Part> parts_of(const protocol::Protocol& protocol, const TrialSpec& spec);
 
-/// Returns the scenes of each interval as they are presented: those of the trial, with its buzz if it has
-/// one.
-std::vector<std::vector<std::string>> presented_scenes(const protocol::Protocol& protocol,
-                                                       const TrialSpec& spec);
-
-/// Returns the time from the onset of the last interval to the response signal, if the signal is part of the
+/// Returns the time from the onset of the last part to the response signal, if the signal is part of the
 /// stimulus (a tone or a buzz).
 std::optional<double> signal_in_stimulus_s(const protocol::Protocol& protocol, const TrialSpec& spec);
 

@@ -444,6 +444,9 @@ class Maker {
     const auto table = referred_table(name);
     if (table.empty() || field.closed) return;
     field.allowed = names_of(document_, table);
+    const auto* parts = document_.find({"task", "parts"});
+    if (parts != nullptr && (name == "intervals" || name == "standard" || name == "target"))
+      for (const auto& interval : parts->parts) field.allowed.push_back(interval.name);
     if (name == "after_each")
       for (const auto& sequence : names_of(document_, "sequence")) field.allowed.push_back(sequence);
     // A name refers to something that the file has. Until it has it, the name can be typed.

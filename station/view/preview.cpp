@@ -10,6 +10,7 @@
 #include "physics/surface.hpp"
 #include "station/core/number.hpp"
 #include "station/core/usage_error.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/protocol/resolve.hpp"
 
@@ -111,9 +112,10 @@ Preview::Preview(protocol::Protocol protocol, rig::Rig rig)
 std::vector<std::string> Preview::scenes() const {
   std::vector<std::string> used, others;
   for (const auto& [name, scene] : protocol_.scenes) {
-    bool shown = name == protocol_.task.standard || name == protocol_.task.target;
-    for (const auto& interval : protocol_.task.intervals)
-      shown = shown || std::find(interval.begin(), interval.end(), name) != interval.end();
+    const auto parts = protocol::parts_of(protocol_.task);
+    const bool shown = std::any_of(parts.begin(), parts.end(), [&, scene_name = name](const auto& part) {
+      return std::find(part.scenes.begin(), part.scenes.end(), scene_name) != part.scenes.end();
+    });
     (shown ? used : others).push_back(name);
   }
   used.insert(used.end(), others.begin(), others.end());

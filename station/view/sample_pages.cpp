@@ -14,6 +14,7 @@
 #include "station/trial/director.hpp"
 #include "station/trial/machine.hpp"
 #include "station/trial/rows.hpp"
+#include "station/trial/timing.hpp"
 
 namespace turnpoint::view {
 
@@ -101,8 +102,9 @@ class Sampler {
     }
   }
 
-  static int last_of(const trial::TrialSpec& spec) {
-    return std::max(0, static_cast<int>(spec.intervals.size()) - 1);
+  /// The last part of a trial.
+  int last_of(const trial::TrialSpec& spec) const {
+    return std::max(0, static_cast<int>(trial::parts_of(setup_.protocol, spec).size()) - 1);
   }
 
   void add_trial(const trial::TrialSpec& spec, const protocol::Block& block,
@@ -113,10 +115,16 @@ class Sampler {
     const auto& task = setup_.protocol.task;
     const int last = last_of(spec);
     add("design.page.cue", phase(Phase::cue, 0));
+    const auto parts = trial::parts_of(setup_.protocol, spec);
     for (int i = 0; i <= last; ++i) {
-      if (i > 0 && task.gap_s) add("design.page.gap", phase(Phase::gap, i - 1));
+      const auto interval_of = [&](int part) { return parts.at(static_cast<std::size_t>(part)).interval; };
+      const bool begins = i == 0 || interval_of(i) != interval_of(i - 1);
+      // The pages of the parts of an interval differ only if the last one takes the answer.
+      if (!begins && (i < last || !protocol::explored(task))) continue;
+      if (i > 0 && begins && task.gap_s) add("design.page.gap", phase(Phase::gap, i - 1));
       auto page = phase(Phase::stimulus, i);
-      if (spec.slider) pages_.add_slider(page, *spec.slider, spec.level.value_or(spec.slider->low));
+      if (spec.slider && i == last)
+        pages_.add_slider(page, *spec.slider, spec.level.value_or(spec.slider->low));
       add("design.page.interval", std::move(page));
     }
     if (spec.strokes) return;

@@ -3,6 +3,8 @@
 #include <optional>
 
 #include "station/core/trial.hpp"
+#include "station/protocol/answers.hpp"
+#include "station/protocol/expression.hpp"
 
 namespace turnpoint::view {
 
@@ -47,19 +49,33 @@ std::optional<double> answer_from(const protocol::Protocol& protocol, double beg
 
 std::vector<TrialPart> trial_timeline(const protocol::Protocol& protocol) {
   const auto& timing = protocol.timing;
-  const double each_s = protocol.task.duration_s.value_or(timing.explore_s.value_or(0));
-  const double gap_s = protocol.task.gap_s.value_or(0);
+  const auto& task = protocol.task;
+  const auto middle = [&](const protocol::Linear& time_s) {
+    const auto [low, high] = protocol::bounds(time_s, protocol.factors);
+    return 0.5 * (low + high);
+  };
+  const double gap_s = task.gap_s ? middle(*task.gap_s) : 0;
   double now_s = (timing.iti_s.low + timing.iti_s.high) / 2, begin_s = now_s;
   std::vector<TrialPart> parts{{TrialPart::Kind::pause, 0, now_s}};
   const auto add = [&](TrialPart::Kind kind, double duration_s) {
     parts.push_back({kind, now_s, now_s + duration_s});
     now_s += duration_s;
   };
-  const auto count = interval_count(protocol.task);
+  const auto count = interval_count(task);
   for (std::size_t i = 0; i < count; ++i) {
     if (i > 0 && gap_s > 0) add(TrialPart::Kind::gap, gap_s);
-    begin_s = now_s;
-    add(TrialPart::Kind::interval, each_s);
+    const auto interval = i < task.intervals.size() ? task.intervals[i]
+                          : task.intervals.empty()
+                              ? std::vector<std::string>{i + 1 < count ? task.standard : task.target}
+                              : task.intervals.back();
+    for (const auto& part : protocol::parts_of(task, interval)) {
+      double silence_s = 0;
+      for (const auto& silence : part.silences_s) silence_s += middle(silence);
+      if (silence_s > 0) add(TrialPart::Kind::gap, silence_s);
+      begin_s = now_s;
+      const auto* length = protocol::length_of(task, part);
+      add(TrialPart::Kind::interval, length ? middle(*length) : timing.explore_s.value_or(0));
+    }
   }
   const auto from_s = answer_from(protocol, begin_s, now_s);
   if (from_s && timing.deadline_s && timing.deadline_s->is_constant())

@@ -91,8 +91,7 @@ std::int64_t ns_of(std::int64_t frames) { return frames * 1'000'000'000 / 192'00
 
 trial::Timing trial_timing() {
   trial::Timing plan;
-  plan.intervals = {{ns_of(kLengths[0]), {}}, {ns_of(kLengths[1]), {}}};
-  plan.gap_ns = ns_of(kPause);
+  plan.intervals = {{ns_of(kLengths[0]), {}}, {ns_of(kLengths[1]), {}, ns_of(kPause)}};
   plan.response_zero = core::ResponseZero::interval_off;
   plan.deadline_ns = 1'000'000'000;
   plan.iti_ns = ns_of(2000);

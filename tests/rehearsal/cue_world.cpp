@@ -24,8 +24,9 @@ std::vector<Numbers> World::look(const TrialSpec& trial) {
     const auto& scenes = trial.intervals[i];
     all.push_back(
         {numbers(scenes.back(), trial, trial.rove_dB[i]), numbers(scenes.front(), trial, trial.rove_dB[i])});
-    const double longest_s =
-        protocol_.task.duration_s ? *protocol_.task.duration_s : *protocol_.timing.explore_s;
+    const double longest_s = protocol_.task.duration_s
+                                 ? protocol::evaluate(*protocol_.task.duration_s, trial.factors)
+                                 : *protocol_.timing.explore_s;
     const double duration_s = longest_s - protocol_.scenes.at(scenes.front()).ramp_ms / 1000;
     for (auto* numbers : {&all.back().last, &all.back().first}) {
       numbers->push_back(duration_s);

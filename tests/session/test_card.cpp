@@ -74,7 +74,7 @@ TEST_CASE(
       while (stream.counters().heard < presented.back().end_frame) stream.step();
       const auto played = pulses();
       REQUIRE(played.size() == onsets.size());
-      const double apart_s = *protocol.task.duration_s + *protocol.task.gap_s;
+      const double apart_s = protocol.task.duration_s->constant + protocol.task.gap_s->constant;
       for (std::size_t i = 0; i < played.size(); ++i) {
         const auto played_ns = 1'000'000'000 + played[i] * 1'000'000'000 / rig.output.rate_Hz;
         CHECK(std::abs(played_ns - onsets[i].time_ns) <= 1'000'000'000 / rig.output.rate_Hz);

@@ -21,9 +21,10 @@ struct Drive {
       ++presented;
       auto at = std::max(now, action.time_ns) + later;
       for (std::size_t i = 0; i < plan.intervals.size(); ++i) {
+        at += plan.intervals[i].silence_ns;
         const auto next = machine.handle({at, EventKind::onset, static_cast<int>(i)});
         more.insert(more.end(), next.begin(), next.end());
-        at += plan.intervals[i].duration_ns + plan.gap_ns;
+        at += plan.intervals[i].duration_ns;
       }
     }
     return more;

@@ -25,8 +25,7 @@ inline Timing exploration() {
 
 inline Timing two_intervals() {
   Timing plan;
-  plan.intervals = {{1500 * ms, {}}, {1500 * ms, {}}};
-  plan.gap_ns = 1000 * ms;
+  plan.intervals = {{1500 * ms, {}}, {1500 * ms, {}, 1000 * ms}};
   plan.response_zero = ResponseZero::interval_off;
   plan.deadline_ns = 3000 * ms;
   plan.iti_ns = 800 * ms;

@@ -1,0 +1,12 @@
+#pragma once
+
+namespace turnpoint::core {
+
+/// The largest number of parts of a trial's intervals. Each part is a burst of the drive, and all bursts of a
+/// trial are scheduled at once.
+inline constexpr int kMostParts = 16;
+
+/// A silence that is shorter than this does not count as a rest of the finger, in s.
+inline constexpr double kRest_s = 0.5;
+
+}  // namespace turnpoint::core
