@@ -20,10 +20,12 @@ constexpr double level_share = 2, position_share = 1.25;
 constexpr double near_rad = 3;  // phase on either side of the last maximum that counts as near
 // how much larger the bounds are when the other solution is coarser, because it shares more of the error
 constexpr double coarser_share = 1.5;
-// If it is the coarsest one, the error of `modes` is much smaller than the difference: at most 0.18 of it for
-// |v| on 340 random surfaces, and on those on which two solutions were found to agree by chance. The margin
-// of |v|, and what those of level and edge are multiplied by.
-constexpr double coarsest_profile_margin = 0.5, coarsest_share = 0.125, thick_coarsest_share = 0.5;
+// If it is the coarsest one, and differs by less than `close` of the largest |v|, the error of `modes` is
+// much smaller than the difference: at most 0.18 of it for |v| on 340 random surfaces, and on those on which
+// two solutions were found to agree by chance. (Near a resonance both may be wrong by as much as they
+// differ.) The margin of |v|, and what those of level and edge are multiplied by.
+constexpr double close = 0.05, coarsest_profile_margin = 0.5, coarsest_share = 0.125,
+                 thick_coarsest_share = 0.5;
 // largest differences that come from rounding and from effects that both solutions neglect
 constexpr double floor = 1e-8;
 
@@ -125,22 +127,27 @@ std::optional<ModesBound> modes_bound(const Surface& surface, double f, const Ed
   // counts more.
   const Taper taper(surface);
   const auto steepness = [&taper](double x) { return 1 + taper.slope(x) * taper.slope(x); };
-  double share = 1, profile = profile_margin;
-  if (comparison == Comparison::coarser) share = coarser_share, profile *= coarser_share;
-  if (comparison == Comparison::coarsest) {
-    share = surface.theory == PlateTheory::mindlin ? thick_coarsest_share : coarsest_share;
-    profile = coarsest_profile_margin;
-  }
+  struct Factors {
+    double profile, share;
+  };
+  const auto factors = [&](double difference) -> Factors {
+    if (comparison == Comparison::finer) return {profile_margin, 1};
+    if (comparison == Comparison::coarser || !(difference < close))
+      return {coarser_share * profile_margin, coarser_share};
+    const bool thick = surface.theory == PlateTheory::mindlin;
+    return {coarsest_profile_margin, thick ? thick_coarsest_share : coarsest_share};
+  };
+  const Factors shape = factors(apart->shape), drive = factors(apart->drive);
   ModesBound bound;
-  bound.shape = profile * apart->shape + floor;
-  bound.drive = profile * apart->drive + floor;
-  bound.level_dB = share * 8.686 *
+  bound.shape = shape.profile * apart->shape + shape.share * floor;
+  bound.drive = drive.profile * apart->drive + drive.share * floor;
+  bound.level_dB = drive.share * 8.686 *
                    (peak_margin * apart->ln_gain +
                     level_share * steepness(apart->peak_m.value_or(0)) * apart->near_drive + floor);
   if (edge.kind == Edge::Kind::turning) return bound;
   const double cut = cut_off_half_width_m(surface, f);
   bound.position_m =
-      share *
+      shape.share *
       (cut * (position_share * (apart->at_m ? steepness(*apart->at_m) : 1) * apart->near_shape + floor) +
        std::min(edge_margin * apart->edge_m, surface.length_m));
   return bound;

@@ -22,6 +22,9 @@ namespace {
 // between the points at which they are compared; and of those from a coarser solution, which misses a part of
 // what the models leave out: of |v|, and of the level and of edges, which are differences at one place.
 constexpr double probe_margin = 1.9, field_margin = 1.25, point_margin = 2;
+// The largest difference of |v| from a coarse solution for which these margins hold: near a resonance, a
+// coarse solution may be as wrong as it is different.
+constexpr double largest_difference = 0.4;
 // the least fall between a last maximum and the drive edge for which the maximum counts as certain; more if
 // the solution may be wrong by a quarter of it
 constexpr double certain_fall = 0.05;
@@ -255,7 +258,7 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
 // the level and of edges. A last maximum that slightly more loss would remove is certain if |v| of `modes`
 // falls by `fall` between it and the drive edge.
 struct Margins {
-  double field, points, fall;
+  double field, points, fall, largest;
 };
 
 // Computes the error bounds of the model `mode` by comparing it with a solution of `modes`, whose own error
@@ -270,6 +273,7 @@ RungEstimate compared_mode_estimate(const Surface& surface, const PlanRequest& r
                                      reference.mode->value(0).ln_magnitude(), modes);
   if (!apart || (reference.shallow_peak && apart->fall < margins.fall)) return e;
   const double difference = request.normalise == Normalise::peak ? apart->shape : apart->drive;
+  if (difference > margins.largest) return e;
   e.amplitude_bound = std::min(e.amplitude_bound, own.amplitude_bound + margins.field * difference);
   if (!reference.peak_m) return e;
   e.level_bound_dB = std::min(e.level_bound_dB, own.level_bound_dB + 8.686 * margins.points * apart->ln_gain);
@@ -335,7 +339,8 @@ RungEstimate coarsely_compared_mode(const Surface& surface, const PlanRequest& r
     const double accuracy = steep * quiet + resonance;
     const RungEstimate own =
         assumed_estimate(surface, request, one, accuracy, steep * phase + resonance, conditioning);
-    const Margins margins{field_margin, point_margin, std::max(certain_fall, 4 * accuracy)};
+    const Margins margins{field_margin, point_margin, std::max(certain_fall, 4 * accuracy),
+                          largest_difference};
     merge(all, compared_mode_estimate(surface, request, one, *coarse[i], own, margins));
   }
   all.reason = "first transverse mode with loss, compared with a coarse two-dimensional field";
@@ -428,11 +433,15 @@ RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model 
                           solve_compared(surface, references, Comparison::finer));
   if (model != Model::mode || !modes_bound_applies(surface) || !Dispersion(surface).clamped_bending())
     return estimate_with(surface, request, references, model);
+  const SolvedLines modes = solve_modes(surface, references),
+                    coarse = solve_compared(surface, references, Comparison::coarsest);
   RungEstimate all;
-  for (const Reference& one : references)
-    merge(all,
-          compared_mode_estimate(surface, request, one, *make_centre_line(surface, one.f, Model::modes),
-                                 modes_estimate(surface, request, one), {probe_margin, probe_margin, 2}));
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    const RungEstimate own =
+        compared_modes_estimate(surface, request, references[i], Comparison::coarsest, *modes[i], *coarse[i]);
+    merge(all, compared_mode_estimate(surface, request, references[i], *modes[i], own,
+                                      {probe_margin, probe_margin, 0, 1e9}));
+  }
   return all;
 }
 

@@ -22,8 +22,9 @@ struct Tolerance {
 
 // The error bounds of a model for a set of tones. They are estimated before the model is evaluated, except
 // that estimate() solves for `modes` twice and compares, and for `mode` of a clamped plate compares it with
-// `modes`. For membranes and simply supported plates the errors are differences from the two-dimensional
-// field; for clamped plates, from the one-mode equation.
+// `modes`, and that choose_model() compares with coarser and finer solutions as far as the tolerance demands
+// it. For membranes and simply supported plates the errors are differences from the two-dimensional field;
+// for clamped plates, from the one-mode equation.
 struct RungEstimate {
   Model model = Model::mode;
   bool usable = true;           // false if the model cannot be used here at all (`reason` says why)
@@ -62,6 +63,10 @@ struct PlanChoice {
   SolvedLines solved;
 };
 
+// Takes the cheapest model whose bounds are inside the tolerance. It solves `mode`; if what is known then
+// does not decide, `modes` at its coarsest resolution, which takes a tenth of the operations and shows
+// whether `mode` suffices; and only if nothing is inside otherwise, `modes` and finer solutions (see
+// README.md). What it presents is `mode` or `modes` at the default resolution.
 PlanChoice choose_model(const Surface& surface, const PlanRequest& request);
 
 }  // namespace turnpoint::physics

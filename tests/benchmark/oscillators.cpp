@@ -47,7 +47,7 @@ Method ours(std::uint64_t increment) {
   return {"integer phase, polynomial, double", [=](std::int64_t frame, Block& out) {
             out.wide.fill(0);
             add_steady(out.wide.data(), block,
-                                  {increment * static_cast<std::uint64_t>(frame), increment, 0, 1, 0});
+                       {increment * static_cast<std::uint64_t>(frame), increment, 0, 1, 0});
           }};
 }
 
