@@ -29,7 +29,8 @@ struct SynthEvent {
 class Synth {
  public:
   static constexpr int max_block = 512;
-  /// Bursts that can wait or sound at the same time: the parts of a trial's intervals, and codes of its events.
+  /// Bursts that can wait or sound at the same time: the parts of a trial's intervals, and codes of its
+  /// events.
   static constexpr int max_voices = core::kMostParts + 4;
 
   /// Throws core::UsageError for a format outside 8-768 kHz, 1-8 channels or 8-32 bits.
