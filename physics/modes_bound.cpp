@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "physics/centre_line.hpp"
@@ -47,10 +48,12 @@ struct Line {
 
 // The largest difference between two profiles, and their largest value.
 struct Worst {
+  static constexpr double unlimited = std::numeric_limits<double>::infinity();
   double difference = 0, most = 0;
   double relative() const { return difference / most; }
   void add(double a, double b) {
-    difference = std::max(difference, std::abs(a - b));
+    const double apart = std::abs(a - b);
+    difference = std::isnan(apart) ? unlimited : std::max(difference, apart);
     most = std::max(most, b);
   }
 };
@@ -98,13 +101,20 @@ std::optional<LineDifference> line_difference(const Surface& surface, double f, 
   for (int i = 0; i <= points; ++i) {
     const double x = surface.length_m * i / points;
     const double va = a.ln_value(x), vb = b.ln_value(x);
-    if (b.peak_m && x < *b.peak_m) apart.fall = std::max(apart.fall, 1 - std::exp(vb - b.ln_peak));
     shape.add(std::exp(va - a.ln_peak), std::exp(vb - b.ln_peak));
     drive.add(std::exp(va), std::exp(vb));
     if (std::abs(x - peak_m) > near_m) continue;
     near_shape.add(std::exp(va - a.ln_peak), std::exp(vb - b.ln_peak));
     near_drive.add(std::exp(va), std::exp(vb));
   }
+  // how far |v| falls from the last maximum towards the drive edge before it rises again
+  double lowest = b.ln_peak;
+  for (int i = b.peak_m ? static_cast<int>(*b.peak_m / surface.length_m * points) : -1; i >= 0; --i) {
+    const double vb = b.ln_value(surface.length_m * i / points);
+    if (vb > lowest) break;
+    lowest = vb;
+  }
+  apart.fall = 1 - std::exp(lowest - b.ln_peak);
   apart.shape = shape.relative();
   apart.drive = drive.relative();
   apart.near_shape = near_shape.difference;

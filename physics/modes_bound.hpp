@@ -38,7 +38,8 @@ struct LineDifference {
   double ln_gain = 0;                     // of the logarithm of |v| at the last maximum over |v(0)|
   double edge_m = 0;  // of the edge's position; the surface's length if only one of them has the edge
   std::optional<double> peak_m, at_m;  // last maximum and edge of the first
-  // how far |v| of `modes` falls between its last maximum and the drive edge, relative to that maximum
+  // how far |v| of `modes` falls from its last maximum towards the drive edge before it rises again, relative
+  // to that maximum
   double fall = 0;
 };
 

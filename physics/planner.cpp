@@ -29,7 +29,7 @@ constexpr double largest_difference = 0.4;
 // the solution may be wrong by a quarter of it
 constexpr double certain_fall = 0.05;
 // What the error of `modes` near a resonance is at most, divided by the bound from a coarser solution.
-constexpr double resonant_share = 0.25;
+constexpr double resonant_share = 0.36;
 // Only if the bound of `mode` that is known without solving for `modes` is at most this many times the
 // tolerance, a coarse solution of `modes` is tried, which may show that `mode` suffices. On clamped plates
 // that bound says too little.
@@ -439,8 +439,10 @@ RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model 
   for (std::size_t i = 0; i < references.size(); ++i) {
     const RungEstimate own =
         compared_modes_estimate(surface, request, references[i], Comparison::coarsest, *modes[i], *coarse[i]);
-    merge(all, compared_mode_estimate(surface, request, references[i], *modes[i], own,
-                                      {probe_margin, probe_margin, 0, 1e9}));
+    merge(all,
+          compared_mode_estimate(surface, request, references[i], *modes[i], own,
+                                 {probe_margin, probe_margin, std::max(certain_fall, 4 * own.amplitude_bound),
+                                  std::numeric_limits<double>::infinity()}));
   }
   return all;
 }
