@@ -34,7 +34,8 @@ void check_reach(AdviceList& advice, const std::string& key, const Linear& deadl
   const std::string zero = name(protocol.timing.response_zero);
   const bool explores = explored(protocol.task);
   std::vector<const Linear*> lengths, times{&deadline};
-  for (const auto& part : last_parts(protocol.task))
+  const auto last = last_parts(protocol.task);
+  for (const auto& part : last)
     if (const auto* length = length_of(protocol.task, part)) lengths.push_back(length);
   times.insert(times.end(), lengths.begin(), lengths.end());
   if (const auto& foreperiod = protocol.task.foreperiod_s; foreperiod && foreperiod->expression)
