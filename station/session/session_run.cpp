@@ -420,7 +420,9 @@ void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
 void SessionRun::interval_begins(Running& trial) {
   const auto i = trial.begun++;
   const auto& planned = plans_.take(trial.spec);
-  add_tones(trial.row, planned.plans[i], static_cast<int>(i), trial.onsets[i].frame, planned.bursts[i]);
+  const auto interval = trial::parts_of(setup_.protocol, trial.spec)[i].interval;
+  add_tones(trial.row, planned.plans[i], static_cast<int>(i), interval, trial.onsets[i].frame,
+            planned.bursts[i]);
   trial.friction_level = friction_level(planned.plans[i].back().scene);
 }
 
