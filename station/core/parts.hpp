@@ -9,4 +9,7 @@ inline constexpr int kMostParts = 16;
 /// A silence that is shorter than this does not count as a rest of the finger, in s.
 inline constexpr double kRest_s = 0.5;
 
+/// The time over which the duty of a rig limits the vibration, in s.
+inline constexpr double kExposureWindow_s = 60;
+
 }  // namespace turnpoint::core

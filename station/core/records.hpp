@@ -143,8 +143,10 @@ struct BlockStart {
 
 /// One tone of one interval, as it was driven.
 struct ToneRow {
-  int interval_index = 0;  ///< number of the interval, from 0, in the order of presentation
-  int scene_index = 0;     ///< from 0, position of the tone's scene in the interval
+  /// number of the interval, from 0, in the order of presentation; the parts of an interval of several parts
+  /// count one by one
+  int interval_index = 0;
+  int scene_index = 0;  ///< from 0, position of the tone's scene in the interval
   int tone_index = 0;
   std::string scene;
   std::optional<double> boundary_mm;
@@ -161,6 +163,9 @@ struct ToneRow {
   std::optional<double> measured_dB, measured_phase_deg;
   /// standard deviation of the level that the rig's parameters cause; empty if the rig does not say theirs
   std::optional<double> level_uncertainty_dB;
+  /// the interval of the task to which the interval belongs, from 0; differs from interval_index if an
+  /// interval of the task has several parts
+  int of_interval = 0;
 };
 
 /// The channels of a signal: one number per channel and point.

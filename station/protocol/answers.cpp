@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "station/core/median.hpp"
 #include "station/protocol/expression.hpp"
+#include "station/protocol/orders.hpp"
 #include "station/protocol/sources.hpp"
 
 namespace turnpoint::protocol {
@@ -281,60 +283,86 @@ bool explored(const Task& task) {
   return parts.empty() ? !task.duration_s : length_of(task, parts.back()) == nullptr;
 }
 
+std::vector<Part> last_parts(const Task& task) {
+  std::set<std::vector<std::string>> known;
+  std::vector<Part> last;
+  for (const auto& order : orders_of(task)) {
+    if (order.intervals.empty() || !known.insert(order.intervals.back()).second) continue;
+    const auto parts = parts_of(task, order.intervals.back());
+    if (!parts.empty()) last.push_back(parts.back());
+  }
+  return last;
+}
+
 namespace {
 
-/// The last part that the task presents; empty if it can be one of several with other lengths.
-std::optional<Part> last_part(const Task& task) {
-  std::vector<std::vector<std::string>> last;
-  if (!task.intervals.empty()) last.push_back(task.intervals.back());
-  if (task.kind == TaskKind::two_interval && task.intervals.size() == 2) last.push_back(task.intervals[0]);
-  for (const auto* name : {&task.standard, &task.target})
-    if (task.intervals.empty() && !name->empty()) last.push_back({*name});
-  std::optional<Part> found;
-  for (const auto& interval : last) {
-    const auto parts = parts_of(task, interval);
-    if (parts.empty()) return std::nullopt;
-    const auto source = [&](const Part& part) {
-      const auto* length = length_of(task, part);
-      return length ? length->source : "";
-    };
-    if (found && source(*found) != source(parts.back())) return std::nullopt;
-    found = parts.back();
-  }
-  return found;
+/// The smallest range that contains both.
+StimulusEnd joined(const StimulusEnd& a, const StimulusEnd& b) {
+  return {std::min(a.earliest_s, b.earliest_s), std::max(a.latest_s, b.latest_s)};
+}
+
+/// The same as stimulus_end(), if this part is the last one.
+std::optional<StimulusEnd> end_of(const Protocol& protocol, const Part& part, const Factors& factors) {
+  const auto& task = protocol.task;
+  const auto* length = length_of(task, part);
+  const auto whole = length ? std::optional(evaluate(*length, factors)) : protocol.timing.explore_s;
+  if (!whole) return std::nullopt;
+  if (protocol.timing.response_zero == ResponseZero::go_cue) return StimulusEnd{*whole, *whole};
+  const auto scenes = part.scenes.size();
+  if (protocol.timing.response_zero != ResponseZero::change || scenes < 2) return std::nullopt;
+  const double even = *whole / static_cast<double>(scenes);
+  auto change = task.foreperiod_s.value_or(Distribution{even, even, {}});
+  if (change.expression) change.low = change.high = evaluate(*change.expression, factors);
+  return StimulusEnd{*whole - change.high, *whole - change.low};
 }
 
 }  // namespace
 
 std::optional<StimulusEnd> stimulus_end(const Protocol& protocol) {
-  const auto part = last_part(protocol.task);
-  const auto* length = part ? length_of(protocol.task, *part) : nullptr;
-  if (length == nullptr) return stimulus_end(protocol, {});
+  const auto last = last_parts(protocol.task);
+  std::vector<const Linear*> times;
+  for (const auto& part : last)
+    if (const auto* length = length_of(protocol.task, part)) times.push_back(length);
+  if (const auto& foreperiod = protocol.task.foreperiod_s; foreperiod && foreperiod->expression)
+    times.push_back(&*foreperiod->expression);
   std::optional<StimulusEnd> all;
-  for (const auto& corner : corners({length}, protocol.factors)) {
+  for (const auto& corner : corners(times, protocol.factors)) {
     const auto end = stimulus_end(protocol, corner);
     if (!end) return std::nullopt;
-    if (!all) all = end;
-    all = {std::min(all->earliest_s, end->earliest_s), std::max(all->latest_s, end->latest_s)};
+    all = joined(all.value_or(*end), *end);
   }
   return all;
 }
 
 std::optional<StimulusEnd> stimulus_end(const Protocol& protocol, const Factors& factors) {
+  if (protocol.timing.response_zero == ResponseZero::interval_off) return StimulusEnd{};
+  std::optional<StimulusEnd> all;
+  for (const auto& part : last_parts(protocol.task)) {
+    const auto end = end_of(protocol, part, factors);
+    if (!end) return std::nullopt;
+    all = joined(all.value_or(*end), *end);
+  }
+  return all;
+}
+
+std::optional<LatestChange> latest_change(const Protocol& protocol) {
   const auto& task = protocol.task;
-  const auto zero = protocol.timing.response_zero;
-  if (zero == ResponseZero::interval_off) return StimulusEnd{};
-  const auto part = last_part(task);
-  if (!part) return std::nullopt;
-  const auto* length = length_of(task, *part);
-  const auto whole = length ? std::optional(evaluate(*length, factors)) : protocol.timing.explore_s;
-  if (!whole || task.intervals.empty()) return std::nullopt;
-  if (zero == ResponseZero::go_cue) return StimulusEnd{*whole, *whole};
-  const auto scenes = part->scenes.size();
-  if (zero != ResponseZero::change || scenes < 2) return std::nullopt;
-  const double even = *whole / static_cast<double>(scenes);
-  const auto change = task.foreperiod_s.value_or(Distribution{even, even, {}});
-  return StimulusEnd{*whole - change.high, *whole - change.low};
+  if (!task.foreperiod_s) return std::nullopt;
+  const auto& foreperiod = task.foreperiod_s->expression;
+  std::optional<LatestChange> latest;
+  for (const auto& part : parts_of(task)) {
+    const auto* length = length_of(task, part);
+    if (part.scenes.size() < 2 || (length == nullptr && !protocol.timing.explore_s)) continue;
+    std::vector<const Linear*> times;
+    if (length != nullptr) times.push_back(length);
+    if (foreperiod) times.push_back(&*foreperiod);
+    for (const auto& corner : corners(times, protocol.factors)) {
+      const LatestChange here{foreperiod ? evaluate(*foreperiod, corner) : task.foreperiod_s->high,
+                              length ? evaluate(*length, corner) : *protocol.timing.explore_s};
+      if (!latest || here.change_s - here.whole_s > latest->change_s - latest->whole_s) latest = here;
+    }
+  }
+  return latest;
 }
 
 double quick_trial_s(const Protocol& protocol, double answer_s) {

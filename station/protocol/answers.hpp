@@ -48,6 +48,9 @@ std::vector<Part> parts_of(const Task& task, const std::vector<std::string>& int
 /// target.
 std::vector<Part> parts_of(const Task& task);
 
+/// The parts that can be the last one of a trial: one for each order of the intervals, without repetition.
+std::vector<Part> last_parts(const Task& task);
+
 /// All lengths and silences of the stimuli of a trial.
 std::vector<Linear> stimulus_times(const Task& task);
 
@@ -61,14 +64,22 @@ std::pair<double, double> length_range_s(const Protocol& protocol, const Part& p
 /// True if the participant may answer while the surface moves: in the last part of the last interval.
 bool explored(const Task& task);
 
-/// The earliest and the latest time from response_zero to the end of the last interval, in s; empty if they
-/// are not known before the trial.
+/// The earliest and the latest time from response_zero to the end of the last interval, in s, whichever part
+/// is the last one; empty if they are not known before the trial.
 struct StimulusEnd {
   double earliest_s = 0, latest_s = 0;
 };
 std::optional<StimulusEnd> stimulus_end(const Protocol& protocol);
-/// The same for these values of the factors on which the length of the last part depends.
+/// The same for these values of the factors on which the lengths of last_parts() and the foreperiod depend.
 std::optional<StimulusEnd> stimulus_end(const Protocol& protocol, const Factors& factors);
+
+/// The time of a change to the second scene, from the onset of its interval, and the length of that interval,
+/// in s: at those values of the factors at which the change comes latest before the end, or furthest after
+/// it. Empty if no interval has a foreperiod and a known length.
+struct LatestChange {
+  double change_s = 0, whole_s = 0;
+};
+std::optional<LatestChange> latest_change(const Protocol& protocol);
 
 /// About how long a trial lasts that is answered `answer_s` after its stimuli: the get-ready cue, the
 /// stimuli, the answer and the pause.

@@ -286,6 +286,17 @@ std::optional<std::string> block_without_deadline(const Protocol& protocol) {
   return std::nullopt;
 }
 
+/// A change to the second scene after the end of the tones cannot be presented.
+void check_foreperiod(const Reading& reading) {
+  const auto change = latest_change(reading.protocol);
+  if (change && change->change_s >= change->whole_s)
+    reading.findings.add(
+        reading.places.of("task.foreperiod_s"),
+        phrase("the second scene can begin %1 s after the tones begin, but they last only %2 s",
+               {plain(core::number(change->change_s)), plain(core::number(change->whole_s))}),
+        phrase("a foreperiod that is shorter than the tones for all values of the factors"));
+}
+
 void check_timing(core::TableReader& file, const Reading& reading) {
   const auto* table = file.take("timing");
   if (!table || table->kind != core::Value::Kind::table) return;
@@ -316,6 +327,7 @@ void check_timing(core::TableReader& file, const Reading& reading) {
     findings.add(place("response_zero"),
                  phrase("\"response_zero\" is \"change\", but no interval has a second scene"),
                  phrase("use an interval of two scenes: %1", {plain("intervals = [[\"a\", \"b\"]]")}));
+  check_foreperiod(reading);
   if (!table->find("deadline_s") && !table->find("response_signal"))
     if (const auto block = block_without_deadline(protocol))
       findings.add(table->place,

@@ -374,6 +374,17 @@ void note_uneven(AdviceList& notes, const procedure::Spec& spec, std::size_t cel
                                 : phrase("for equal counts, set repeats = %1", {plain(even)}));
 }
 
+/// The first factor that decides the right answer and sets the pause after the trial; empty if there is none.
+std::optional<std::string> telling_pause(const Protocol& protocol) {
+  if (!protocol.timing.iti_s.expression) return std::nullopt;
+  const auto pause = factors_in(*protocol.timing.iti_s.expression);
+  for (const auto& [id, comparison] : protocol.task.correct_answer)
+    for (const auto* side : {&comparison.left, &comparison.right})
+      for (const auto& name : factors_in(*side))
+        if (std::find(pause.begin(), pause.end(), name) != pause.end()) return name;
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::vector<Problem> notes(const Protocol& protocol) {
@@ -402,6 +413,11 @@ std::vector<Problem> notes(const Protocol& protocol) {
                                {plain(number(value)), plain(listed), plain(listed)}));
     }
   }
+  if (const auto name = telling_pause(protocol))
+    notes.add(
+        "timing.iti_s",
+        phrase("the pause after a trial depends on \"%1\", which decides the right answer: it is a feedback",
+               {plain(*name)}));
   if (protocol.timing.iti_s.high == 0) notes.add("timing.iti_s", phrase("there is no pause between trials"));
   if (const auto& gap_s = protocol.task.gap_s; gap_s && bounds(*gap_s, protocol.factors).second == 0)
     notes.add("task.gap_s", phrase("there is no pause between the intervals of a trial"));

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -7,6 +8,7 @@
 #include "station/core/parts.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
+#include "station/protocol/orders.hpp"
 #include "station/protocol/reading.hpp"
 
 namespace turnpoint::protocol {
@@ -164,6 +166,27 @@ std::size_t most_parts_of_trial(const Task& task, const TaskForm& kind) {
   return intervals * std::max(parts_of(task, {task.standard}).size(), parts_of(task, {task.target}).size());
 }
 
+/// Where the intervals are presented in a random order, the place of the longest adaptor must not tell which
+/// is which: then all intervals have the same first_s at the same parts.
+void check_first(const Task& task, const Reading& reading) {
+  std::set<std::vector<std::string>> intervals;
+  for (const auto& order : orders_of(task)) intervals.insert(order.intervals.begin(), order.intervals.end());
+  if (orders_of(task).size() < 2) return;
+  std::optional<std::map<std::size_t, double>> first;
+  for (const auto& interval : intervals) {
+    std::map<std::size_t, double> here;
+    const auto parts = parts_of(task, interval);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (parts[i].first_s) here[i] = *parts[i].first_s;
+    if (first && here != *first)
+      return reading.findings.add(reading.places.of("task.parts"),
+                                  phrase("\"first_s\" is not the same in all intervals, so the first trial "
+                                         "of a block tells their order"),
+                                  phrase("give the same parts of each interval the same \"first_s\""));
+    first = here;
+  }
+}
+
 /// Reports parts without a length, parts that cannot have one, and lists of parts that no interval names.
 void check_parts(const Task& task, const TaskForm& kind, const Reading& reading) {
   std::vector<std::string> named{task.standard, task.target};
@@ -185,14 +208,14 @@ void check_parts(const Task& task, const TaskForm& kind, const Reading& reading)
             parts[i].duration_s->place,
             phrase("the last part lasts until the slider is set, so it has no \"duration_s\""),
             phrase("leave it out; \"explore_s\" in [timing] is the longest time"));
-      if (open && parts[i].first_s)
+      if (last && parts[i].first_s)
         reading.findings.add(
-            place,
-            phrase("the last part of \"%1\" lasts until the answer, so it has no \"first_s\"", {plain(name)}),
-            phrase("leave it out"));
+            place, phrase("the last part of \"%1\" is no adaptor, so it has no \"first_s\"", {plain(name)}),
+            phrase("leave it out, or add the part that is judged"));
     }
   }
   if (task.kind == TaskKind::adjustment) check_slider_times(task, reading);
+  check_first(task, reading);
   const auto most = most_parts_of_trial(task, kind);
   if (most > core::kMostParts)
     reading.findings.add(reading.places.of("task.parts"),

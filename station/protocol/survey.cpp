@@ -7,6 +7,8 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "physics/boundary_map.hpp"
 #include "station/core/limits.hpp"
@@ -18,6 +20,7 @@
 #include "station/protocol/expression.hpp"
 #include "station/protocol/key_places.hpp"
 #include "station/protocol/needs.hpp"
+#include "station/protocol/orders.hpp"
 #include "station/protocol/resolve.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/scene/planner.hpp"
@@ -304,31 +307,95 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   for (const auto& [code, warning] : told) survey.warnings.push_back({{protocol.path, 0, 0}, warning, {}});
 }
 
+/// A part of a trial as the finger feels it, and the silence before it.
+struct Felt {
+  double silence_s = 0, length_s = 0;
+  std::size_t interval = 0;
+  const Part* part = nullptr;
+};
+
+/// The longest vibration of a trial without a rest, the longest within any minute, and where each ends.
+struct Longest {
+  double run_s = 0, minute_s = 0;
+  const Part* run_part = nullptr;
+  bool over_intervals = false;  ///< whether the run goes over the pause between two intervals
+};
+
+void lengthen(const std::vector<Felt>& trial, Longest& longest) {
+  double end_s = 0, run_s = 0;
+  std::size_t run_interval = 0;
+  std::vector<std::pair<double, double>> presented;
+  for (const auto& felt : trial) {
+    const bool rests = presented.empty() || felt.silence_s >= core::kRest_s;
+    if (rests) run_interval = felt.interval;
+    run_s = (rests ? 0 : run_s + felt.silence_s) + felt.length_s;
+    if (run_s > longest.run_s + 1e-9)
+      longest = {run_s, longest.minute_s, felt.part, run_interval != felt.interval};
+    presented.emplace_back(end_s + felt.silence_s, end_s + felt.silence_s + felt.length_s);
+    end_s = presented.back().second;
+    double minute_s = 0;
+    for (const auto& [on_s, off_s] : presented)
+      minute_s += std::max(0.0, off_s - std::max(on_s, end_s - core::kExposureWindow_s));
+    longest.minute_s = std::max(longest.minute_s, minute_s);
+  }
+}
+
+/// The longest vibration of a trial, over all orders of its intervals, with and without a long first part, at
+/// the ends of the ranges of the factors.
+Longest longest_of(const Protocol& protocol, std::vector<std::vector<std::vector<Part>>>& orders) {
+  const auto& task = protocol.task;
+  for (const auto& order : orders_of(task)) {
+    auto& intervals = orders.emplace_back();
+    for (const auto& interval : order.intervals) intervals.push_back(parts_of(task, interval));
+  }
+  const auto times = stimulus_times(task);
+  std::vector<const Linear*> expressions;
+  for (const auto& time : times) expressions.push_back(&time);
+  Longest longest;
+  for (const auto& corner : corners(expressions, protocol.factors))
+    for (const auto& intervals : orders)
+      for (bool fresh : {false, true}) {
+        std::vector<Felt> trial;
+        for (std::size_t i = 0; i < intervals.size(); ++i) {
+          double silence_s = i > 0 && task.gap_s ? evaluate(*task.gap_s, corner) : 0;
+          for (const auto& part : intervals[i]) {
+            for (const auto& silence : part.silences_s) silence_s += evaluate(silence, corner);
+            const auto* length = length_of(task, part);
+            double length_s = length ? evaluate(*length, corner) : protocol.timing.explore_s.value_or(0);
+            if (fresh && part.first_s) length_s = *part.first_s, fresh = false;  // only one part is longer
+            trial.push_back({std::exchange(silence_s, 0), length_s, i, &part});
+          }
+        }
+        lengthen(trial, longest);
+      }
+  return longest;
+}
+
 void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
   const auto& task = protocol.task;
   const KeyPlaces places(protocol.source, protocol.path);
-  std::set<std::string> told;
-  const auto check = [&](double longest_s, const std::string& key) {
-    if (longest_s > rig.limits.continuous_s && told.insert(key).second)
-      survey.problems.push_back(
-          {places.of(key), phrase("tones last up to %1 s without a pause", {plain(core::number(longest_s))}),
-           phrase("the rig allows at most continuous_s = %1 s",
-                  {plain(core::number(rig.limits.continuous_s))})});
-  };
-  for (const auto& part : parts_of(task))
-    check(length_range_s(protocol, part).second, part.duration_s || part.first_s    ? "task.parts"
-                                                 : length_of(task, part) != nullptr ? "task.duration_s"
-                                                                                    : "timing.explore_s");
-  // A silence that is too short to count as a rest does not end a vibration.
-  for (const auto& [name, parts] : task.parts) {
-    double run_s = 0;
-    for (const auto& part : parts) {
-      double silence_s = 0;
-      for (const auto& silence : part.silences_s) silence_s += bounds(silence, protocol.factors).first;
-      run_s = (silence_s < core::kRest_s ? run_s + silence_s : 0) + length_range_s(protocol, part).second;
-      check(run_s, "task.parts");
-    }
-  }
+  std::vector<std::vector<std::vector<Part>>> orders;
+  const auto longest = longest_of(protocol, orders);
+  if (longest.run_part == nullptr) return;
+  const auto& part = *longest.run_part;
+  const std::string key = longest.over_intervals             ? "task.gap_s"
+                          : part.duration_s || part.first_s  ? "task.parts"
+                          : length_of(task, part) != nullptr ? "task.duration_s"
+                                                             : "timing.explore_s";
+  if (longest.run_s > rig.limits.continuous_s + 1e-9)
+    survey.problems.push_back(
+        {places.of(key),
+         phrase("tones last up to %1 s without a pause", {plain(core::number(longest.run_s))}),
+         phrase("the rig allows at most continuous_s = %1 s",
+                {plain(core::number(rig.limits.continuous_s))})});
+  const double most_s = rig.limits.duty * core::kExposureWindow_s;
+  if (longest.minute_s > most_s + 1e-9)
+    survey.problems.push_back(
+        {places.of(task.parts.empty() ? key : "task.parts"),
+         phrase("the tones of a trial last up to %1 s in %2 s",
+                {plain(core::number(longest.minute_s)), plain(core::number(core::kExposureWindow_s))}),
+         phrase("the rig allows at most %1 s (duty = %2)",
+                {plain(core::number(most_s)), plain(core::number(rig.limits.duty))})});
 }
 
 }  // namespace

@@ -33,17 +33,23 @@ void check_reach(AdviceList& advice, const std::string& key, const Linear& deadl
   const auto& protocol = advice.protocol;
   const std::string zero = name(protocol.timing.response_zero);
   const bool explores = explored(protocol.task);
-  const auto parts = parts_of(protocol.task);
-  const auto* length = parts.empty() ? nullptr : length_of(protocol.task, parts.back());
-  const Linear none;
+  std::vector<const Linear*> lengths, times{&deadline};
+  const auto last = last_parts(protocol.task);
+  for (const auto& part : last)
+    if (const auto* length = length_of(protocol.task, part)) lengths.push_back(length);
+  times.insert(times.end(), lengths.begin(), lengths.end());
+  if (const auto& foreperiod = protocol.task.foreperiod_s; foreperiod && foreperiod->expression)
+    times.push_back(&*foreperiod->expression);
   // The deadline may depend on the factors that set the length, so both are compared at the same values. Of
   // all values, those count at which the deadline comes soonest after the end.
   std::optional<StimulusEnd> end;
   double shortest = 0, longest = 0, tones_s = 0, least_s = 0, most_s = 0;
   bool is_first = true;
-  for (const auto& corner : corners({&deadline, length ? length : &none}, protocol.factors)) {
+  for (const auto& corner : corners(times, protocol.factors)) {
     const auto here = stimulus_end(protocol, corner);
-    const double at_s = evaluate(deadline, corner), long_s = length ? evaluate(*length, corner) : 0;
+    const double at_s = evaluate(deadline, corner);
+    double long_s = 0;
+    for (const auto* length : lengths) long_s = std::max(long_s, evaluate(*length, corner));
     const double left_s = at_s - (here ? here->latest_s : long_s);
     if (is_first || left_s < least_s) least_s = left_s, shortest = at_s, tones_s = long_s, end = here;
     if (is_first || left_s > most_s) most_s = left_s, longest = at_s;
@@ -87,20 +93,17 @@ void check_deadline(AdviceList& advice, const std::string& key, const Linear& de
 }
 
 // Checks that the change to the second scene, which follows the foreperiod, is complete before the tones end.
+// A foreperiod that is longer than the tones is a problem (see check_foreperiod()).
 void check_change(AdviceList& advice) {
-  const auto& task = advice.protocol.task;
-  if (!task.foreperiod_s) return;
-  std::optional<double> shortest_s;
-  for (const auto& part : parts_of(task))
-    if (part.scenes.size() > 1) shortest_s = length_range_s(advice.protocol, part).first;
-  const double whole_s = shortest_s.value_or(0);
-  const double latest_s = task.foreperiod_s->high + 1e-3 * task.transition_ms.value_or(0);
-  if (whole_s > 0 && latest_s >= whole_s)
-    advice.add(
-        "task.foreperiod_s",
-        phrase("the change can end %1 s after the tones begin, but the tones last only %2 s",
-               {plain(number(latest_s)), plain(number(whole_s))}),
-        phrase("the foreperiod plus the transition must be well below %1 s", {plain(number(whole_s))}));
+  const auto change = latest_change(advice.protocol);
+  if (!change || change->change_s + 1e-3 * advice.protocol.task.transition_ms.value_or(0) < change->whole_s)
+    return;
+  const double latest_s = change->change_s + 1e-3 * advice.protocol.task.transition_ms.value_or(0);
+  advice.add(
+      "task.foreperiod_s",
+      phrase("the change can end %1 s after the tones begin, but the tones last only %2 s",
+             {plain(number(latest_s)), plain(number(change->whole_s))}),
+      phrase("the foreperiod plus the transition must be well below %1 s", {plain(number(change->whole_s))}));
 }
 
 // A person who slides over the surface judges what it does at the signal. After the tones there is nothing to
@@ -142,6 +145,7 @@ void advise_on_times(AdviceList& advice) {
   for (const auto& [name, parts] : task.parts)
     for (const auto& part : parts) {
       check_length(advice, "task.parts." + name, longest(part.duration_s));
+      check_length(advice, "task.parts." + name, part.first_s.value_or(0));
       for (const auto& silence : part.silences_s)
         check_length(advice, "task.parts." + name, longest(silence));
     }

@@ -55,7 +55,7 @@ bool Exposure::fits(double start_s, double length_s) const {
   const double end_s = start_s + length_s;
   if (on_time_s(end_s - window_s, start_s) + length_s > limits_.duty * window_s + rounding_s) return false;
   double run_start_s = start_s;
-  for (auto e = recent_.rbegin(); e != recent_.rend() && run_start_s - e->end_s < rest_s; ++e)
+  for (auto e = recent_.rbegin(); e != recent_.rend() && run_start_s - e->end_s < rest_s - rounding_s; ++e)
     run_start_s = e->start_s;
   return end_s - run_start_s <= limits_.continuous_s + rounding_s;
 }

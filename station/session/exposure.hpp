@@ -39,7 +39,7 @@ class LimitExceeded : public std::runtime_error {
 /// does not reset a limit.
 class Exposure {
  public:
-  static constexpr double window_s = 60;
+  static constexpr double window_s = core::kExposureWindow_s;
   static constexpr double rest_s = core::kRest_s;
 
   /// Throws std::invalid_argument for limits that are not positive, or a duty above 1.

@@ -69,6 +69,10 @@ ExposureLimits limits_of(const rig::Rig& rig, core::RunMode mode) {
           person ? 60 * rig.limits.session_minutes : kUnlimited_s};
 }
 
+double longest_trial_s(const ExposureLimits& limits) {
+  return std::max(limits.continuous_s, limits.duty * Exposure::window_s);
+}
+
 FingerHistory finger_history(const std::vector<store::StoredSession>& sessions, const core::SegmentStart& now,
                              double longest_s) {
   const double now_s = 1e-9 * static_cast<double>(now.realtime_ns);

@@ -23,6 +23,10 @@ struct FingerHistory {
 };
 inline constexpr double kNewPeriod_s = 1800;
 
+/// The longest time for which the finger may have felt a trial of which nothing is stored but its start, in
+/// s. Its parts, with rests between them, together last at most as long as the duty allows.
+double longest_trial_s(const ExposureLimits& limits);
+
 /// Computes the history from the sessions that ended within the half hour before `now`, which are the clocks
 /// of the program run that begins. Since the machine was started, how long ago a stimulus was is taken from
 /// the clock that nobody sets (`boottime_ns`); before that, from the wall clock. A trial that was presented

@@ -172,6 +172,7 @@ Flow OperatorGate::end_at_limit(const std::string& what) {
 
 void OperatorGate::show(const Page& page) {
   ++shows_;
+  if (page.kind == PageKind::fault || page.kind == PageKind::paused) ++holds_;
   if (display_ != nullptr) display_->show(page);
 }
 

@@ -69,6 +69,8 @@ class OperatorGate {
   Flow pause_if_asked();
   /// The latest fault, if nobody has dealt with it yet.
   const std::optional<Fault>& fault() const { return fault_; }
+  /// Number of pages so far that interrupted the session: those of a pause or a fault.
+  int holds() const { return holds_; }
   void set_fault(const std::optional<Fault>& fault) { fault_ = fault; }
 
  private:
@@ -84,6 +86,7 @@ class OperatorGate {
   store::SessionLog& log_;
   Display* display_;
   int shows_ = 0;  ///< number of pages shown
+  int holds_ = 0;
   bool stop_asked_ = false, pause_asked_ = false;
   bool quitting_ = false;  ///< the program has been asked to quit, so no page waits for an answer
   std::string stop_reason_;

@@ -73,16 +73,19 @@ struct Log {
   }
 };
 
-/// The interval and the scene to which a group of tones belongs, and the start and length of that scene.
+/// The part and the scene to which a group of tones belongs, the start and length of that scene, and the
+/// interval of the part.
 struct Placed {
-  int interval = 0, scene = 0;
+  int part = 0, scene = 0;
   std::int64_t onset_frame = 0, length_frames = 0;
+  int interval = 0;
 };
 
 void add_scene(core::TrialRow& row, const scene::DrivePlan& plan, const Placed& placed) {
   for (std::size_t t = 0; t < plan.tones.size(); ++t) {
     core::ToneRow tone;
-    tone.interval_index = placed.interval;
+    tone.interval_index = placed.part;
+    tone.of_interval = placed.interval;
     tone.scene_index = placed.scene;
     tone.tone_index = static_cast<int>(t);
     tone.scene = plan.scene.name;
@@ -112,12 +115,12 @@ void take_last(core::TrialRow& row, const scene::DrivePlan& last) {
 
 }  // namespace
 
-void add_tones(core::TrialRow& row, const std::vector<scene::DrivePlan>& scenes, int interval,
+void add_tones(core::TrialRow& row, const std::vector<scene::DrivePlan>& scenes, int part, int interval,
                std::int64_t onset_frame, const audio::PreparedBurst& burst) {
   for (std::size_t s = 0; s < scenes.size(); ++s) {
     const auto start = s == 0 ? 0 : burst.changes[s - 1].at_frame;
     const auto end = s + 1 < scenes.size() ? burst.changes[s].at_frame : burst.length_frames;
-    add_scene(row, scenes[s], {interval, static_cast<int>(s), onset_frame + start, end - start});
+    add_scene(row, scenes[s], {part, static_cast<int>(s), onset_frame + start, end - start, interval});
   }
   take_last(row, scenes.back());
 }
@@ -125,11 +128,12 @@ void add_tones(core::TrialRow& row, const std::vector<scene::DrivePlan>& scenes,
 void set_scene(core::TrialRow& row, const scene::DrivePlan& scene, int interval, std::int64_t frame) {
   std::int64_t end = 0;
   for (const auto& tone : row.tones) end = std::max(end, tone.onset_frame + tone.length_frames);
+  const int of_interval = row.tones.empty() ? 0 : row.tones.back().of_interval;
   const auto here = [interval](const auto& tone) { return tone.interval_index == interval; };
   std::erase_if(row.tones, [&](const auto& tone) { return here(tone) && tone.scene_index == 1; });
   for (auto& tone : row.tones)
     if (here(tone)) tone.length_frames = std::min(tone.length_frames, frame - tone.onset_frame);
-  add_scene(row, scene, {interval, 1, frame, end - frame});
+  add_scene(row, scene, {interval, 1, frame, end - frame, of_interval});
   take_last(row, scene);
 }
 

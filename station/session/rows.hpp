@@ -15,9 +15,9 @@
 
 namespace turnpoint::session {
 
-/// Appends the tones of an interval to a trial's row. The trial's boundary, frequency and amplitude become
-/// those of the interval's last scene.
-void add_tones(core::TrialRow& row, const std::vector<scene::DrivePlan>& scenes, int interval,
+/// Appends the tones of a part to a trial's row: its number in the trial, and that of the interval to which
+/// it belongs. The trial's boundary, frequency and amplitude become those of the part's last scene.
+void add_tones(core::TrialRow& row, const std::vector<scene::DrivePlan>& scenes, int part, int interval,
                std::int64_t onset_frame, const audio::PreparedBurst& burst);
 
 /// Records that the surface begins to follow the slider of an adjustment at `frame`, in this interval. In the

@@ -148,10 +148,10 @@ FingerAccount account_of(const Setup& setup, std::int64_t origin_ns) {
   const auto now = segment("", origin_ns);
   const double now_s = 1e-9 * static_cast<double>(now.realtime_ns);
   const auto limits = session::limits_of(setup.rig, setup.run_mode);
-  const auto history =
-      setup.observer.empty()
-          ? session::read_finger_history(setup.database, setup.participant, now, limits.continuous_s)
-          : FingerHistory{{}, now_s};
+  const auto history = setup.observer.empty()
+                           ? session::read_finger_history(setup.database, setup.participant, now,
+                                                          session::longest_trial_s(limits))
+                           : FingerHistory{{}, now_s};
   return FingerAccount(limits, history, origin_ns, now_s);
 }
 

@@ -164,6 +164,9 @@ constexpr int kVoidsBeforeStop = 3;
 /// A simulated observer that can never answer in time would otherwise go on for ever.
 constexpr int kUnansweredBeforeStop = 1000;
 constexpr int kRefusedBeforePage = 2;
+/// After a pause between two trials that was stretched by this time, the next trial counts as one after a
+/// rest.
+constexpr double kLongStretch_s = 5;
 
 bool is_over(trial::Phase phase) {
   return phase == trial::Phase::feedback || phase == trial::Phase::late || phase == trial::Phase::interval ||
@@ -176,8 +179,15 @@ core::EventRow event(std::int64_t time_ns, const char* kind, double value, int t
 
 }  // namespace
 
-Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
-  if (prepare_trial(spec) == Flow::stop) return Flow::stop;
+Flow SessionRun::run_trial(trial::TrialSpec spec) {
+  for (bool ready = false; !ready;) {
+    if (prepare_trial(spec) == Flow::stop) return Flow::stop;
+    // A pause may have come just before the trial, whose first part is then longer.
+    const auto now = next_trial();
+    if (!now) return Flow::stop;
+    ready = *now == spec;
+    spec = *now;
+  }
   drift_.log_temperature(trial_index());
   Running trial{spec,
                 trial::Machine(trial::timing_of(setup_.protocol, *director_.block(), spec)),
@@ -249,6 +259,7 @@ Flow SessionRun::keep_limits(const trial::TrialSpec& spec) {
   while (stage_->now_ns() < begin)
     if (auto input = stage_->wait_until(begin))
       if (gate_.handle_on_page(page, gate_.received(std::move(*input))) == Flow::stop) return Flow::stop;
+  if (stretch_s >= kLongStretch_s) director_.rested();
   return Flow::go_on;
 }
 
@@ -409,7 +420,9 @@ void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
 void SessionRun::interval_begins(Running& trial) {
   const auto i = trial.begun++;
   const auto& planned = plans_.take(trial.spec);
-  add_tones(trial.row, planned.plans[i], static_cast<int>(i), trial.onsets[i].frame, planned.bursts[i]);
+  const auto interval = trial::parts_of(setup_.protocol, trial.spec)[i].interval;
+  add_tones(trial.row, planned.plans[i], static_cast<int>(i), interval, trial.onsets[i].frame,
+            planned.bursts[i]);
   trial.friction_level = friction_level(planned.plans[i].back().scene);
 }
 
@@ -846,9 +859,10 @@ Flow SessionRun::play_example(const protocol::Example& example, Page page) {
 /// Returns the next trial, after waiting for the program that chooses its level. If the program fails, the
 /// session pauses: the page of the fault stands until the operator has pressed Continue, which starts the
 /// program again. Nobody could do that in a simulated session, so it is interrupted. Returns nothing if the
-/// block is done or the session is to stop.
+/// block is done or the session is to stop. A pause or a fault page since the last call counts as a rest.
 std::optional<trial::TrialSpec> SessionRun::next_trial() {
   while (!gate_.stop_asked()) {
+    if (std::exchange(holds_, gate_.holds()) != gate_.holds()) director_.rested();
     stage_->wait_for([this] { return director_.ready(); });
     try {
       if (const auto failed = std::exchange(failed_program_, std::nullopt))

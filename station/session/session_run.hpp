@@ -84,7 +84,7 @@ class SessionRun {
   void log_estimates();
 
   // One trial.
-  Flow run_trial(const trial::TrialSpec& spec);
+  Flow run_trial(trial::TrialSpec spec);
   Flow prepare_trial(const trial::TrialSpec& spec);
   Flow keep_limits(const trial::TrialSpec& spec);
   Flow after_trial(const Running& trial);
@@ -139,6 +139,7 @@ class SessionRun {
   trial::Director director_;
   Pages pages_;
   OperatorGate gate_;
+  int holds_ = 0;  ///< the holds of gate_ that next_trial() has taken into account
   Scores scores_;
   Interludes interludes_;
   Summary summary_;

@@ -267,11 +267,26 @@ ExportColumns interval_columns() {
   ExportColumns columns{participant_id(), session_id(), session("run_mode")};
   add(columns, block, {"block_index", "attempt"});
   add(columns, trial, {"trial_index"});
-  add(columns, tone,
-      {"interval_index", "scene_index", "tone_index", "scene", "boundary_mm", "frequency_hz", "amplitude_um",
-       "displacement_um", "friction", "rove_db", "model", "error_bound_mm", "uncertainty_mm",
-       "level_uncertainty_db", "reason", "onset_frame", "length_frames", "measured_db",
-       "measured_phase_deg"});
+  add(columns, tone, {"interval_index",
+                      "scene_index",
+                      "tone_index",
+                      "scene",
+                      "boundary_mm",
+                      "frequency_hz",
+                      "amplitude_um",
+                      "displacement_um",
+                      "friction",
+                      "rove_db",
+                      "model",
+                      "error_bound_mm",
+                      "uncertainty_mm",
+                      "level_uncertainty_db",
+                      "reason",
+                      "onset_frame",
+                      "length_frames",
+                      "measured_db",
+                      "measured_phase_deg",
+                      "of_interval"});
   columns.push_back(columns_version());
   return columns;
 }

@@ -640,7 +640,11 @@ const Table<ToneRow>& tone_table() {
             "Amplitude of the tone at the pick-up, relative to the plan; n/a if not measured", "dB"}),
        field<&T::measured_phase_deg>({"measured_phase_deg", "measured_phase_deg",
                                       "Phase of the tone at the pick-up, relative to the calibration",
-                                      "deg"})}};
+                                      "deg"}),
+       field<&T::of_interval>({"of_interval", "of_interval",
+                               "Number of the task's interval to which this one belongs, in the order "
+                               "presented, from 0; differs from interval_index if an interval of the task "
+                               "has several parts"})}};
   return table;
 }
 

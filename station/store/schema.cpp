@@ -233,6 +233,7 @@ CREATE TABLE tone (
   length_frames INTEGER NOT NULL,
   measured_dB REAL,
   measured_phase_deg REAL,
+  of_interval INTEGER NOT NULL,
   PRIMARY KEY (session_id, trial_index, interval_index, scene_index, tone_index),
   FOREIGN KEY (session_id, trial_index) REFERENCES trial (session_id, trial_index)
 ) STRICT, WITHOUT ROWID;

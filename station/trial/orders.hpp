@@ -6,20 +6,12 @@
 #include <vector>
 
 #include "station/core/draws.hpp"
+#include "station/protocol/orders.hpp"
 #include "station/protocol/protocol.hpp"
 
 namespace turnpoint::trial {
 
-/// The intervals of one trial in the order of presentation, and the index of the right choice.
-struct IntervalOrder {
-  std::vector<std::vector<std::string>> intervals;
-  std::optional<int> correct;
-};
-
-/// Returns all orders of intervals that a task can have: 2 for two intervals, 3 or 4 for 3ifc and 4ifc, 4 for
-/// same-different, ABX and match-to-sample, 3 or 6 for oddity, otherwise 1. `correct` is empty if the right
-/// choice depends on the factors (tasks with one interval).
-std::vector<IntervalOrder> orders_of(const protocol::Task& task);
+using protocol::IntervalOrder, protocol::orders_of;
 
 /// Returns the order for a trial, one of orders_of(). Trials are divided into runs of equal length, and each
 /// run contains every order equally often. Each run is shuffled with random numbers whose key contains the

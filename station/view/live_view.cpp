@@ -7,6 +7,7 @@
 #include <map>
 
 #include "station/core/number.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/report/figures.hpp"
 #include "station/report/words.hpp"
 #include "station/view/report_data.hpp"
@@ -32,20 +33,25 @@ std::string in_words(const trial::TrialSpec& spec) {
   return order;
 }
 
-/// Returns how long the stimulus was presented: its scheduled duration or, for an exploration, the time until
-/// the answer.
-double stimulus_s(const core::TrialRow& row, int rate_Hz) {
-  double scheduled_s = 0;
-  int intervals = 1;
-  for (const auto& tone : row.tones) {
-    if (tone.tone_index == 0) scheduled_s += static_cast<double>(tone.length_frames) / rate_Hz;
-    intervals = std::max(intervals, tone.interval_index + 1);
-  }
-  return intervals == 1 && row.timing.response_time_s ? std::min(scheduled_s, *row.timing.response_time_s)
-                                                      : scheduled_s;
-}
-
 }  // namespace
+
+double stimulus_s(const core::TrialRow& row, int rate_Hz, bool explored) {
+  double scheduled_s = 0, last_s = 0, first_scene_s = 0;
+  int last = 0;
+  for (const auto& tone : row.tones) last = std::max(last, tone.interval_index);
+  for (const auto& tone : row.tones) {
+    if (tone.tone_index != 0) continue;
+    const double length_s = static_cast<double>(tone.length_frames) / rate_Hz;
+    scheduled_s += length_s;
+    if (tone.interval_index == last) last_s += length_s;
+    if (tone.interval_index == last && tone.scene_index == 0) first_scene_s = length_s;
+  }
+  const bool at_change = row.timing.response_zero == "change";
+  if (!explored || !row.timing.response_time_s || (!at_change && row.timing.response_zero != "go_cue"))
+    return scheduled_s;
+  const double until_answer_s = *row.timing.response_time_s + (at_change ? first_scene_s : 0);
+  return scheduled_s - last_s + std::min(last_s, until_answer_s);
+}
 
 LiveView::LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state,
                    std::string language, OnGauges on_gauges, std::shared_ptr<std::atomic<int>> stored)
@@ -56,6 +62,7 @@ LiveView::LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnSt
       level_(protocol::common_level(protocol).value_or(Words(language_)("figure.level"))),
       asked_(protocol.sensing),
       adjusted_(protocol.task.adjusts),
+      explored_(protocol::explored(protocol.task)),
       rig_(rig),
       planner_(rig_),
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
@@ -80,7 +87,7 @@ void LiveView::finger_moved(const std::optional<session::FingerSeen>& finger) {
 
 void LiveView::trial_ended(const trial::TrialSpec& /*spec*/, const core::TrialRow& row) {
   if (stored_) ++*stored_;
-  LiveTrial trial{row, stimulus_s(row, rig_.output.rate_Hz)};
+  LiveTrial trial{row, stimulus_s(row, rig_.output.rate_Hz, explored_)};
   trial.tones.clear();
   trial.signal_rows.clear();
   push({{}, {}, std::move(trial), std::make_shared<core::TrialRow>(row)});

@@ -36,6 +36,10 @@ struct LiveState {
   Drawing profile, trace, times, strip;
 };
 
+/// How long a trial's stimuli were presented, in s: their scheduled length or, if the last part is explored,
+/// until the answer in it.
+double stimulus_s(const core::TrialRow& row, int rate_Hz, bool explored);
+
 /// Describes and draws a running session for the operator, on its own thread. It reports a new state whenever
 /// something changes. While the participant moves a slider, it shows the newest setting five times a second.
 class LiveView : public session::Monitor {
@@ -90,6 +94,7 @@ class LiveView : public session::Monitor {
   std::string level_;
   std::optional<protocol::Sensing> asked_;
   std::string adjusted_;  ///< the factor that a slider sets; "" if there is none
+  bool explored_;         ///< whether the participant may answer while the surface moves
   rig::Rig rig_;
   // The worker thread alone uses the members from `planner_` to `state_`.
   scene::Planner planner_;

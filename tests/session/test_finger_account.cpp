@@ -56,6 +56,18 @@ TEST_CASE("a trial that a crash cut off counts as the longest stimulus", "[sessi
   CHECK(finger_history({session}, kNow, 30).stimuli.empty());
 }
 
+TEST_CASE("a trial of several parts that a crash cut off counts for as long as the duty allows",
+          "[session][limits]") {
+  CHECK(session::longest_trial_s({8e-6, 30, 0.8, 3600}) == Approx(48));
+  CHECK(session::longest_trial_s({8e-6, 30, 0.4, 3600}) == 30);
+  auto session = session_of(100);
+  add(session, 10, "presented", "");
+  const session::ExposureLimits limits{8e-6, 30, 0.8, 3600};
+  const auto history = finger_history({session}, kNow, session::longest_trial_s(limits));
+  REQUIRE(history.stimuli.size() == 1);
+  CHECK(history.stimuli[0].end_s - history.stimuli[0].start_s == Approx(48).margin(1e-5));
+}
+
 TEST_CASE("a pause of half an hour begins a new period of exposure, but a crash does not",
           "[session][limits]") {
   auto earlier = session_of(3000);

@@ -10,15 +10,19 @@
 #include "station/audio/synth.hpp"
 #include "station/core/read_file.hpp"
 #include "station/protocol/answers.hpp"
+#include "station/protocol/design_advice.hpp"
 #include "station/protocol/survey.hpp"
 #include "station/rehearsal/check.hpp"
 #include "station/rehearsal/cue_guard.hpp"
 #include "station/rehearsal/rehearsal.hpp"
+#include "station/session/exposure.hpp"
+#include "station/session/finger_account.hpp"
 #include "station/session/pages.hpp"
 #include "station/session/plan_ahead.hpp"
 #include "station/session/resume.hpp"
 #include "station/session/stage.hpp"
 #include "station/trial/timing.hpp"
+#include "tests/session/live_room.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/session/screen.hpp"
 #include "tests/support/catch.hpp"
@@ -413,6 +417,10 @@ TEST_CASE(
     CHECK(spec.iti_s == 1 + number(spec.factors, "isi_s"));
     with.record({core::Outcome::answered, 0, true, {}, {}});
   }
+  CHECK(said(protocol::notes(protocol)).find("decides the right answer") == std::string::npos);
+  CHECK(said(protocol::notes(protocol::parse(
+                 replaced(kPauses, "iti_s = 1.0", "iti_s = \"1 + 0.01 * offset_mm\""), "p.toml")))
+            .find("the pause after a trial depends on \"offset_mm\"") != std::string::npos);
   auto change = replaced(
       kPauses,
       "kind = \"2ifc\"\nintervals = [\"adaptor\", \"test\"]\nduration_s = \"lead_s\"\ngap_s = \"2 * isi_s\"",
@@ -458,7 +466,7 @@ TEST_CASE(
             replaced(kAdaptation, "scene = \"test\", duration_s = 0.4", "scene = \"test\", duration_s = 1.5"))
             .find("tones last up to 3.85 s without a pause") != std::string::npos);
   CHECK(problems(replaced(kAdaptation, "first_s = 2.0", "first_s = 4.0"))
-            .find("tones last up to 4 s without a pause") != std::string::npos);
+            .find("tones last up to 4.75 s without a pause") != std::string::npos);
   CHECK(problems(replaced(kPauses, "duration_s = \"lead_s\"", "duration_s = \"lead_s + 2.5\""))
             .find("tones last up to 3.2 s without a pause") != std::string::npos);
   // a silence of half a second is a rest
@@ -529,4 +537,197 @@ TEST_CASE("a deadline is compared with the length at the same values of the fact
   };
   CHECK(advice("deadline_s = \"lead_s + 0.5\"").find("cannot be met") == std::string::npos);
   CHECK(advice("deadline_s = 0.8").find("cannot be met") != std::string::npos);
+}
+
+TEST_CASE("after a page of a fault, the next trial has the long adaptor again", "[session][parts]") {
+  const TemporaryFolder folder;
+  const auto path = written(folder, replaced(kAdaptation, "trials = 3", "trials = 50"));
+  const auto ran = run(path, [&](int trial, simulation::Plant& plant) {
+    if (trial == 4)
+      plant.add({simulation::FaultKind::transducer_half, plant.frames() + 1, simulation::kNever, {}, 0});
+  });
+  REQUIRE(ran.trials.size() == 17);
+  CHECK(ran.trials[4].outcome == core::Outcome::fault);
+  CHECK(ran.faults.size() == 1);
+  for (std::size_t i = 0; i < ran.trials.size(); ++i) {
+    INFO("trial " << i);
+    const bool is_long = i == 0 || i == 5 || i == 9;
+    CHECK(stored_parts(ran.trials[i]).at(0).second ==
+          frames(is_long ? 2.0 : number(ran.trials[i], "lead_s")));
+  }
+}
+
+TEST_CASE("after a pause, the next trial has the long adaptor again", "[session][parts]") {
+  using live_room::PageKind;
+  struct Storing : session::Monitor {
+    live_room::Room& room;
+    int wanted;
+    Storing(live_room::Room& in, int after) : room(in), wanted(after) {}
+    void trial_ended(const trial::TrialSpec&, const core::TrialRow& row) override {
+      if (row.outcome == core::Outcome::answered && --wanted == 0) room.push(session::input::Pause{});
+    }
+  };
+  const int paused_after = GENERATE(0, 1);  // 0: never
+  auto text =
+      replaced(live_room::protocol_text("buttons"), "intervals = [\"edge\"]", "intervals = [\"pair\"]");
+  text = replaced(text, "[timing]",
+                  "[task.parts]\npair = [{ scene = \"edge\", duration_s = 0.2, first_s = 0.5 }, "
+                  "{ silence_s = 0.1 }, { scene = \"edge\" }]\n[timing]");
+  const TemporaryFolder folder;
+  live_room::Room room;
+  Storing storing(room, paused_after);
+  auto setup = live_room::live_setup(folder / "a.sqlite");
+  setup.protocol = protocol::parse(text, "live.toml");
+  int faults = 0;  // of a machine that is too busy
+  room.reacts = [&](const session::Page& page) {
+    faults += page.kind == PageKind::fault ? 1 : 0;
+    room.cooperate(page);  // answers in the first part are only touches
+  };
+  const auto summary = session::run(setup, &room, room.inputs, room.devices(), &storing);
+  CHECK(summary.answered == 2);
+  std::vector<core::TrialRow> answered;
+  for (const auto& trial : live_room::trials_of(folder / "a.sqlite", summary))
+    if (trial.outcome == core::Outcome::answered) answered.push_back(trial);
+  REQUIRE(answered.size() == 2);
+  CHECK(stored_parts(answered[0]).at(0).second == frames(0.5));
+  if (paused_after == 1 || faults == 0)
+    CHECK(stored_parts(answered[1]).at(0).second == frames(paused_after == 1 ? 0.5 : 0.2));
+}
+
+TEST_CASE("after a pause that the rig's limits have stretched by seconds, the adaptor is long again",
+          "[session][parts]") {
+  const TemporaryFolder folder;
+  const auto request = simulated_run(written(folder, kAdaptation), folder / "a.sqlite", 5);
+  auto setup = session::prepare(request);
+  setup.rig.limits.duty = 0.06;  // 3.6 s in a minute
+  session::Inputs nobody;
+  const auto summary = session::run(setup, nullptr, nobody);
+  REQUIRE(summary.status == core::SessionStatus::completed);
+  const auto trials = trials_of(request.database, summary.session_id);
+  int stretched = 0;
+  for (const auto& event : store::read_session(request.database, summary.session_id).events) {
+    if (event.kind != "interval_stretched" || std::stod(event.value) < 5) continue;
+    ++stretched;
+    CHECK(stored_parts(trials.at(static_cast<std::size_t>(event.trial_index.value()))).at(0).second ==
+          frames(2.0));
+  }
+  CHECK(stretched > 3);
+}
+
+TEST_CASE("check finds exactly the trials that the rig can never present", "[session][parts]") {
+  auto rig = thin_plate();
+  rig.limits.continuous_s = 30, rig.limits.duty = 0.8;
+  const auto two = [](const std::string& gap_s) {
+    auto text = replaced(kPauses, "duration_s = \"lead_s\"\ngap_s = \"2 * isi_s\"", "gap_s = " + gap_s);
+    text = replaced(text, "intervals = [\"adaptor\", \"test\"]", "intervals = [\"one\", \"two\"]");
+    text = replaced(text, "{ test = \"offset_mm > 0\", adaptor = \"offset_mm < 0\" }",
+                    "{ two = \"offset_mm > 0\", one = \"offset_mm < 0\" }");
+    return replaced(text, "[timing]",
+                    "[task.parts]\none = [{ scene = \"adaptor\", duration_s = 16.0 }]\n"
+                    "two = [{ scene = \"test\", duration_s = 16.0 }]\n[timing]");
+  };
+  const auto parts = [](const std::string& list) {
+    const auto begin = kAdaptation.find("adapted = ["), end = kAdaptation.find("[timing]");
+    return kAdaptation.substr(0, begin) + "adapted = [" + list + "]\n" + kAdaptation.substr(end);
+  };
+  struct Case {
+    std::string text, problem;
+  };
+  const std::vector<Case> cases = {
+      {two("0.4"), "tones last up to 32.4 s without a pause"},
+      {two("0.6"), ""},
+      {two("0.5"), ""},
+      {parts(
+           "{ scene = \"adaptor\", duration_s = 18 }, { silence_s = 0.6 }, { scene = \"adaptor\", duration_s "
+           "= 18 }, { silence_s = 0.6 }, { scene = \"test\", duration_s = 18 }"),
+       "the tones of a trial last up to 54 s in 60 s"},
+      // only one part of a trial is long
+      {parts("{ scene = \"adaptor\", duration_s = 5, first_s = 20 }, { silence_s = 0.2 }, { scene = "
+             "\"adaptor\", duration_s = 4, first_s = 20 }, { silence_s = 0.2 }, { scene = \"test\", "
+             "duration_s = 0.4 }"),
+       ""},
+      {parts("{ scene = \"adaptor\", duration_s = 5, first_s = 26 }, { silence_s = 0.2 }, { scene = "
+             "\"test\", duration_s = 4 }"),
+       "tones last up to 30.2 s without a pause"},
+      // where the first scene is long, the silence is a rest
+      {parts("{ scene = \"adaptor\", duration_s = \"100 * lead_s - 45\" }, { silence_s = \"10 * lead_s - "
+             "4.9\" }, { scene = \"test\", duration_s = 10 }"),
+       ""},
+      {parts("{ scene = \"adaptor\", duration_s = \"100 * lead_s - 45\" }, { silence_s = \"7.1 - 10 * "
+             "lead_s\" }, { scene = \"test\", duration_s = 10 }"),
+       "tones last up to 35.1 s without a pause"}};
+  for (const auto& at : cases) {
+    INFO(at.text);
+    const auto protocol = protocol::parse(at.text, "p.toml");
+    const auto found = said(protocol::survey(protocol, rig).problems);
+    CHECK(found.empty() == at.problem.empty());
+    CHECK(found.find(at.problem) != std::string::npos);
+    // what the account of the finger says of a trial that comes alone
+    bool refused = false;
+    trial::Director director(protocol, 0, 3);
+    for (int k = 0; k < 8; ++k) {
+      const auto stimuli = session::stimuli_of(protocol, director.next().value());
+      try {
+        session::Exposure({1e-3, rig.limits.continuous_s, rig.limits.duty, 1e9}, 0)
+            .earliest_start_s(0, stimuli);
+      } catch (const session::LimitExceeded&) {
+        refused = true;
+      }
+      director.record({core::Outcome::answered, 0, true, {}, {}});
+    }
+    if (at.problem.empty()) CHECK_FALSE(refused);
+    if (at.problem.find("35.1") == std::string::npos) CHECK(refused == !at.problem.empty());
+  }
+}
+
+TEST_CASE("a foreperiod is compared with the length at the same values of the factors", "[session][parts]") {
+  auto text = replaced(
+      kPauses,
+      "kind = \"2ifc\"\nintervals = [\"adaptor\", \"test\"]\nduration_s = \"lead_s\"\ngap_s = \"2 * isi_s\"",
+      "kind = \"single-interval\"\nintervals = [[\"adaptor\", \"test\"]]\nduration_s = \"isi_s + 0.5\"\n"
+      "foreperiod_s = \"isi_s\"\ntransition_ms = 50");
+  text = replaced(text, "{ test = \"offset_mm > 0\", adaptor = \"offset_mm < 0\" }",
+                  "{ first = \"offset_mm > 0\", second = \"offset_mm < 0\" }");
+  const auto advice = [](const std::string& of) {
+    return said(protocol::advice(protocol::parse(of, "p.toml")));
+  };
+  CHECK(advice(text).find("the change can end") == std::string::npos);
+  CHECK(advice(replaced(text, "\"isi_s + 0.5\"", "\"isi_s + 0.04\"")).find("the change can end") !=
+        std::string::npos);
+  CHECK_THROWS_AS(protocol::parse(replaced(text, "\"isi_s + 0.5\"", "\"0.5 * isi_s + 0.2\""), "p.toml"),
+                  core::BadInput);
+  // the end of the stimulus after the change is 0.5 s in all trials
+  const auto end =
+      protocol::stimulus_end(protocol::parse(replaced(text, "\"interval_off\"", "\"change\""), "p.toml"));
+  REQUIRE(end);
+  CHECK(end->earliest_s == Approx(0.5));
+  CHECK(end->latest_s == Approx(0.5));
+}
+
+TEST_CASE("a deadline is compared with every part that can be the last one; rows name each part's interval",
+          "[session][parts]") {
+  auto text = replaced(kPauses, "duration_s = \"lead_s\"\n", "");
+  text = replaced(text, "intervals = [\"adaptor\", \"test\"]", "intervals = [\"short\", \"long\"]");
+  text = replaced(text, "{ test = \"offset_mm > 0\", adaptor = \"offset_mm < 0\" }", "\"long\"");
+  text = replaced(
+      text, "[timing]",
+      "[task.parts]\nlong = [{ scene = \"adaptor\", duration_s = 0.3 }, { silence_s = 0.2 }, { scene = "
+      "\"test\", duration_s = 0.8 }]\nshort = [{ scene = \"test\", duration_s = 0.4 }]\n[timing]");
+  const auto advice = [&](const std::string& deadline) {
+    const auto of = replaced(replaced(text, "response_zero = \"interval_off\"", "response_zero = \"go_cue\""),
+                             "deadline_s = 20.0", deadline);
+    return said(protocol::advice(protocol::parse(of, "p.toml")));
+  };
+  CHECK(advice("deadline_s = 0.6").find("up to 0.8 s after") != std::string::npos);
+  CHECK(advice("deadline_s = 3.0").find("cannot be met") == std::string::npos);
+  int swapped = 0;
+  for (const auto& trial : session_of(text)) {
+    const bool long_first = trial.tones.front().length_frames == frames(0.3);
+    std::map<int, int> intervals;
+    for (const auto& tone : trial.tones) intervals[tone.interval_index] = tone.of_interval;
+    CHECK(intervals == (long_first ? std::map<int, int>{{0, 0}, {1, 0}, {2, 1}}
+                                   : std::map<int, int>{{0, 0}, {1, 1}, {2, 1}}));
+    swapped += long_first ? 1 : 0;
+  }
+  CHECK(swapped > 0);
 }

@@ -71,6 +71,7 @@ inline ToneRow tone(int interval, int index) {
   t.length_frames = 96000;
   t.measured_dB = -0.5;
   t.measured_phase_deg = 3.25;
+  t.of_interval = interval;
   return t;
 }
 

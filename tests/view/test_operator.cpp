@@ -31,6 +31,22 @@ view::LiveTrial answered(bool correct, double response_time_s) {
   return trial;
 }
 
+/// A row of two parts: 1 s, and one of 25 s that changes after 2 s.
+core::TrialRow two_parts(const std::string& zero, std::optional<double> response_time_s) {
+  core::TrialRow row;
+  const auto add = [&row](int interval, int scene, std::int64_t frames) {
+    core::ToneRow tone;
+    tone.interval_index = interval, tone.scene_index = scene, tone.length_frames = frames;
+    row.tones.push_back(tone);
+    tone.tone_index = 1;
+    row.tones.push_back(tone);
+  };
+  add(0, 0, 1000), add(1, 0, 2000), add(1, 1, 23000);
+  row.timing.response_zero = zero;
+  row.timing.response_time_s = response_time_s;
+  return row;
+}
+
 /// Passes the beginnings of the session's first trials on to another monitor, then ends the session.
 struct FirstTrials : session::Monitor {
   session::Monitor& to;
@@ -57,6 +73,18 @@ std::vector<std::string> drives_shown(const view::LiveState& state) {
 }
 
 }  // namespace
+
+TEST_CASE("the time of a stimulus ends with the answer in its last part, if that is explored", "[operator]") {
+  const auto shown_s = [](const std::string& zero, std::optional<double> time_s, bool explored) {
+    return view::stimulus_s(two_parts(zero, time_s), 1000, explored);
+  };
+  CHECK(shown_s("go_cue", 2.5, true) == Approx(1 + 2.5));
+  CHECK(shown_s("change", 2.5, true) == Approx(1 + 2 + 2.5));
+  CHECK(shown_s("go_cue", 40, true) == Approx(26));
+  CHECK(shown_s("go_cue", std::nullopt, true) == Approx(26));
+  CHECK(shown_s("interval_off", 0.5, true) == Approx(26));
+  CHECK(shown_s("go_cue", 2.5, false) == Approx(26));
+}
 
 TEST_CASE("the progress of a session counts scored trials, and timeouts have no response time",
           "[operator]") {
