@@ -23,13 +23,18 @@ const char* name(Fault fault) noexcept {
   return names[static_cast<std::size_t>(fault)];
 }
 
-BridgeWindow::BridgeWindow(const Bridges& bridges) : bridges_(bridges) {
-  const int n = bridges.window_frames;
+BridgeWindow::BridgeWindow(const Bridges& bridges, const Timing& timing, std::span<const double> drive_Hz)
+    : bridges_(bridges), window_frames_(timing.window_frames) {
+  const int n = window_frames_;
+  need(timing.rate_Hz > 0, "the rate must be above 0");
   need(n >= 32 && n <= kMostFrames, "the window of the bridges must have 32 to 1024 frames");
   for (const int channel : {bridges.reference, bridges.bridges[0], bridges.bridges[1], bridges.bridges[2]})
     need(channel >= 0 && channel < bridges.channels, "a channel of the bridges does not exist");
-  const double cycles = bridges.carrier_Hz * n / bridges.rate_Hz;
+  const double cycles = bridges.carrier_Hz * n / timing.rate_Hz;
   need(cycles >= 4 && cycles <= 0.5 * n - 4, "the carrier is too near to 0 or to half the rate");
+  for (const double tone_Hz : drive_Hz)
+    need(std::abs(tone_Hz - bridges.carrier_Hz) * n >= 4.0 * timing.rate_Hz,
+         "a tone of the drive is nearer to the carrier than 4 / window");
   double sum = 0;
   for (int i = 0; i < n; ++i) {
     const double u = 2 * std::numbers::pi * (i + 0.5) / n;
@@ -45,7 +50,7 @@ BridgeWindow::BridgeWindow(const Bridges& bridges) : bridges_(bridges) {
 
 void BridgeWindow::push(std::int64_t first, const std::int32_t* frames, int count) noexcept {
   if (first != end_) filled_ = next_ = 0, unchanged_.fill(0);
-  const int n = bridges_.window_frames;
+  const int n = window_frames_;
   for (int f = 0; f < count; ++f) {
     const std::int32_t* frame = frames + static_cast<std::ptrdiff_t>(f) * bridges_.channels;
     const auto at = static_cast<std::size_t>(next_);
@@ -63,7 +68,7 @@ void BridgeWindow::push(std::int64_t first, const std::int32_t* frames, int coun
 }
 
 FingerSample BridgeWindow::sample() const noexcept {
-  const int n = bridges_.window_frames;
+  const int n = window_frames_;
   FingerSample result;
   result.frame = end_ - n / 2;
   result.fault = Fault::force;

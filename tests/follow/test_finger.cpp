@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double kSpan_m = 0.3, kRatioPerN = 0.08;
 constexpr int kChannels = 6;
+constexpr std::array kDrive_Hz{20300.0, 33170.0};
 
 Bridges wiring() {
   Bridges b;
@@ -58,7 +60,7 @@ using Forces = std::array<double, 3>;
 
 TEST_CASE("forces come from the captured frames, half a window late and not disturbed by the drive",
           "[finger]") {
-  BridgeWindow window(wiring());
+  BridgeWindow window(wiring(), {}, kDrive_Hz);
   Signal signal;
   signal.crosstalk = 0.1;
   // forces that change in a straight line: the sample is that of the window's centre
@@ -78,7 +80,7 @@ TEST_CASE("blocks of any size give the same forces", "[finger]") {
   const auto forces = [](double t) { return Forces{0.3, 0.2 + 5 * t, 0.1}; };
   Signal signal;
   const auto all = signal.frames(0, 960, forces);
-  BridgeWindow one(wiring()), many(wiring());
+  BridgeWindow one(wiring(), {}, kDrive_Hz), many(wiring(), {}, kDrive_Hz);
   one.push(0, all.data(), 960);
   for (int at = 0, size = 1; at < 960; at += size, size = size % 37 + 1)
     many.push(at, all.data() + static_cast<std::ptrdiff_t>(at) * kChannels, std::min(size, 960 - at));
@@ -90,7 +92,7 @@ TEST_CASE("faults of the captured signal are named", "[finger]") {
   const auto forces = [](double) { return Forces{0.3, 0.2, 0.1}; };
   Signal signal;
   signal.noise = 1e-5;
-  BridgeWindow window(wiring());
+  BridgeWindow window(wiring(), {}, kDrive_Hz);
   window.push(0, signal.frames(0, 200, forces).data(), 200);
   CHECK(window.sample().fault == Fault::force);  // not full yet
   window.push(200, signal.frames(200, 200, forces).data(), 200);
@@ -120,12 +122,29 @@ TEST_CASE("faults of the captured signal are named", "[finger]") {
 
 TEST_CASE("a window that cannot work is refused", "[finger]") {
   auto b = wiring();
-  b.window_frames = 16;
-  CHECK_THROWS_AS(BridgeWindow(b), std::invalid_argument);
+  Timing timing;
+  timing.window_frames = 16;
+  CHECK_THROWS_AS(BridgeWindow(b, timing, {}), std::invalid_argument);
   b = wiring(), b.bridges[2] = 6;
-  CHECK_THROWS_AS(BridgeWindow(b), std::invalid_argument);
+  CHECK_THROWS_AS(BridgeWindow(b, {}, {}), std::invalid_argument);
   b = wiring(), b.carrier_Hz = 2000;
-  CHECK_THROWS_AS(BridgeWindow(b), std::invalid_argument);
+  CHECK_THROWS_AS(BridgeWindow(b, {}, {}), std::invalid_argument);
+  // 10.525 kHz and a window of 1.5 ms: 2.67 kHz are needed
+  CHECK_THROWS_AS(BridgeWindow(wiring(), {}, std::array{30000.0, 13000.0}), std::invalid_argument);
+  CHECK_NOTHROW(BridgeWindow(wiring(), {}, std::array{30000.0, 13200.0}));
+}
+
+TEST_CASE("window and period are as long at every rate", "[finger]") {
+  for (const int rate : {44100, 48000, 96000, 192000, 384000}) {
+    const auto timing = timing_of(rate);
+    CHECK(timing.rate_Hz == rate);
+    CHECK(timing.window_frames / static_cast<double>(rate) == Approx(1.5e-3).epsilon(0.02));
+    CHECK(timing.period_frames % 8 == 0);
+    CHECK(timing.period_frames / static_cast<double>(rate) == Approx(0.5e-3).epsilon(0.1));
+  }
+  CHECK(timing_of(192000).window_frames == Timing{}.window_frames);
+  CHECK(timing_of(192000).period_frames == Timing{}.period_frames);
+  CHECK_THROWS_AS(timing_of(8000), std::invalid_argument);
 }
 
 namespace {

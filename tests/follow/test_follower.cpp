@@ -96,7 +96,7 @@ TEST_CASE("the whole way from captured frames: carrier, crosstalk of the modulat
   follow::Bridges wiring;
   wiring.reference_amplitude = reference;
   wiring.matrix = {{{1 / per_N, 0, 0}, {1 / per_N, 0, s.span_m / per_N}, {0, 1 / per_N, 0}}};
-  follow::BridgeWindow window(wiring);
+  follow::BridgeWindow window(wiring, plan.timing, std::array{30000.0});
   plant::Dice dice(3);
   std::array<std::array<float, follow::kGains>, 3> queue{};
   std::vector<std::int32_t> frames(96 * 4);
