@@ -11,7 +11,8 @@ namespace turnpoint::follow {
 namespace {
 
 constexpr double reference_tolerance = 0.03, overload_share = 1.5;
-constexpr int most_unchanged = 32;  // samples with noise are never the same that often in a row
+constexpr double quadrature_share = 0.05;  // of full scale, as in sensing/carrier.cpp
+constexpr int most_unchanged = 32;         // samples with noise are never the same that often in a row
 constexpr double beyond_m = 3e-3, jump_m = 8e-3, start_speed_m_s = 0.2;
 constexpr int most_jumps = 8;
 
@@ -49,22 +50,29 @@ BridgeWindow::BridgeWindow(const Bridges& bridges, const Timing& timing, std::sp
 }
 
 void BridgeWindow::push(std::int64_t first, const std::int32_t* frames, int count) noexcept {
-  if (first != end_) filled_ = next_ = 0, unchanged_.fill(0);
+  if (first != end_) filled_ = next_ = 0, unchanged_.fill(0), repeated_ = 0;
   const int n = window_frames_;
+  bool again = count <= filled_;  // every frame so far was that of the push before
   for (int f = 0; f < count; ++f) {
     const std::int32_t* frame = frames + static_cast<std::ptrdiff_t>(f) * bridges_.channels;
     const auto at = static_cast<std::size_t>(next_);
+    const auto before = kept_[static_cast<std::size_t>(next_ >= count ? next_ - count : next_ - count + n) %
+                              static_cast<std::size_t>(n)];
     kept_[at][0] = static_cast<float>(frame[bridges_.reference]) * 0x1p-31f;
     for (std::size_t b = 0; b < 3; ++b) {
       const std::int32_t value = frame[bridges_.bridges[b]];
       unchanged_[b] = value == last_[b] ? unchanged_[b] + 1 : 0;
       last_[b] = value;
+      if (unchanged_[b] >= most_unchanged) dead_until_ = first + f + 1;
       kept_[at][b + 1] = static_cast<float>(value) * 0x1p-31f;
     }
+    again = again && kept_[at] == before;
     next_ = next_ + 1 == n ? 0 : next_ + 1;
   }
   filled_ = std::min(n, filled_ + count);
   end_ = first + count;
+  repeated_ = again ? repeated_ + count : 0;
+  if (repeated_ >= most_unchanged) dead_until_ = end_;
 }
 
 FingerSample BridgeWindow::sample() const noexcept {
@@ -72,7 +80,7 @@ FingerSample BridgeWindow::sample() const noexcept {
   FingerSample result;
   result.frame = end_ - n / 2;
   result.fault = Fault::force;
-  if (filled_ < n) return result;
+  if (filled_ < n || dead_until_ > end_ - n) return result;
   std::array<float, 4> re{}, im{};
   const auto add = [&](std::size_t ring, std::size_t tap) {
     for (std::size_t c = 0; c < 4; ++c) {
@@ -94,7 +102,8 @@ FingerSample BridgeWindow::sample() const noexcept {
   std::array<double, 3> force{};
   for (std::size_t b = 0; b < 3; ++b) {
     const auto ratio = z[b + 1] / z[0] * std::polar(1.0, -bridges_.rotation_rad[b]);
-    if (unchanged_[b] >= most_unchanged || !(std::abs(ratio) <= overload_share * bridges_.full_scale[b]))
+    if (!(std::abs(ratio) <= overload_share * bridges_.full_scale[b]) ||
+        std::abs(ratio.imag()) > quadrature_share * bridges_.full_scale[b])
       return result;
     for (std::size_t k = 0; k < 3; ++k) force[k] += (ratio.real() - bridges_.tare[b]) * bridges_.matrix[b][k];
   }

@@ -15,8 +15,8 @@ enum class Fault : std::uint8_t {
   none,
   late,       ///< frames were left out, or the newest sample is too old
   reference,  ///< the amplitude of the bridges' excitation is more than 3 % off
-  force,      ///< captured frames are missing, a bridge is overloaded, or its samples do not change
-  lifted,     ///< the finger is not on the surface
+  force,   ///< captured frames are missing or come again, a bridge is overloaded, has a wire off, or is dead
+  lifted,  ///< the finger is not on the surface
   position,  ///< the normal force is too small to tell the place, the place is beyond the strip, or it jumped
   saturated  ///< the loop has asked for friction beyond the finger's reach for most of the last 0.2 s
 };
@@ -64,7 +64,9 @@ class BridgeWindow {
   BridgeWindow(const Bridges& bridges, const Timing& timing, std::span<const double> drive_Hz);
 
   /// Takes frames, of which the first has the number `first` in the playback's clock. Frames that are left
-  /// out empty the window.
+  /// out empty the window. 32 equal samples of a bridge in a row, or 32 frames that equal those of the push
+  /// before, are a fault for as long as one of them is in the window. (BridgeDemodulator, for the record,
+  /// also finds blocks of other lengths that come again.)
   void push(std::int64_t first, const std::int32_t* frames, int count) noexcept;
   /// The force at the centre of the newest window. Fault::force until the window is full.
   FingerSample sample() const noexcept;
@@ -76,6 +78,8 @@ class BridgeWindow {
   std::array<std::array<float, 4>, kMostFrames> kept_{};  ///< newest frames in a ring: reference, bridges
   std::array<std::int32_t, 3> last_{};
   std::array<int, 3> unchanged_{};  ///< how many samples of a bridge in a row were the same
+  int repeated_ = 0;                ///< how many frames in a row were those of the push before
+  std::int64_t dead_until_ = 0;     ///< frame number behind the last frame that was dead or came again
   std::int64_t end_ = 0;            ///< frame number behind the newest frame
   int filled_ = 0, next_ = 0;
 };

@@ -118,6 +118,37 @@ TEST_CASE("faults of the captured signal are named", "[finger]") {
     window.push(400, frames.data(), 96);
     CHECK(window.sample().fault == Fault::force);
   }
+  SECTION("a converter that stood still, anywhere in the window") {
+    auto frames = signal.frames(400, 500, forces);
+    for (int i = 0; i < 60; ++i) frames[static_cast<std::size_t>(i * kChannels + 4)] = 1234567;
+    for (int at = 0; at < 400; at += 4) {
+      window.push(400 + at, frames.data() + static_cast<std::ptrdiff_t>(at) * kChannels, 4);
+      // from the 33rd equal sample until the last of them has left the window of 288 frames
+      const bool dead = at + 4 >= 33 && at + 4 < 60 + 288;
+      CHECK((window.sample().fault == Fault::force) == dead);
+    }
+  }
+  SECTION("a driver that gives the same block again") {
+    for (const int block : {96, 16}) {
+      const int at = block == 96 ? 400 : 1200;
+      window.push(at - 300, signal.frames(at - 300, 300, forces).data(), 300);
+      const auto frames = signal.frames(at, block, forces);
+      for (int k = 0; k < 6; ++k) window.push(at + k * block, frames.data(), block);
+      CHECK(window.sample().fault == Fault::force);
+    }
+  }
+  SECTION("a wire that is off: the bridge's phase has changed") {
+    auto turned = wiring();
+    turned.rotation_rad[1] += 0.2;
+    turned.full_scale[1] = 0.05;
+    BridgeWindow other(turned, {}, kDrive_Hz);
+    other.push(0, signal.frames(0, 288, forces).data(), 288);
+    CHECK(other.sample().fault == Fault::none);
+    turned.rotation_rad[1] += 1.2;
+    other = BridgeWindow(turned, {}, kDrive_Hz);
+    other.push(0, signal.frames(0, 288, [](double) { return Forces{0.3, 0.5, 0.1}; }).data(), 288);
+    CHECK(other.sample().fault == Fault::force);
+  }
 }
 
 TEST_CASE("a window that cannot work is refused", "[finger]") {
