@@ -18,9 +18,11 @@ double envelope_time_constant_s(double quality, double frequency_Hz) {
   return quality / (std::numbers::pi * frequency_Hz);
 }
 
-EnvelopeShaper::EnvelopeShaper(const Envelope& e) : envelope_(e) {
+EnvelopeShaper::EnvelopeShaper(const Envelope& e, double start)
+    : envelope_(e), start_(start), gain_(start), amplitude_(start) {
   for (const double value : {e.time_constant_s, e.most_gain, e.slew_per_s, e.step_s})
     if (!(std::isfinite(value) && value > 0)) throw std::invalid_argument("envelope: a value is not above 0");
+  if (!(start >= 0 && start <= e.most_gain)) throw std::invalid_argument("envelope: the gain at the start");
   // the exact response of the plate to a straight line from the last gain to this one
   const double h = e.step_s / e.time_constant_s;
   keep_ = std::exp(-h);
@@ -35,9 +37,9 @@ double EnvelopeShaper::next(double before, double now, double after) noexcept {
   const Envelope& e = envelope_;
   const double rest = keep_ * amplitude_ + from_last_ * gain_;  // the amplitude without this gain
   const double slope = (after - before) / (2 * e.step_s);
-  const double wish =
-      (now + e.time_constant_s * slope + catch_up_ * (now - rest)) / (1 + catch_up_ * from_this_);
+  double wish = (now + e.time_constant_s * slope + catch_up_ * (now - rest)) / (1 + catch_up_ * from_this_);
   const double change = e.slew_per_s * e.step_s;
+  if (!std::isfinite(wish)) wish = start_;
   gain_ = std::clamp(std::clamp(wish, gain_ - change, gain_ + change), 0.0, e.most_gain);
   amplitude_ = rest + from_this_ * gain_;
   return gain_;

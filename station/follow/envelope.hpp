@@ -28,10 +28,12 @@ struct Envelope {
 class EnvelopeShaper {
  public:
   EnvelopeShaper() : EnvelopeShaper(Envelope{}) {}
-  /// Throws std::invalid_argument for values that are not above 0.
-  explicit EnvelopeShaper(const Envelope& envelope);
+  /// Begins with the gain `start` and an envelope that has settled there. Throws std::invalid_argument for
+  /// values that are not above 0, and for a start beyond the limits.
+  explicit EnvelopeShaper(const Envelope& envelope, double start = 0);
 
-  /// The gain at `now`, from the wish one step before, at, and one step after it.
+  /// The gain at `now`, from the wish one step before, at, and one step after it. A wish that is not finite
+  /// counts as the start.
   double next(double before, double now, double after) noexcept;
   double gain() const noexcept { return gain_; }
   double amplitude() const noexcept { return amplitude_; }  ///< the modelled envelope
@@ -40,7 +42,7 @@ class EnvelopeShaper {
  private:
   Envelope envelope_;
   double keep_ = 0, from_last_ = 0, from_this_ = 0, catch_up_ = 0;
-  double gain_ = 0, amplitude_ = 0;
+  double start_ = 0, gain_ = 0, amplitude_ = 0;
 };
 static_assert(std::is_trivially_copyable_v<EnvelopeShaper>);
 

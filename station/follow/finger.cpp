@@ -143,8 +143,20 @@ void FingerEstimator::follow(double measured_m, double variance, double step_s) 
                             : 0;
 }
 
+FingerEstimator::FingerEstimator(const EstimatorSettings& settings) : settings_(settings) {
+  const auto& s = settings;
+  need(s.rate_Hz > 0 && std::isfinite(s.first_m) && std::isfinite(s.last_m) && s.first_m < s.last_m,
+       "estimator: the rate is not above 0, or the strip has no length");
+  for (const double value : {s.moment_noise_Nm, s.acceleration_density, s.release_N})
+    need(std::isfinite(value) && value > 0, "estimator: noise, density or force is not above 0");
+  need(std::isfinite(s.skin_m_per_N) && s.skin_m_per_N >= 0, "estimator: the skin is below 0 or not known");
+  need(s.release_N <= s.contact_N && s.contact_N <= s.least_normal_N && std::isfinite(s.least_normal_N),
+       "estimator: release, contact and least normal force do not ascend");
+}
+
 const Finger& FingerEstimator::push(const FingerSample& sample) noexcept {
-  const double step_s = static_cast<double>(sample.frame - finger_.frame) / settings_.rate_Hz;
+  const double step_s =
+      (static_cast<double>(sample.frame) - static_cast<double>(finger_.frame)) / settings_.rate_Hz;
   finger_.frame = sample.frame;
   if (sample.fault != Fault::none || !std::isfinite(sample.normal_N + sample.lateral_N + sample.moment_Nm)) {
     finger_.fault = sample.fault != Fault::none ? sample.fault : Fault::force;
@@ -160,12 +172,17 @@ const Finger& FingerEstimator::push(const FingerSample& sample) noexcept {
   }
   const double measured_m = sample.moment_Nm / sample.normal_N + settings_.skin_m_per_N * sample.lateral_N;
   const double sd_m = settings_.moment_noise_Nm / sample.normal_N;
+  if (!std::isfinite(measured_m)) {
+    finger_.fault = Fault::force;
+    knows_place_ = false;
+    return finger_;
+  }
   if (!knows_place_ || jumps_ > most_jumps)
     start(measured_m, sd_m * sd_m);
   else
     follow(measured_m, sd_m * sd_m, step_s);
   const bool beyond =
-      finger_.place_m < settings_.first_m - beyond_m || finger_.place_m > settings_.last_m + beyond_m;
+      !(finger_.place_m >= settings_.first_m - beyond_m && finger_.place_m <= settings_.last_m + beyond_m);
   finger_.fault = beyond || jumps_ > 0 ? Fault::position : Fault::none;
   return finger_;
 }

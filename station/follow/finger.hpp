@@ -122,7 +122,8 @@ struct Finger {
 class FingerEstimator {
  public:
   FingerEstimator() = default;
-  explicit FingerEstimator(const EstimatorSettings& settings) : settings_(settings) {}
+  /// Throws std::invalid_argument for values that are not finite or not possible.
+  explicit FingerEstimator(const EstimatorSettings& settings);
 
   /// Takes the next sample.
   const Finger& push(const FingerSample& sample) noexcept;

@@ -21,8 +21,16 @@ Follower::Follower(const Plan& plan) : plan_(plan) {
   const Timing& timing = plan_.timing;
   need(timing.rate_Hz > 0 && timing.period_frames >= kGains && timing.period_frames % kGains == 0,
        "follower: the period must be a multiple of 8 frames");
+  for (const double delay_s : {timing.cells_s, timing.converter_s, timing.film_s})
+    need(std::isfinite(delay_s) && delay_s >= 0, "follower: a delay is below 0 or not known");
+  need(timing.window_frames > 0 && timing.buffer_periods >= 0 && plan_.most_age_periods >= 1,
+       "follower: window, buffer or most_age_periods");
+  const Pattern& pattern = plan_.pattern;
+  need(std::isfinite(pattern.base) && pattern.part_count >= 0 && pattern.part_count <= kMostParts,
+       "follower: the pattern has no base, or more than 8 parts");
   need(plan_.resting_gain >= 0 && plan_.resting_gain <= plan_.map.most_gain(), "follower: resting gain");
-  need(plan_.ramp_s > 0 && plan_.resume_s > 0 && plan_.steady_s >= 0, "follower: ramps");
+  need(plan_.ramp_s > 0 && plan_.resume_s > 0 && std::isfinite(plan_.resume_s) && plan_.steady_s >= 0,
+       "follower: ramps");
   need(plan_.envelope.most_gain <= plan_.map.most_gain(),
        "follower: the envelope's limit is above the map's");
   need(plan_.envelope.slew_per_s * plan_.ramp_s >= plan_.envelope.most_gain,
@@ -47,7 +55,7 @@ Follower::Follower(const Plan& plan) : plan_(plan) {
 Fault Follower::judge(std::int64_t output_frame, const FingerSample& newest) noexcept {
   const Timing& timing = plan_.timing;
   const bool left_out = next_frame_ >= 0 && output_frame != next_frame_;
-  const auto age = static_cast<double>(output_frame - newest.frame);
+  const double age = static_cast<double>(output_frame) - static_cast<double>(newest.frame);
   if (left_out || age > normal_age_frames_ + plan_.most_age_periods * timing.period_frames)
     return Fault::late;
   const Fault fault = estimator_.finger().fault;
@@ -153,6 +161,7 @@ const Update& Follower::update(std::int64_t output_frame, const FingerSample& ne
       if (k == kGains / 2) update_.asked = asked, update_.reachable = reachable;
     }
     const double share = std::clamp(following_ + change * step, 0.0, 1.0);
+    if (!std::isfinite(wish_)) wish_ = plan_.resting_gain;
     if (k <= kGains) following = share;
     wish[k] = plan_.resting_gain + share * (wish_ - plan_.resting_gain);
   }

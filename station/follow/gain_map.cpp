@@ -62,7 +62,8 @@ GainMap::GainMap(std::span<const double> x_m, std::span<const double> displaceme
 }
 
 GainMap::Between GainMap::between(double place_m) const noexcept {
-  const double at = std::clamp((place_m - first_m_) / step_m_, 0.0, static_cast<double>(kPlaces - 1));
+  const double steps = (place_m - first_m_) / step_m_;
+  const double at = steps > 0 ? std::min(steps, static_cast<double>(kPlaces - 1)) : 0;  // NaN: 0
   const auto i = std::min(static_cast<std::size_t>(at), static_cast<std::size_t>(kPlaces - 2));
   return {i, at - static_cast<double>(i)};
 }
@@ -83,7 +84,7 @@ double mix(double a, double b, double t) { return a + t * (b - a); }
 
 double GainMap::relative_friction(double place_m, double gain) const noexcept {
   const auto [i, t] = between(place_m);
-  const double share = std::clamp(gain / most_gain_, 0.0, 1.0);
+  const double share = gain > 0 ? std::min(gain / most_gain_, 1.0) : 0;  // NaN: 0
   const double drop = mix(level_of(drop_[i], share), level_of(drop_[i + 1], share), t);
   return 1 - drop * drop;
 }
