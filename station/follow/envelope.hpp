@@ -14,9 +14,9 @@ double envelope_time_constant_s(double quality, double frequency_Hz);
 /// The plate and the limits of the gain.
 struct Envelope {
   double time_constant_s = 0.64e-3;  ///< Q = 60 at 30 kHz
-  double most_gain = 1;
-  double slew_per_s = 8000;  ///< largest change of the gain per second
-  double step_s = 62.5e-6;   ///< distance of the gains: an eighth of a period
+  double most_gain = 1;              ///< that of the GainMap
+  double slew_per_s = 8000;          ///< largest change of the gain per second
+  double step_s = 62.5e-6;           ///< distance of the gains: an eighth of a period
 };
 
 /// Turns wished amplitudes into gains whose envelope follows them: the gain is r + T r' + k (r - a), where r

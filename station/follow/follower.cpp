@@ -31,8 +31,8 @@ Follower::Follower(const Plan& plan) : plan_(plan) {
   need(plan_.resting_gain >= 0 && plan_.resting_gain <= plan_.map.most_gain(), "follower: resting gain");
   need(plan_.ramp_s > 0 && plan_.resume_s > 0 && std::isfinite(plan_.resume_s) && plan_.steady_s >= 0,
        "follower: ramps");
-  need(plan_.envelope.most_gain <= plan_.map.most_gain(),
-       "follower: the envelope's limit is above the map's");
+  need(plan_.envelope.most_gain == plan_.map.most_gain(),
+       "follower: envelope and map must have the same limit of the gain");
   need(plan_.envelope.slew_per_s * plan_.ramp_s >= plan_.envelope.most_gain,
        "follower: the slew limit is too low for the ramp to the resting gain");
   const Delay delay = total_delay(timing);
@@ -67,13 +67,13 @@ double Follower::wish_at(double place_m, double time_s, double& asked, bool& rea
   asked = asked_at(plan_.pattern, state_, place_m, time_s);
   if (plan_.pattern.asked == Asked::displacement) {
     reachable = asked >= 0 && asked <= plan_.map.most_displacement_m(place_m);
-    return std::min(plan_.envelope.most_gain, plan_.map.gain_for_displacement(place_m, asked));
+    return plan_.map.gain_for_displacement(place_m, asked);
   }
   const double resting = plan_.control == Control::closed ? loop_.resting_friction() : plan_.resting_friction;
   const double relative = asked / resting;
   reachable =
       relative >= plan_.map.lowest_friction(place_m) - reach_tolerance && relative <= 1 + reach_tolerance;
-  return std::min(plan_.envelope.most_gain, plan_.map.gain(place_m, relative));
+  return plan_.map.gain(place_m, relative);
 }
 
 double Follower::modelled_at(double frame) const noexcept {

@@ -276,8 +276,13 @@ TEST_CASE("each fault leads to the resting gain within 10 ms, and is named", "[f
 
 TEST_CASE("2000 strokes with random faults: no gain beyond the limit, every verdict explained",
           "[follower]") {
-  const plant::Setup nominal;  // the table and the strip are the same for all
-  const auto common = lab::plan_of(nominal);
+  const plant::Setup nominal;           // the table and the strip are the same for all
+  std::array<follow::Plan, 4> limited;  // most gain 0.7, 0.8, 0.9, 1
+  for (std::size_t k = 0; k < limited.size(); ++k) {
+    limited[k] = lab::plan_of(nominal);
+    limited[k].envelope.most_gain = 0.7 + 0.1 * static_cast<double>(k);
+    limited[k].map = lab::map_of(nominal, lab::table_of(nominal), limited[k].envelope.most_gain);
+  }
   int with_fault = 0, wrong = 0, beyond = 0, steep = 0, unrecovered = 0;
   for (int i = 0; i < 2000; ++i) {
     plant::Dice dice(static_cast<std::uint64_t>(7000 + i));
@@ -295,9 +300,8 @@ TEST_CASE("2000 strokes with random faults: no gain beyond the limit, every verd
                    off = std::max(static_cast<double>(lifts) - period, period - static_cast<double>(lands));
       return lifts < 0 ? normal : normal * std::clamp(off / 8, 0.0, 1.0);  // within 4 ms
     };
-    auto plan = common;
+    auto plan = limited[static_cast<std::size_t>(4 * dice.uniform())];
     plan.resting_friction = s.friction;
-    plan.envelope.most_gain = dice.uniform(0.7, 1.0);
     plan.control = dice.uniform() < 0.5 ? Control::open : Control::closed;
     Part part;
     part.shape = static_cast<Shape>(static_cast<int>(dice.uniform() * 4));
@@ -435,6 +439,7 @@ TEST_CASE("a plan with a value that is not known is refused", "[follower]") {
     change(plan);
     CHECK_THROWS_AS(follow::Follower(plan), std::invalid_argument);
   };
+  refused([](auto& p) { p.envelope.most_gain = 0.5; });  // the map has 1
   refused([](auto& p) { p.timing.film_s = NAN; });
   refused([](auto& p) { p.timing.film_s = -1e-3; });
   refused([](auto& p) { p.timing.converter_s = NAN; });
@@ -497,6 +502,20 @@ TEST_CASE("from the finger's place to the amplitude it takes as long as stated",
   // half a window, at most one period until it is full, and two periods of buffer
   CHECK(took > 1.0e-3 + 0.5e-3);
   CHECK(took < follow::total_delay(plan.timing).total_s + plan.timing.period_frames / 192e3);
+}
+
+TEST_CASE("a loop that its limit of the gain holds back is saturated", "[follower]") {
+  plant::Setup s;
+  s.hand_m = lab::strokes(0.05, 0.13, 0.1);
+  auto plan = lab::plan_of(s);
+  plan.map = lab::map_of(s, lab::table_of(s), 0.4);
+  plan.envelope.most_gain = 0.4;
+  plan.control = Control::closed;
+  plan.pattern.base = 0.4;  // needs a gain of 0.6
+  lab::Lab lab(s, plan);
+  lab.run(0.5);
+  CHECK_FALSE(lab.follower().last().reachable);
+  CHECK(lab.follower().last().fault == Fault::saturated);
 }
 
 TEST_CASE("a displacement is asked for and met", "[follower]") {
