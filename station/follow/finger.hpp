@@ -13,7 +13,7 @@ namespace turnpoint::follow {
 /// given.
 enum class Fault : std::uint8_t {
   none,
-  late,       ///< frames were left out, or the newest sample is too old
+  late,       ///< frames were left out, or the newest sample is too old, or newer than it can be
   reference,  ///< the amplitude of the bridges' excitation is more than 3 % off
   force,   ///< captured frames are missing or come again, a bridge is overloaded, has a wire off, or is dead
   lifted,  ///< the finger is not on the surface

@@ -52,11 +52,13 @@ Follower::Follower(const Plan& plan) : plan_(plan) {
   wish_ = plan_.resting_gain;
 }
 
-Fault Follower::judge(std::int64_t output_frame, const FingerSample& newest) noexcept {
+Fault Follower::judge(std::int64_t output_frame, double newest_age_frames) noexcept {
   const Timing& timing = plan_.timing;
   const bool left_out = next_frame_ >= 0 && output_frame != next_frame_;
-  const double age = static_cast<double>(output_frame) - static_cast<double>(newest.frame);
-  if (left_out || age > normal_age_frames_ + plan_.most_age_periods * timing.period_frames)
+  const double age = static_cast<double>(output_frame) - static_cast<double>(newest_frame_);
+  const bool too_new = newest_age_frames < normal_age_frames_ - timing.period_frames;
+  if (left_out || too_new || newest_frame_ < 0 ||
+      age > normal_age_frames_ + plan_.most_age_periods * timing.period_frames)
     return Fault::late;
   const Fault fault = estimator_.finger().fault;
   if (fault != Fault::none) return fault;
@@ -111,12 +113,14 @@ void Follower::name_interruption(Fault fault) noexcept {
 const Update& Follower::update(std::int64_t output_frame, const FingerSample& newest) noexcept {
   const Timing& timing = plan_.timing;
   if (start_frame_ < 0) start_frame_ = first_frame_ = output_frame;
-  if (newest.frame > newest_frame_) {
+  // A sample from the future is not taken: those that follow would then be older than it.
+  const double age = static_cast<double>(output_frame) - static_cast<double>(newest.frame);
+  if (newest.frame > newest_frame_ && age >= normal_age_frames_ - timing.period_frames) {
     estimator_.push(newest);
     learn(newest);
     newest_frame_ = newest.frame;
   }
-  const Fault fault = judge(output_frame, newest);
+  const Fault fault = judge(output_frame, age);
   if (next_frame_ >= 0 && output_frame != next_frame_) first_frame_ += output_frame - next_frame_;
   next_frame_ = output_frame + timing.period_frames;
   name_interruption(fault);

@@ -74,7 +74,7 @@ class Follower {
  private:
   static constexpr int kHistory = 64;
 
-  Fault judge(std::int64_t output_frame, const FingerSample& newest) noexcept;
+  Fault judge(std::int64_t output_frame, double newest_age_frames) noexcept;
   void name_interruption(Fault fault) noexcept;
   double wish_at(double place_m, double time_s, double& asked, bool& reachable) const noexcept;
   void learn(const FingerSample& newest) noexcept;
