@@ -38,8 +38,13 @@ double EnvelopeShaper::next(double before, double now, double after) noexcept {
   const double rest = keep_ * amplitude_ + from_last_ * gain_;  // the amplitude without this gain
   const double slope = (after - before) / (2 * e.step_s);
   double wish = (now + e.time_constant_s * slope + catch_up_ * (now - rest)) / (1 + catch_up_ * from_this_);
+  return put(std::isfinite(wish) ? wish : start_);
+}
+
+double EnvelopeShaper::put(double wish) noexcept {
+  const Envelope& e = envelope_;
+  const double rest = keep_ * amplitude_ + from_last_ * gain_;
   const double change = e.slew_per_s * e.step_s;
-  if (!std::isfinite(wish)) wish = start_;
   gain_ = std::clamp(std::clamp(wish, gain_ - change, gain_ + change), 0.0, e.most_gain);
   amplitude_ = rest + from_this_ * gain_;
   return gain_;

@@ -35,6 +35,8 @@ class EnvelopeShaper {
   /// The gain at `now`, from the wish one step before, at, and one step after it. A wish that is not finite
   /// counts as the start.
   double next(double before, double now, double after) noexcept;
+  /// Takes this gain as it is, within limit and slew, without the inverse. Returns the gain.
+  double put(double gain) noexcept;
   double gain() const noexcept { return gain_; }
   double amplitude() const noexcept { return amplitude_; }  ///< the modelled envelope
   const Envelope& envelope() const noexcept { return envelope_; }

@@ -1,5 +1,7 @@
 #include "station/follow/follower.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,7 +17,20 @@ namespace {
 constexpr double saturation_s = 0.1, saturated_share = 0.86, free_share = 0.5;
 constexpr double reach_tolerance = 0.01;  // of relative friction
 
+/// The nearest number that is not above the value.
+float not_above(double value) {
+  const auto near = static_cast<float>(value);
+  return static_cast<double>(near) > value ? std::nextafter(near, 0.0f) : near;
+}
+
 }  // namespace
+
+double until_rest_s(const Plan& plan) {
+  const Timing& t = plan.timing;
+  const double certain = std::max(plan.most_age_periods * t.period_frames, t.window_frames);
+  return (certain + (t.buffer_periods + 1 + 1.0 / kGains) * t.period_frames) / t.rate_Hz + t.converter_s +
+         plan.ramp_s;
+}
 
 Follower::Follower(const Plan& plan) : plan_(plan) {
   const Timing& timing = plan_.timing;
@@ -37,6 +52,10 @@ Follower::Follower(const Plan& plan) : plan_(plan) {
        "follower: the slew limit is too low for the ramp to the resting gain");
   const Delay delay = total_delay(timing);
   if (delay.refused()) throw std::invalid_argument("follower: " + sentence(delay));
+  if (!(until_rest_s(plan_) <= kMostUntilRest_s))
+    throw std::invalid_argument(fmt::format(
+        "follower: {:.1f} ms from a fault to the resting gain, of them {:.1f} ms of ramp; allowed: {:.0f} ms",
+        1e3 * until_rest_s(plan_), 1e3 * plan_.ramp_s, 1e3 * kMostUntilRest_s));
   period_s_ = static_cast<double>(timing.period_frames) / timing.rate_Hz;
   lead_frames_ = (timing.cells_s + timing.film_s) * timing.rate_Hz;
   normal_age_frames_ = 0.5 * timing.window_frames + timing.buffer_periods * timing.period_frames +
@@ -46,7 +65,7 @@ Follower::Follower(const Plan& plan) : plan_(plan) {
   plan_.estimator.first_m = plan_.map.first_m();
   plan_.estimator.last_m = plan_.map.last_m();
   estimator_ = FingerEstimator(plan_.estimator);
-  shaper_ = EnvelopeShaper(plan_.envelope);
+  shaper_ = EnvelopeShaper(plan_.envelope, plan_.resting_gain);
   loop_ = FrictionLoop(plan_.loop, plan_.resting_friction, period_s_);
   history_.fill(1);
   wish_ = plan_.resting_gain;
@@ -148,11 +167,14 @@ const Update& Follower::update(std::int64_t output_frame, const FingerSample& ne
   const bool interrupted = fault != Fault::none || (interruption_ != Fault::none && following_ > 0);
   steady_s_ = interrupted ? 0 : steady_s_ + period_s_;
   if (steady_s_ >= plan_.steady_s) earlier_ = update_.interrupted, interruption_ = Fault::none;
-  const double change = interrupted                   ? -period_s_ / kGains / plan_.ramp_s
+  // The ramp after a fault begins at the gain of that moment, and always takes ramp_s.
+  if (!interrupted) leaving_ = false;
+  if (interrupted && !leaving_) leaving_ = true, leave_share_ = following_, leave_gain_ = shaper_.gain();
+  const double change = interrupted                   ? -leave_share_ * period_s_ / kGains / plan_.ramp_s
                         : steady_s_ >= plan_.steady_s ? period_s_ / kGains / plan_.resume_s
                                                       : 0;
   // wishes from one step before the first gain to one step after the last
-  std::array<double, kGains + 2> wish{};
+  std::array<double, kGains + 2> wish{}, share{};
   double following = following_;
   for (std::size_t k = 0; k < wish.size(); ++k) {
     const auto step = static_cast<double>(k);
@@ -164,17 +186,26 @@ const Update& Follower::update(std::int64_t output_frame, const FingerSample& ne
       if (k < kGains) asked_ = asked;
       if (k == kGains / 2) update_.asked = asked, update_.reachable = reachable;
     }
-    const double share = std::clamp(following_ + change * step, 0.0, 1.0);
+    share[k] = std::clamp(following_ + change * step, 0.0, 1.0);
     if (!std::isfinite(wish_)) wish_ = plan_.resting_gain;
-    if (k <= kGains) following = share;
-    wish[k] = plan_.resting_gain + share * (wish_ - plan_.resting_gain);
+    if (k <= kGains) following = share[k];
+    wish[k] = plan_.resting_gain + share[k] * (wish_ - plan_.resting_gain);
   }
   following_ = following;
   update_.following = static_cast<float>(following_);
   update_.place_m = middle_m;
 
   for (std::size_t k = 0; k < kGains; ++k) {
-    update_.gain[k] = static_cast<float>(shaper_.next(wish[k], wish[k + 1], wish[k + 2]));
+    // Without following, and on the way there, the gain itself goes in a straight line: the inverse of a slow
+    // plate would swing around the resting gain.
+    double gain = 0;
+    if (leaving_ || following_ <= 0) {
+      const double left = leave_share_ > 0 ? share[k + 1] / leave_share_ : 0;
+      gain = shaper_.put(plan_.resting_gain + left * (leave_gain_ - plan_.resting_gain));
+    } else {
+      gain = shaper_.next(wish[k], wish[k + 1], wish[k + 2]);
+    }
+    update_.gain[k] = not_above(gain);
     if (k == kGains / 2 - 1) {
       const double relative = plan_.map.relative_friction(middle_m, shaper_.amplitude());
       history_[static_cast<std::size_t>(periods_ % kHistory)] = static_cast<float>(relative);

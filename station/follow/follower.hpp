@@ -32,12 +32,18 @@ struct Plan {
   Control control = Control::open;
   double resting_friction = 1;  ///< coefficient of friction of the surface at rest, as measured
   double resting_gain = 0;      ///< without a finger, and after a fault
-  double ramp_s = 5e-3;         ///< from following to the resting gain
+  double ramp_s = 5e-3;         ///< from the gain at a fault to the resting gain, in a straight line
   double resume_s = 10e-3;      ///< from there to following, after `steady_s` without a fault
   double steady_s = 5e-3;
   int most_age_periods = 4;  ///< of the newest sample beyond its normal age; older: Fault::late
 };
 static_assert(std::is_trivially_copyable_v<Plan>);
+
+/// A fault must lead to the resting gain within this time.
+inline constexpr double kMostUntilRest_s = 0.010;
+/// The longest time from a fault to the resting gain: until it is certain (a window, or the age at which a
+/// sample is late), a period until it is seen, the buffer, the converters, and the ramp.
+double until_rest_s(const Plan& plan);
 
 /// What one update gives: the gains of a period, and what was asked, commanded and felt.
 struct Update {
@@ -61,7 +67,8 @@ static_assert(std::is_trivially_copyable_v<Update>);
 class Follower {
  public:
   /// Throws std::invalid_argument for impossible settings and for a delay that is refused (with the sentence
-  /// of delay.hpp).
+  /// of delay.hpp), and if until_rest_s() is above kMostUntilRest_s. Until the first update the gain must be
+  /// the resting gain.
   explicit Follower(const Plan& plan);
 
   /// The gains of the period that begins at this playback frame. `newest` is the newest sample; if there is
@@ -91,9 +98,9 @@ class Follower {
   std::int64_t first_frame_ =
       -1;  ///< of the first period of the history, moved on by frames that were left out
   std::int64_t next_frame_ = -1, newest_frame_ = -1;
-  double following_ = 0, steady_s_ = 0, saturated_ = 0, wish_ = 0;
+  double following_ = 0, leave_share_ = 0, leave_gain_ = 0, steady_s_ = 0, saturated_ = 0, wish_ = 0;
   double asked_ = 0;  ///< friction asked for at the last gain
-  bool saturation_ = false;
+  bool saturation_ = false, leaving_ = false;
   Fault interruption_ = Fault::none;  ///< what has interrupted following, until it resumes
   std::uint32_t earlier_ = 0;         ///< Update::interrupted before that
   /// relative friction by table and modelled envelope at the middle of the newest periods

@@ -469,6 +469,8 @@ TEST_CASE("the delay is stated, and one that is too long is refused", "[follower
   CHECK(follow::sentence(slow).find("allowed: 4 ms") != std::string::npos);
   plant::Setup s;
   auto plan = lab::plan_of(s);
+  plan.timing.period_frames = 192;  // 12.2 ms until rest, with four periods until a sample is late
+  CHECK_THROWS_WITH(follow::Follower(plan), Catch::Matchers::ContainsSubstring("allowed: 10 ms"));
   plan.timing.period_frames = 256;
   CHECK_THROWS_WITH(follow::Follower(plan), Catch::Matchers::ContainsSubstring("allowed: 4 ms"));
   plan.timing.period_frames = 100;
@@ -538,6 +540,54 @@ TEST_CASE("a capture clock that jumps or steps back is late, not silent", "[foll
       if (k > 5) CHECK(bare.follower.last().fault == Fault::late);
     }
     CHECK(bare.follower.last().gain[7] == 0);
+  }
+}
+
+TEST_CASE("the resting gain comes within 10 ms for every plate and period that is accepted", "[follower]") {
+  struct Case {
+    double quality, resting;
+    int period, most_age;
+    double ramp_s, converter_s;
+  };
+  for (const auto& c : std::vector<Case>{{60, 0, 96, 4, 5e-3, 0},
+                                         {60, 0.3, 96, 4, 5e-3, 1e-3},
+                                         {500, 0.1, 96, 4, 5e-3, 0},
+                                         {500, 0, 96, 4, 5e-3, 1e-3},
+                                         {500, 0.1, 192, 2, 4e-3, 0},
+                                         {60, 0.1, 32, 12, 5e-3, 1e-3}}) {
+    auto plan = still_plan();
+    plan.envelope.time_constant_s = follow::envelope_time_constant_s(c.quality, 30000);
+    plan.timing.period_frames = c.period, plan.timing.converter_s = c.converter_s;
+    plan.resting_gain = c.resting, plan.most_age_periods = c.most_age, plan.ramp_s = c.ramp_s;
+    for (const Fault fault : {Fault::late, Fault::reference}) {
+      Bare bare(plan);
+      while (bare.output_s() < 0.2) bare.update(bare.still());
+      const auto& update = bare.follower.last();
+      REQUIRE(update.following == 1);
+      const auto stuck = bare.still();
+      // The last good sample, and the end of what was captured for it, in seconds.
+      const double begun_s =
+          static_cast<double>(stuck.frame + plan.timing.window_frames / 2) / plan.timing.rate_Hz;
+      double away_s = 0;
+      while (bare.output_s() < 0.24) {
+        auto x = fault == Fault::late ? stuck : bare.still();
+        // a window is full of the fault only after its length
+        const double end_s =
+            static_cast<double>(x.frame + plan.timing.window_frames / 2) / plan.timing.rate_Hz;
+        if (fault == Fault::reference && end_s > begun_s + 1.5e-3) x.fault = fault;
+        const double from_s = bare.output_s(), step_s = c.period / 192e3 / follow::kGains;
+        bare.update(x);
+        for (std::size_t k = 0; k < follow::kGains; ++k)
+          if (std::abs(static_cast<double>(update.gain[k]) - c.resting) > 1e-6)
+            away_s = from_s + static_cast<double>(k + 1) * step_s;
+      }
+      UNSCOPED_INFO("Q " << c.quality << ", " << c.period << " frames, " << follow::name(fault)
+                         << ": at rest after " << 1e3 * (away_s - begun_s) << " ms");
+      CHECK(away_s > begun_s);
+      CHECK(away_s - begun_s <= 10e-3);
+      CHECK(away_s - begun_s <= follow::until_rest_s(plan));
+      CHECK(static_cast<double>(update.gain[7]) == Approx(c.resting).margin(1e-6));
+    }
   }
 }
 
