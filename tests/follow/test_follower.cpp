@@ -591,6 +591,14 @@ TEST_CASE("the resting gain comes within 10 ms for every plate and period that i
   }
 }
 
+TEST_CASE("a trial begins at the resting gain", "[follower]") {
+  auto plan = still_plan();
+  plan.resting_gain = 0.3;
+  Bare bare(plan);
+  for (int k = 0; k < 20; ++k)
+    for (const float gain : bare.update(bare.still(0)).gain) CHECK(static_cast<double>(gain) == Approx(0.3));
+}
+
 TEST_CASE("a displacement is asked for and met", "[follower]") {
   plant::Setup s;
   s.hand_m = lab::strokes(0.05, 0.13, 0.1);
