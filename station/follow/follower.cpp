@@ -123,8 +123,11 @@ void Follower::learn(const FingerSample& newest) noexcept {
 void Follower::name_interruption(Fault fault) noexcept {
   if (fault == Fault::none) return;
   // A finger that leaves is too light to tell its place at first.
-  const bool leaves = interruption_ == Fault::position && fault == Fault::lifted;
-  if (following_ > 0 && (interruption_ == Fault::none || leaves)) interruption_ = fault;
+  const bool leaves = interruption_ == Fault::position && too_light_ && fault == Fault::lifted;
+  if ((following_ > 0 && interruption_ == Fault::none) || leaves) {
+    interruption_ = fault;
+    too_light_ = estimator_.finger().normal_N < plan_.estimator.least_normal_N;
+  }
   update_.interrupted = earlier_;
   if (interruption_ != Fault::none) update_.interrupted |= 1u << static_cast<unsigned>(interruption_);
 }

@@ -57,7 +57,8 @@ struct Update {
   float following = 0;          ///< 0: resting gain; 1: the gain follows the finger
   Fault fault = Fault::lifted;
   /// Bit n: Fault n has interrupted following since the start. Faults that come while following has not yet
-  /// resumed belong to the first; but a place that is lost just before the finger lifts counts as lifted.
+  /// resumed belong to the first; but if the finger was too light to tell its place, and then lifts, that
+  /// counts as lifted.
   std::uint32_t interrupted = 0;
 };
 static_assert(std::is_trivially_copyable_v<Update>);
@@ -100,7 +101,7 @@ class Follower {
   std::int64_t next_frame_ = -1, newest_frame_ = -1;
   double following_ = 0, leave_share_ = 0, leave_gain_ = 0, steady_s_ = 0, saturated_ = 0, wish_ = 0;
   double asked_ = 0;  ///< friction asked for at the last gain
-  bool saturation_ = false, leaving_ = false;
+  bool saturation_ = false, leaving_ = false, too_light_ = false;
   Fault interruption_ = Fault::none;  ///< what has interrupted following, until it resumes
   std::uint32_t earlier_ = 0;         ///< Update::interrupted before that
   /// relative friction by table and modelled envelope at the middle of the newest periods

@@ -599,6 +599,28 @@ TEST_CASE("a trial begins at the resting gain", "[follower]") {
     for (const float gain : bare.update(bare.still(0)).gain) CHECK(static_cast<double>(gain) == Approx(0.3));
 }
 
+TEST_CASE("a finger that lifts slowly is lifted, not lost", "[follower]") {
+  for (const double normal : {0.25, 0.5, 2.0})
+    for (const int periods : {2, 40, 100, 200}) {  // 1, 20, 50, 100 ms
+      Bare bare(still_plan());
+      for (int k = 0; k < 200; ++k) bare.update(bare.still(normal));
+      for (int k = 0; k < periods; ++k) bare.update(bare.still(normal * (1 - (k + 1.0) / periods)));
+      for (int k = 0; k < 50; ++k) bare.update(bare.still(0));
+      CAPTURE(normal, periods);
+      CHECK(bare.follower.last().interrupted == 1u << static_cast<unsigned>(Fault::lifted));
+    }
+  // a place that is lost for another reason stays what it was
+  Bare bare(still_plan());
+  for (int k = 0; k < 200; ++k) bare.update(bare.still());
+  for (int k = 0; k < 40; ++k) {
+    auto x = bare.still();
+    x.moment_Nm = 0.25 * x.normal_N;
+    bare.update(x);
+  }
+  for (int k = 0; k < 50; ++k) bare.update(bare.still(0));
+  CHECK(bare.follower.last().interrupted == 1u << static_cast<unsigned>(Fault::position));
+}
+
 TEST_CASE("a displacement is asked for and met", "[follower]") {
   plant::Setup s;
   s.hand_m = lab::strokes(0.05, 0.13, 0.1);
