@@ -184,9 +184,14 @@ const Update& Follower::update(std::int64_t output_frame, const FingerSample& ne
     if (placed) {
       double asked = 0;
       bool reachable = true;
-      wish_ = wish_at(estimator_.place_at(frame_of(step) + lead) - stretch_m,
-                      start_s + step * period_s_ / kGains, asked, reachable);
-      if (k < kGains) asked_ = asked;
+      const double place = estimator_.place_at(frame_of(step) + lead) - stretch_m;
+      wish_ = wish_at(place, start_s + step * period_s_ / kGains, asked, reachable);
+      // what can be felt of it
+      if (k < kGains) {
+        const double resting =
+            plan_.control == Control::closed ? loop_.resting_friction() : plan_.resting_friction;
+        asked_ = resting * std::clamp(asked / resting, plan_.map.lowest_friction(place), 1.0);
+      }
       if (k == kGains / 2) update_.asked = asked, update_.reachable = reachable;
     }
     share[k] = std::clamp(following_ + change * step, 0.0, 1.0);

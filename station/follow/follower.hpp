@@ -100,7 +100,7 @@ class Follower {
       -1;  ///< of the first period of the history, moved on by frames that were left out
   std::int64_t next_frame_ = -1, newest_frame_ = -1;
   double following_ = 0, leave_share_ = 0, leave_gain_ = 0, steady_s_ = 0, saturated_ = 0, wish_ = 0;
-  double asked_ = 0;  ///< friction asked for at the last gain
+  double asked_ = 0;  ///< friction asked for at the last gain, as far as it can be felt
   bool saturation_ = false, leaving_ = false, too_light_ = false;
   Fault interruption_ = Fault::none;  ///< what has interrupted following, until it resumes
   std::uint32_t earlier_ = 0;         ///< Update::interrupted before that

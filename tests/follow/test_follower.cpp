@@ -621,6 +621,34 @@ TEST_CASE("a finger that lifts slowly is lifted, not lost", "[follower]") {
   CHECK(bare.follower.last().interrupted == 1u << static_cast<unsigned>(Fault::position));
 }
 
+TEST_CASE("friction that is asked for in vain does not shift the place", "[follower]") {
+  for (const double base : {1.2, 0.05}) {
+    plant::Setup s;
+    s.friction = 0.8, s.noise_N = 0;
+    s.press_N = [](double) { return 1.0; };
+    s.hand_m = [](double t) { return 0.03 + 0.1 * t; };
+    auto plan = lab::plan_of(s);
+    plan.pattern.base = base;
+    lab::Lab lab(s, plan);
+    std::vector<double> place;
+    double worst = 0;
+    lab::Hooks hooks;
+    hooks.moment = [&](const lab::Moment& m) { place.push_back(m.place_m); };
+    std::vector<std::pair<std::size_t, double>> predicted;
+    hooks.update = [&](std::int64_t period, const follow::Update& update) {
+      // the middle of that period and the film
+      if (period > 400)
+        predicted.emplace_back((static_cast<std::size_t>(period) + 3) * 8 + 12, update.place_m);
+    };
+    lab.run(0.9, hooks);
+    for (const auto& [at, told] : predicted)
+      if (at < place.size()) worst = std::max(worst, std::abs(told - place[at]));
+    CAPTURE(base, worst);
+    CHECK(predicted.size() > 100);
+    CHECK(worst < 0.1e-3);
+  }
+}
+
 TEST_CASE("a displacement is asked for and met", "[follower]") {
   plant::Setup s;
   s.hand_m = lab::strokes(0.05, 0.13, 0.1);
