@@ -18,7 +18,7 @@ enum class Fault : std::uint8_t {
   force,   ///< captured frames are missing or come again, a bridge is overloaded, has a wire off, or is dead
   lifted,  ///< the finger is not on the surface
   position,  ///< the normal force is too small to tell the place, the place is beyond the strip, or it jumped
-  saturated  ///< the loop has asked for friction beyond the finger's reach for most of the last 0.2 s
+  saturated  ///< friction below the finger's reach has been asked of the loop for most of the last 0.2 s
 };
 inline constexpr int kFaults = 7;
 const char* name(Fault fault) noexcept;

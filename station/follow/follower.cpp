@@ -225,7 +225,9 @@ const Update& Follower::update(std::int64_t output_frame, const FingerSample& ne
   ++periods_;
 
   if (plan_.control == Control::closed && plan_.pattern.asked == Asked::friction && placed) {
-    saturated_ += period_s_ / saturation_s * ((update_.reachable ? 0.0 : 1.0) - saturated_);
+    // More than the friction at rest is not counted: there the best answer is no drive, and it is given.
+    const bool too_little = !update_.reachable && update_.asked < update_.resting_friction;
+    saturated_ += period_s_ / saturation_s * ((too_little ? 1.0 : 0.0) - saturated_);
     if (saturated_ > saturated_share) saturation_ = true;
     if (saturated_ < free_share) saturation_ = false;
   }

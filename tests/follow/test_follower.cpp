@@ -649,6 +649,25 @@ TEST_CASE("friction that is asked for in vain does not shift the place", "[follo
   }
 }
 
+TEST_CASE("the surface at rest can be asked for in a closed loop, also if its friction falls", "[follower]") {
+  plant::Setup s;
+  s.friction = 0.8;
+  s.hand_m = lab::strokes(0.05, 0.13, 0.1);
+  auto plan = lab::plan_of(s);
+  plan.control = Control::closed;
+  plan.pattern.base = 0.8;
+  s.friction = 0.7;
+  lab::Lab lab(s, plan);
+  lab.run(1.0);
+  const auto& last = lab.follower().last();
+  CHECK(last.resting_friction == Approx(0.7).epsilon(0.02));
+  CHECK_FALSE(last.reachable);
+  CHECK(last.fault == Fault::none);
+  CHECK(last.interrupted == 0);
+  CHECK(last.following == 1);
+  CHECK(last.gain[7] == Approx(0).margin(0.02));
+}
+
 TEST_CASE("a displacement is asked for and met", "[follower]") {
   plant::Setup s;
   s.hand_m = lab::strokes(0.05, 0.13, 0.1);
