@@ -44,8 +44,7 @@ Follower::Follower(const Plan& plan) : plan_(plan) {
   need(std::isfinite(pattern.base) && pattern.part_count >= 0 && pattern.part_count <= kMostParts,
        "follower: the pattern has no base, or more than 8 parts");
   need(plan_.resting_gain >= 0 && plan_.resting_gain <= plan_.map.most_gain(), "follower: resting gain");
-  need(plan_.ramp_s > 0 && plan_.resume_s > 0 && std::isfinite(plan_.resume_s) && plan_.steady_s >= 0,
-       "follower: ramps");
+  need(plan_.ramp_s > 0 && plan_.resume_s > 0 && std::isfinite(plan_.resume_s), "follower: ramps");
   need(plan_.envelope.most_gain == plan_.map.most_gain(),
        "follower: envelope and map must have the same limit of the gain");
   need(plan_.envelope.slew_per_s * plan_.ramp_s >= plan_.envelope.most_gain,
@@ -57,6 +56,7 @@ Follower::Follower(const Plan& plan) : plan_(plan) {
         "follower: {:.1f} ms from a fault to the resting gain, of them {:.1f} ms of ramp; allowed: {:.0f} ms",
         1e3 * until_rest_s(plan_), 1e3 * plan_.ramp_s, 1e3 * kMostUntilRest_s));
   period_s_ = static_cast<double>(timing.period_frames) / timing.rate_Hz;
+  need(plan_.steady_s >= period_s_ && std::isfinite(plan_.steady_s), "follower: steady_s is below a period");
   lead_frames_ = (timing.cells_s + timing.film_s) * timing.rate_Hz;
   normal_age_frames_ = 0.5 * timing.window_frames + timing.buffer_periods * timing.period_frames +
                        timing.converter_s * timing.rate_Hz;
@@ -122,6 +122,7 @@ void Follower::learn(const FingerSample& newest) noexcept {
 
 void Follower::name_interruption(Fault fault) noexcept {
   if (fault == Fault::none) return;
+  update_.seen |= 1u << static_cast<unsigned>(fault);
   // A finger that leaves is too light to tell its place at first.
   const bool leaves = interruption_ == Fault::position && too_light_ && fault == Fault::lifted;
   if ((following_ > 0 && interruption_ == Fault::none) || leaves) {

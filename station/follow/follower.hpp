@@ -54,14 +54,16 @@ struct Update {
   double felt = 0;              ///< measured friction of the newest sample; NaN if the finger does not slide
   double resting_friction = 0;  ///< as the loop estimates it
   bool reachable = true;        ///< false if `asked` is beyond the finger's reach at that place
-  float following = 0;          ///< 0: resting gain; 1: the gain follows the finger
   Fault fault = Fault::lifted;
+  float following = 0;  ///< 0: resting gain; 1: the gain follows the finger
   /// Bit n: Fault n has interrupted following since the start. Faults that come while following has not yet
   /// resumed belong to the first; but if the finger was too light to tell its place, and then lifts, that
   /// counts as lifted.
   std::uint32_t interrupted = 0;
+  /// Bit n: Fault n has been seen since the start, also at rest.
+  std::uint32_t seen = 0;
 };
-static_assert(std::is_trivially_copyable_v<Update>);
+static_assert(std::is_trivially_copyable_v<Update> && sizeof(Update) == 96);
 
 /// Computes the gain of a drive plan from what the finger does, period by period. Fixed size; after the
 /// constructor nothing allocates, locks, throws or waits. One thread at a time.

@@ -440,6 +440,7 @@ TEST_CASE("a plan with a value that is not known is refused", "[follower]") {
     CHECK_THROWS_AS(follow::Follower(plan), std::invalid_argument);
   };
   refused([](auto& p) { p.envelope.most_gain = 0.5; });  // the map has 1
+  refused([](auto& p) { p.steady_s = 0; });
   refused([](auto& p) { p.timing.film_s = NAN; });
   refused([](auto& p) { p.timing.film_s = -1e-3; });
   refused([](auto& p) { p.timing.converter_s = NAN; });
@@ -666,6 +667,18 @@ TEST_CASE("the surface at rest can be asked for in a closed loop, also if its fr
   CHECK(last.interrupted == 0);
   CHECK(last.following == 1);
   CHECK(last.gain[7] == Approx(0).margin(0.02));
+}
+
+TEST_CASE("a fault before the first contact is in the record", "[follower]") {
+  Bare bare(still_plan());
+  for (int k = 0; k < 200; ++k) {
+    auto x = bare.still();
+    x.fault = Fault::reference;
+    bare.update(x);
+  }
+  CHECK(bare.follower.last().interrupted == 0);
+  CHECK((bare.follower.last().seen & 1u << static_cast<unsigned>(Fault::reference)) != 0);
+  CHECK((bare.follower.last().seen & 1u << static_cast<unsigned>(Fault::force)) == 0);
 }
 
 TEST_CASE("a displacement is asked for and met", "[follower]") {
