@@ -153,7 +153,6 @@ const Update& Follower::update(std::int64_t output_frame, const FingerSample& ne
   const double lead = lead_frames_, step_frames = static_cast<double>(timing.period_frames) / kGains;
   const double start_s = static_cast<double>(output_frame - start_frame_) / timing.rate_Hz;
   const bool placed = finger.fault == Fault::none && fault != Fault::late;
-  const bool touching = finger.contact && (finger.fault == Fault::none || finger.fault == Fault::position);
   const auto frame_of = [&](double step) { return static_cast<double>(output_frame) + step * step_frames; };
   update_.speed_m_s = placed ? finger.speed_m_s : 0;
   // While the finger slides, the stretch of its skin is that of the asked friction; otherwise it is as
@@ -165,7 +164,11 @@ const Update& Follower::update(std::int64_t output_frame, const FingerSample& ne
   const double stretch_m = slides ? skin * pull_N * asked_ : skin * finger.lateral_N;
   const double middle_m =
       placed ? estimator_.place_at(frame_of(0.5 * kGains) + lead) - stretch_m : update_.place_m;
-  note(plan_.pattern, state_, {start_s, middle_m, update_.speed_m_s, finger.normal_N, touching});
+  // While the force is not known, nobody knows whether the finger has lifted.
+  const bool force_known =
+      finger.fault != Fault::reference && finger.fault != Fault::force && fault != Fault::late;
+  if (force_known)
+    note(plan_.pattern, state_, {start_s, middle_m, update_.speed_m_s, finger.normal_N, finger.contact});
 
   // An interruption leads to the resting gain, however short the fault is.
   const bool interrupted = fault != Fault::none || (interruption_ != Fault::none && following_ > 0);

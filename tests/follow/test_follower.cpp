@@ -681,6 +681,29 @@ TEST_CASE("a fault before the first contact is in the record", "[follower]") {
   CHECK((bare.follower.last().seen & 1u << static_cast<unsigned>(Fault::force)) == 0);
 }
 
+TEST_CASE("an event does not come again when a fault is over", "[follower]") {
+  for (const Fault fault : {Fault::reference, Fault::force}) {
+    auto plan = still_plan(1);
+    Part click;
+    click.to = 0.5, click.trigger.event = follow::Event::force, click.trigger.threshold = 1;
+    click.trigger.lasts_s = 20e-3;
+    add(plan.pattern, click);
+    Bare bare(plan);
+    int clicks = 0;
+    double last = 1;
+    for (int k = 0; k < 600; ++k) {
+      auto x = bare.still(k < 200 ? 0.5 : 1.5);
+      if (k == 400) x.fault = fault;
+      const auto& update = bare.update(x);
+      if (std::isfinite(update.asked) && update.asked > 0) {
+        clicks += update.asked == 0.5 && last != 0.5;
+        last = update.asked;
+      }
+    }
+    CHECK(clicks == 1);
+  }
+}
+
 TEST_CASE("a displacement is asked for and met", "[follower]") {
   plant::Setup s;
   s.hand_m = lab::strokes(0.05, 0.13, 0.1);
