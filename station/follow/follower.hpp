@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 #include "station/follow/delay.hpp"
@@ -51,9 +52,10 @@ struct Update {
   double place_m = 0, speed_m_s = 0;  ///< predicted for the middle of the period; speed of the newest sample
   double asked = 0;                   ///< friction or displacement at that place
   double modelled = 0;                ///< friction there, by the table and the modelled envelope
-  double felt = 0;              ///< measured friction of the newest sample; NaN if the finger does not slide
-  double resting_friction = 0;  ///< as the loop estimates it
-  bool reachable = true;        ///< false if `asked` is beyond the finger's reach at that place
+  double felt = std::numeric_limits<double>::quiet_NaN();  ///< measured friction of the newest sample; NaN if
+                                                           ///< the finger does not slide
+  double resting_friction = 0;                             ///< as the loop estimates it
+  bool reachable = true;  ///< false if `asked` is beyond the finger's reach at that place
   Fault fault = Fault::lifted;
   float following = 0;  ///< 0: resting gain; 1: the gain follows the finger
   /// Bit n: Fault n has interrupted following since the start. Faults that come while following has not yet

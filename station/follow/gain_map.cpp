@@ -26,6 +26,10 @@ GainMap::GainMap(std::span<const double> x_m, std::span<const double> displaceme
   if (!(std::isfinite(most_gain) && most_gain > 0)) throw std::invalid_argument("most_gain must be above 0");
   for (const double value : displacement_m)
     if (!(std::isfinite(value) && value >= 0)) throw std::invalid_argument("a displacement is below 0");
+  if (!(std::isfinite(fingertip_m) && fingertip_m >= 0))
+    throw std::invalid_argument("the length of the fingertip is below 0");
+  for (std::size_t i = 1; i < x_m.size(); ++i)
+    if (!(x_m[i] > x_m[i - 1])) throw std::invalid_argument("the places do not ascend");
   const auto under = physics::fingertip_average(x_m, displacement_m, fingertip_m);
   first_m_ = x_m.front();
   step_m_ = (x_m.back() - x_m.front()) / (kPlaces - 1);
@@ -100,6 +104,7 @@ double GainMap::gain(double place_m, double relative_friction) const noexcept {
 
 double GainMap::gain_for_displacement(double place_m, double displacement_m) const noexcept {
   const double most = most_displacement_m(place_m);
+  if (!(displacement_m > 0)) return 0;
   return displacement_m >= most ? most_gain_ : most_gain_ * std::max(0.0, displacement_m / most);
 }
 
