@@ -10,7 +10,7 @@
 namespace turnpoint::follow {
 namespace {
 
-constexpr double catch_up_steps = 2.5;
+constexpr double catch_up_steps = 2.5, most_steps = 200000;
 
 }  // namespace
 
@@ -61,22 +61,28 @@ double bandwidth_Hz(const Envelope& e, double mean, double swing) {
   return std::min(by_limit, by_slew) / (2 * std::numbers::pi);
 }
 
-Presented presented(const Pattern& pattern, const Part& texture, const GainMap& map, const Envelope& envelope,
-                    double resting_friction, double place_m, double speed_m_s) {
+Presented presented(const Pattern& below, const Part& texture, const GainMap& map, const Envelope& limits,
+                    double period_s, double resting_friction, double place_m, double speed_m_s) {
   const bool waves = texture.shape == Shape::sine || texture.shape == Shape::square ||
                      texture.shape == Shape::triangle || texture.shape == Shape::table;
-  const double frequency = std::abs(texture.cycles_per_m * speed_m_s);
-  if (!waves || !(frequency > 0)) throw std::invalid_argument("presented: needs a texture and a speed");
-  Pattern alone = pattern;
+  // cycles per second under the finger
+  const double cycles_per_s = texture.cycles_per_m * speed_m_s + texture.cycles_per_s;
+  const double frequency = std::abs(cycles_per_s);
+  Envelope envelope = limits;
+  envelope.step_s = period_s / kGains;
+  if (limits.most_gain != map.most_gain()) throw std::invalid_argument("presented: two limits of the gain");
+  if (!waves || !(frequency * most_steps * envelope.step_s >= 1))
+    throw std::invalid_argument("presented: needs a texture that varies under the finger");
+  Pattern alone = below;
+  alone.base = asked_at(below, {}, place_m, 0);
   alone.part_count = 1;
   alone.parts[0] = texture;
-  alone.parts[0].combine = Combine::replace;
   alone.parts[0].trigger = {};
   alone.parts[0].begin_m = -std::numeric_limits<double>::infinity();
   alone.parts[0].end_m = std::numeric_limits<double>::infinity();
-  alone.parts[0].cycles_per_s = texture.cycles_per_m * speed_m_s;  // passes under a finger that stays
+  alone.parts[0].cycles_per_s = cycles_per_s;  // passes under a finger that stays
   alone.parts[0].cycles_per_m = 0;
-  const bool friction = pattern.asked == Asked::friction;
+  const bool friction = below.asked == Asked::friction;
   const double most_m = map.most_displacement_m(place_m);
   const auto wish = [&](double time_s) {
     const double asked = asked_at(alone, {}, place_m, time_s);
@@ -90,8 +96,10 @@ Presented presented(const Pattern& pattern, const Part& texture, const GainMap& 
   Presented result;
   result.frequency_Hz = frequency;
   const double step = envelope.step_s, per_cycle = 1 / (frequency * step);
-  const int warm = static_cast<int>(std::ceil(std::max(per_cycle, 8 * envelope.time_constant_s / step)));
-  const int count = static_cast<int>(std::lround(std::max(4.0, std::ceil(200 / per_cycle)) * per_cycle));
+  const int warm = static_cast<int>(
+      std::min(most_steps, std::ceil(std::max(per_cycle, 8 * envelope.time_constant_s / step))));
+  const int count = static_cast<int>(
+      std::lround((per_cycle > 1e4 ? 1 : std::max(4.0, std::ceil(200 / per_cycle))) * per_cycle));
   EnvelopeShaper shaper(envelope);
   std::complex<double> asked_1, felt_1;
   double asked_mean = 0, square = 0, miss = 0;

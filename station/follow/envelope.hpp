@@ -8,6 +8,10 @@
 
 namespace turnpoint::follow {
 
+/// Gains in one period. The last one holds at the period's end; between them, and from the last gain of the
+/// period before, the gain is a straight line.
+inline constexpr int kGains = 8;
+
 /// The plate's envelope follows the gain like a first-order low-pass with this time constant: Q / (pi f).
 double envelope_time_constant_s(double quality, double frequency_Hz);
 
@@ -64,10 +68,13 @@ struct Presented {
   bool presentable = false;
 };
 
-/// Computes what the shaper makes of a texture (sine, square, triangle or table with cycles_per_m), for a
-/// finger with this coefficient of friction on the surface at rest. Delays count as predicted. Throws
-/// std::invalid_argument for another shape or a speed of 0. Some 0.5 ms.
-Presented presented(const Pattern& pattern, const Part& texture, const GainMap& map, const Envelope& envelope,
-                    double resting_friction, double place_m, double speed_m_s);
+/// Computes what the shaper makes of a texture (sine, square, triangle or table), for a finger with this
+/// coefficient of friction on the surface at rest and updates of this period. `below` has the table, and the
+/// base and parts to which a texture is added that does not replace them: their value at the place, at time 0
+/// and without events. Delays count as predicted. Throws std::invalid_argument for another shape, for limits
+/// of map and envelope that differ, and for a texture that does not vary under the finger or with less than
+/// one cycle in 200000 gains. Some 0.5 ms.
+Presented presented(const Pattern& below, const Part& texture, const GainMap& map, const Envelope& envelope,
+                    double period_s, double resting_friction, double place_m, double speed_m_s);
 
 }  // namespace turnpoint::follow

@@ -13,10 +13,6 @@
 
 namespace turnpoint::follow {
 
-/// Gains in one period. The last one holds at the period's end; between them, and from the last gain of the
-/// period before, the gain is a straight line.
-inline constexpr int kGains = 8;
-
 enum class Control {
   open,   ///< by the friction table and `resting_friction` alone
   closed  ///< corrected by the measured friction
