@@ -64,6 +64,18 @@ Follower::Follower(const Plan& plan) : plan_(plan) {
   plan_.estimator.rate_Hz = timing.rate_Hz;
   plan_.estimator.first_m = plan_.map.first_m();
   plan_.estimator.last_m = plan_.map.last_m();
+  const double back_periods = (normal_age_frames_ + lead_frames_) / timing.period_frames;
+  need(back_periods + plan_.most_age_periods + 2 <= kHistory,
+       "follower: the delay is longer than 64 periods");
+  if (plan_.control == Control::closed) {
+    const double known_s = delay.horizon_s + 0.5 * period_s_;
+    const LoopSettings& loop = plan_.loop;
+    for (const double slope : {1 - loop.slope_share, 1 + loop.slope_share}) {
+      const auto margins = loop_margins(loop.cutoff_Hz, known_s, known_s + loop.unknown_delay_s, slope);
+      need(margins.stable && margins.most_amplified <= 1.01 * loop.most_amplified,
+           "follower: the loop's cut-off is too high for the delay; see design_loop()");
+    }
+  }
   estimator_ = FingerEstimator(plan_.estimator);
   shaper_ = EnvelopeShaper(plan_.envelope, plan_.resting_gain);
   loop_ = FrictionLoop(plan_.loop, plan_.resting_friction, period_s_);

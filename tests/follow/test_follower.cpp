@@ -704,6 +704,90 @@ TEST_CASE("an event does not come again when a fault is over", "[follower]") {
   }
 }
 
+TEST_CASE("a sine is felt in its place behind converters with a stated delay", "[follower]") {
+  for (const double converter_s : {1e-3, 3e-3, 5e-3}) {
+    plant::Setup s;
+    s.friction = 0.9, s.added_delay_s = converter_s;
+    s.hand_m = [](double t) { return 0.03 + 0.2 * t; };
+    auto plan = lab::plan_of(s);
+    plan.timing.converter_s = converter_s, plan.ramp_s = 1.4e-3;
+    add(plan.pattern, sine_of_4_mm());
+    lab::Lab lab(s, plan);
+    std::vector<lab::Moment> moments;
+    lab::Hooks hooks;
+    hooks.moment = [&](const lab::Moment& m) { moments.push_back(m); };
+    lab.run(0.59, hooks);
+    const auto f = fundamental(moments, 0.004, 0.06, 0.14, 0.2);
+    UNSCOPED_INFO("converters " << 1e3 * converter_s << " ms: ratio " << f.ratio << ", phase "
+                                << f.phase_cycles << ", harmonics " << f.harmonics);
+    CHECK(f.ratio == Approx(1).margin(0.1));
+    CHECK(std::abs(f.phase_cycles) < 0.02);  // 1 ms more or less would be 0.05
+    CHECK(f.harmonics < 0.1);
+  }
+}
+
+TEST_CASE("a loop is refused if its cut-off is too high for the delay, and a delay beyond the history",
+          "[follower]") {
+  auto plan = still_plan();
+  plan.control = Control::closed;
+  CHECK_NOTHROW(follow::Follower(plan));
+  plan.loop.cutoff_Hz = 12;
+  CHECK_THROWS_WITH(follow::Follower(plan), Catch::Matchers::ContainsSubstring("cut-off"));
+  plan.loop.cutoff_Hz = 8, plan.loop.unknown_delay_s = 15e-3;
+  CHECK_THROWS_WITH(follow::Follower(plan), Catch::Matchers::ContainsSubstring("cut-off"));
+  plan = still_plan();
+  plan.timing.period_frames = 8, plan.timing.converter_s = 3e-3;
+  CHECK_THROWS_WITH(follow::Follower(plan), Catch::Matchers::ContainsSubstring("64 periods"));
+}
+
+TEST_CASE("the delay is constant to one period, whatever the moment", "[follower]") {
+  for (const double converter_s : {0.0, 2e-3}) {
+    double least = 1, most = 0, first_m = 1, last_m = 0, stated = 0;
+    for (int phase = 0; phase < 16; ++phase) {
+      // an event of force, and an edge that is passed, each at this phase between samples and periods
+      const double at_s = 0.3 + phase * 0.5e-3 / 16;
+      plant::Setup s;
+      s.noise_N = 0, s.added_delay_s = converter_s;
+      s.hand_m = [=](double t) { return 0.09 + 0.2 * (t - at_s); };
+      auto press = s;
+      press.hand_m = [](double) { return 0.08; };
+      press.press_N = [=](double t) { return t < at_s ? 0.5 : 1.5; };
+      auto plan = still_plan(1);
+      plan.timing.converter_s = converter_s, plan.ramp_s = 3e-3;
+      stated = follow::total_delay(plan.timing).total_s + converter_s;
+      auto edges = plan;
+      Part click, edge;
+      click.to = 0.5, click.trigger.event = follow::Event::force, click.trigger.threshold = 1;
+      edge.shape = Shape::edge, edge.from = 0.4, edge.to = 0.8, edge.place_m = 0.09;
+      add(plan.pattern, click);
+      add(edges.pattern, edge);
+      lab::Lab event(press, plan), passed(s, edges);
+      double changed_s = 0, edge_m = 0, before = 0;
+      lab::Hooks hooks;
+      hooks.moment = [&](const lab::Moment& m) {
+        if (changed_s == 0 && m.gain > 0.01) changed_s = m.time_s;
+      };
+      event.run(0.32, hooks);
+      hooks.moment = [&](const lab::Moment& m) {
+        if (before > 0 && before < 0.6 && m.friction >= 0.6 && m.time_s > 0.2) edge_m = m.place_m - 0.09;
+        before = m.friction;
+      };
+      passed.run(0.32, hooks);
+      least = std::min(least, changed_s - at_s), most = std::max(most, changed_s - at_s);
+      first_m = std::min(first_m, edge_m), last_m = std::max(last_m, edge_m);
+    }
+    UNSCOPED_INFO("converters " << 1e3 * converter_s << " ms: from " << 1e3 * least << " to " << 1e3 * most
+                                << " ms, stated " << 1e3 * stated << " ms; the edge from " << 1e3 * first_m
+                                << " to " << 1e3 * last_m << " mm");
+    CHECK(most - least <= 0.5e-3 + 1e-9);
+    CHECK(most <= stated);
+    CHECK(least >= stated - 1e-3);
+    CHECK(last_m - first_m <= 0.2 * 0.5e-3);  // one period at 0.2 m/s
+    CHECK(std::abs(first_m) < 0.3e-3);
+    CHECK(std::abs(last_m) < 0.3e-3);
+  }
+}
+
 TEST_CASE("a displacement is asked for and met", "[follower]") {
   plant::Setup s;
   s.hand_m = lab::strokes(0.05, 0.13, 0.1);
