@@ -788,6 +788,40 @@ TEST_CASE("the delay is constant to one period, whatever the moment", "[follower
   }
 }
 
+TEST_CASE("a plan that is wrong about the plant: what is then felt", "[follower]") {
+  // Q 15 % too low or high, film half as late or half later, cells 20 % off, field and table's half-way
+  // amplitude 5 %, skin 30 %, all in the same direction and all at once
+  const auto felt_with = [](double by, Control control) {
+    plant::Setup s;
+    s.friction = 0.9;
+    s.hand_m = [](double t) { return 0.03 + 0.1 * t; };
+    auto wrong = s;
+    wrong.quality *= 1 + 0.15 * by, wrong.film_s *= 1 + 0.5 * by, wrong.cells_Hz *= 1 + 0.2 * by;
+    wrong.displacement_um *= 1 + 0.05 * by, wrong.half_um *= 1 - 0.05 * by;
+    auto plan = lab::plan_of(wrong);
+    plan.estimator.skin_m_per_N = 1e-3 * (1 + 0.3 * by);
+    plan.control = control;
+    add(plan.pattern, sine_of_4_mm());
+    lab::Lab lab(s, plan);
+    std::vector<lab::Moment> moments;
+    lab::Hooks hooks;
+    hooks.moment = [&](const lab::Moment& m) { moments.push_back(m); };
+    lab.run(1.18, hooks);
+    return fundamental(moments, 0.004, 0.06, 0.14, 0.2);
+  };
+  for (const auto control : {Control::open, Control::closed})
+    for (const double by : {-1.0, 1.0}) {
+      const auto f = felt_with(by, control);
+      UNSCOPED_INFO("wrong by " << by << ", closed " << (control == Control::closed) << ": ratio " << f.ratio
+                                << ", phase " << f.phase_cycles << ", harmonics " << f.harmonics << ", mean "
+                                << f.mean);
+      CHECK(f.ratio == Approx(1).margin(0.1));
+      CHECK(std::abs(f.phase_cycles) < 0.05);
+      CHECK(f.harmonics < 0.1);
+      CHECK(f.mean == Approx(0.6).margin(control == Control::closed ? 0.02 : 0.06));
+    }
+}
+
 TEST_CASE("a displacement is asked for and met", "[follower]") {
   plant::Setup s;
   s.hand_m = lab::strokes(0.05, 0.13, 0.1);
