@@ -2,7 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "station/follow/need.hpp"
+
 namespace turnpoint::follow {
+
+Timing timing_of(int rate_Hz) {
+  need(rate_Hz >= 32000, "timing: the rate is below 32 kHz");
+  Timing timing;
+  timing.rate_Hz = rate_Hz;
+  timing.period_frames = std::max(8, (rate_Hz / 2000 + 4) / 8 * 8);
+  timing.window_frames = (3 * rate_Hz / 2000 + 1) / 2 * 2;
+  return timing;
+}
 
 Delay total_delay(const Timing& t) {
   const double rate = t.rate_Hz;

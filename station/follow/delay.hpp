@@ -3,16 +3,20 @@
 
 namespace turnpoint::follow {
 
-/// Everything that lies between the finger and what it feels.
+/// Everything that lies between the finger and what it feels. The same one for BridgeWindow and Follower.
 struct Timing {
   int rate_Hz = 192000;
   int period_frames = 96;   ///< frames of one update, captured and played
   int buffer_periods = 2;   ///< periods that are already on their way to the converter
-  int window_frames = 288;  ///< BridgeWindow
+  int window_frames = 288;  ///< BridgeWindow: 1.5 ms
   double cells_s = 0;       ///< delay of the force cells' mechanics at low frequencies: 2 damping / w0
   double converter_s = 0;   ///< stated delay of the converters, from a played to a captured frame
   double film_s = 0;        ///< friction follows the amplitude by this much later
 };
+
+/// The timing of a device with this rate: a window of 1.5 ms and periods of 0.5 ms, rounded to a multiple of
+/// 8 frames. Throws std::invalid_argument for a rate below 32 kHz.
+Timing timing_of(int rate_Hz);
 
 /// The largest delay from the finger's place to the amplitude, without the converters'.
 inline constexpr double kMostDelay_s = 0.004;

@@ -10,7 +10,7 @@
 namespace turnpoint::follow {
 namespace {
 
-constexpr double catch_up_steps = 2.5;
+constexpr double catch_up_steps = 2.5, most_steps = 200000;
 
 }  // namespace
 
@@ -18,9 +18,11 @@ double envelope_time_constant_s(double quality, double frequency_Hz) {
   return quality / (std::numbers::pi * frequency_Hz);
 }
 
-EnvelopeShaper::EnvelopeShaper(const Envelope& e) : envelope_(e) {
+EnvelopeShaper::EnvelopeShaper(const Envelope& e, double start)
+    : envelope_(e), start_(start), gain_(start), amplitude_(start) {
   for (const double value : {e.time_constant_s, e.most_gain, e.slew_per_s, e.step_s})
     if (!(std::isfinite(value) && value > 0)) throw std::invalid_argument("envelope: a value is not above 0");
+  if (!(start >= 0 && start <= e.most_gain)) throw std::invalid_argument("envelope: the gain at the start");
   // the exact response of the plate to a straight line from the last gain to this one
   const double h = e.step_s / e.time_constant_s;
   keep_ = std::exp(-h);
@@ -35,8 +37,13 @@ double EnvelopeShaper::next(double before, double now, double after) noexcept {
   const Envelope& e = envelope_;
   const double rest = keep_ * amplitude_ + from_last_ * gain_;  // the amplitude without this gain
   const double slope = (after - before) / (2 * e.step_s);
-  const double wish =
-      (now + e.time_constant_s * slope + catch_up_ * (now - rest)) / (1 + catch_up_ * from_this_);
+  double wish = (now + e.time_constant_s * slope + catch_up_ * (now - rest)) / (1 + catch_up_ * from_this_);
+  return put(std::isfinite(wish) ? wish : start_);
+}
+
+double EnvelopeShaper::put(double wish) noexcept {
+  const Envelope& e = envelope_;
+  const double rest = keep_ * amplitude_ + from_last_ * gain_;
   const double change = e.slew_per_s * e.step_s;
   gain_ = std::clamp(std::clamp(wish, gain_ - change, gain_ + change), 0.0, e.most_gain);
   amplitude_ = rest + from_this_ * gain_;
@@ -54,22 +61,28 @@ double bandwidth_Hz(const Envelope& e, double mean, double swing) {
   return std::min(by_limit, by_slew) / (2 * std::numbers::pi);
 }
 
-Presented presented(const Pattern& pattern, const Part& texture, const GainMap& map, const Envelope& envelope,
-                    double resting_friction, double place_m, double speed_m_s) {
+Presented presented(const Pattern& below, const Part& texture, const GainMap& map, const Envelope& limits,
+                    double period_s, double resting_friction, double place_m, double speed_m_s) {
   const bool waves = texture.shape == Shape::sine || texture.shape == Shape::square ||
                      texture.shape == Shape::triangle || texture.shape == Shape::table;
-  const double frequency = std::abs(texture.cycles_per_m * speed_m_s);
-  if (!waves || !(frequency > 0)) throw std::invalid_argument("presented: needs a texture and a speed");
-  Pattern alone = pattern;
+  // cycles per second under the finger
+  const double cycles_per_s = texture.cycles_per_m * speed_m_s + texture.cycles_per_s;
+  const double frequency = std::abs(cycles_per_s);
+  Envelope envelope = limits;
+  envelope.step_s = period_s / kGains;
+  if (limits.most_gain != map.most_gain()) throw std::invalid_argument("presented: two limits of the gain");
+  if (!waves || !(frequency * most_steps * envelope.step_s >= 1))
+    throw std::invalid_argument("presented: needs a texture that varies under the finger");
+  Pattern alone = below;
+  alone.base = asked_at(below, {}, place_m, 0);
   alone.part_count = 1;
   alone.parts[0] = texture;
-  alone.parts[0].combine = Combine::replace;
   alone.parts[0].trigger = {};
   alone.parts[0].begin_m = -std::numeric_limits<double>::infinity();
   alone.parts[0].end_m = std::numeric_limits<double>::infinity();
-  alone.parts[0].cycles_per_s = texture.cycles_per_m * speed_m_s;  // passes under a finger that stays
+  alone.parts[0].cycles_per_s = cycles_per_s;  // passes under a finger that stays
   alone.parts[0].cycles_per_m = 0;
-  const bool friction = pattern.asked == Asked::friction;
+  const bool friction = below.asked == Asked::friction;
   const double most_m = map.most_displacement_m(place_m);
   const auto wish = [&](double time_s) {
     const double asked = asked_at(alone, {}, place_m, time_s);
@@ -83,8 +96,10 @@ Presented presented(const Pattern& pattern, const Part& texture, const GainMap& 
   Presented result;
   result.frequency_Hz = frequency;
   const double step = envelope.step_s, per_cycle = 1 / (frequency * step);
-  const int warm = static_cast<int>(std::ceil(std::max(per_cycle, 8 * envelope.time_constant_s / step)));
-  const int count = static_cast<int>(std::lround(std::max(4.0, std::ceil(200 / per_cycle)) * per_cycle));
+  const int warm = static_cast<int>(
+      std::min(most_steps, std::ceil(std::max(per_cycle, 8 * envelope.time_constant_s / step))));
+  const int count = static_cast<int>(
+      std::lround((per_cycle > 1e4 ? 1 : std::max(4.0, std::ceil(200 / per_cycle))) * per_cycle));
   EnvelopeShaper shaper(envelope);
   std::complex<double> asked_1, felt_1;
   double asked_mean = 0, square = 0, miss = 0;

@@ -8,15 +8,19 @@
 
 namespace turnpoint::follow {
 
+/// Gains in one period. The last one holds at the period's end; between them, and from the last gain of the
+/// period before, the gain is a straight line.
+inline constexpr int kGains = 8;
+
 /// The plate's envelope follows the gain like a first-order low-pass with this time constant: Q / (pi f).
 double envelope_time_constant_s(double quality, double frequency_Hz);
 
 /// The plate and the limits of the gain.
 struct Envelope {
   double time_constant_s = 0.64e-3;  ///< Q = 60 at 30 kHz
-  double most_gain = 1;
-  double slew_per_s = 8000;  ///< largest change of the gain per second
-  double step_s = 62.5e-6;   ///< distance of the gains: an eighth of a period
+  double most_gain = 1;              ///< that of the GainMap
+  double slew_per_s = 8000;          ///< largest change of the gain per second
+  double step_s = 62.5e-6;           ///< distance of the gains: an eighth of a period
 };
 
 /// Turns wished amplitudes into gains whose envelope follows them: the gain is r + T r' + k (r - a), where r
@@ -28,11 +32,15 @@ struct Envelope {
 class EnvelopeShaper {
  public:
   EnvelopeShaper() : EnvelopeShaper(Envelope{}) {}
-  /// Throws std::invalid_argument for values that are not above 0.
-  explicit EnvelopeShaper(const Envelope& envelope);
+  /// Begins with the gain `start` and an envelope that has settled there. Throws std::invalid_argument for
+  /// values that are not above 0, and for a start beyond the limits.
+  explicit EnvelopeShaper(const Envelope& envelope, double start = 0);
 
-  /// The gain at `now`, from the wish one step before, at, and one step after it.
+  /// The gain at `now`, from the wish one step before, at, and one step after it. A wish that is not finite
+  /// counts as the start.
   double next(double before, double now, double after) noexcept;
+  /// Takes this gain as it is, within limit and slew, without the inverse. Returns the gain.
+  double put(double gain) noexcept;
   double gain() const noexcept { return gain_; }
   double amplitude() const noexcept { return amplitude_; }  ///< the modelled envelope
   const Envelope& envelope() const noexcept { return envelope_; }
@@ -40,7 +48,7 @@ class EnvelopeShaper {
  private:
   Envelope envelope_;
   double keep_ = 0, from_last_ = 0, from_this_ = 0, catch_up_ = 0;
-  double gain_ = 0, amplitude_ = 0;
+  double start_ = 0, gain_ = 0, amplitude_ = 0;
 };
 static_assert(std::is_trivially_copyable_v<EnvelopeShaper>);
 
@@ -60,10 +68,13 @@ struct Presented {
   bool presentable = false;
 };
 
-/// Computes what the shaper makes of a texture (sine, square, triangle or table with cycles_per_m), for a
-/// finger with this coefficient of friction on the surface at rest. Delays count as predicted. Throws
-/// std::invalid_argument for another shape or a speed of 0. Some 0.5 ms.
-Presented presented(const Pattern& pattern, const Part& texture, const GainMap& map, const Envelope& envelope,
-                    double resting_friction, double place_m, double speed_m_s);
+/// Computes what the shaper makes of a texture (sine, square, triangle or table), for a finger with this
+/// coefficient of friction on the surface at rest and updates of this period. `below` has the table, and the
+/// base and parts to which a texture is added that does not replace them: their value at the place, at time 0
+/// and without events. Delays count as predicted. Throws std::invalid_argument for another shape, for limits
+/// of map and envelope that differ, and for a texture that does not vary under the finger or with less than
+/// one cycle in 200000 gains. Some 0.5 ms.
+Presented presented(const Pattern& below, const Part& texture, const GainMap& map, const Envelope& envelope,
+                    double period_s, double resting_friction, double place_m, double speed_m_s);
 
 }  // namespace turnpoint::follow

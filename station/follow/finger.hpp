@@ -2,7 +2,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <type_traits>
+
+#include "station/follow/delay.hpp"
 
 namespace turnpoint::follow {
 
@@ -10,12 +13,12 @@ namespace turnpoint::follow {
 /// given.
 enum class Fault : std::uint8_t {
   none,
-  late,       ///< frames were left out, or the newest sample is too old
+  late,       ///< frames were left out, or the newest sample is too old, or newer than it can be
   reference,  ///< the amplitude of the bridges' excitation is more than 3 % off
-  force,      ///< captured frames are missing, a bridge is overloaded, or its samples do not change
-  lifted,     ///< the finger is not on the surface
+  force,   ///< captured frames are missing or come again, a bridge is overloaded, has a wire off, or is dead
+  lifted,  ///< the finger is not on the surface
   position,  ///< the normal force is too small to tell the place, the place is beyond the strip, or it jumped
-  saturated  ///< the loop has asked for friction beyond the finger's reach for most of the last 0.2 s
+  saturated  ///< friction below the finger's reach has been asked of the loop for most of the last 0.2 s
 };
 inline constexpr int kFaults = 7;
 const char* name(Fault fault) noexcept;
@@ -31,7 +34,6 @@ struct FingerSample {
 /// How the force cells are wired and calibrated; the same conventions as sensing::BridgeOptions and
 /// sensing::ForceCalibration, in SI units.
 struct Bridges {
-  int rate_Hz = 192000;
   double carrier_Hz = 10525;
   int channels = 4;                     ///< number of channels in a captured frame
   int reference = 0;                    ///< captured channel of the excitation itself
@@ -40,37 +42,44 @@ struct Bridges {
   std::array<double, 3> full_scale{0.4, 0.4, 0.4};  ///< ratio to the reference at the rated load
   std::array<double, 3> rotation_rad{};             ///< phase of each bridge against the reference
   std::array<double, 3> tare{};                     ///< ratios without a finger
-  /// Rows: ratios of a, b and lateral after the tare; columns: normal force, lateral force (N), moment (N m).
+  /// Rows: ratios of a, b and lateral after the tare; columns: normal force, lateral force (N), moment (N
+  /// m). sensing::ForceCalibration has the moment in N mm, so its values must be multiplied by 1e-3.
   std::array<std::array<double, 3>, 3> matrix{};
-  int window_frames = 288;  ///< 1.5 ms at 192 kHz
 };
 
 /// The short path from captured frames to forces. It mixes the newest window_frames frames down from the
 /// carrier, weighted by a Blackman-Harris window (Harris 1978: side lobes below -92 dB), and divides by the
 /// reference. A force from half a window ago is the result, so the delay is 0.75 ms. A drive tone 2.7 kHz (4
 /// / window) or more from the carrier leaks with less than 3e-5 of its amplitude. The noise bandwidth is 1.3
-/// kHz. Today's path (BridgeDemodulator) has 17 ms of delay and stays for the record. Fixed size.
+/// kHz. These figures are those of a window of 1.5 ms, as timing_of() gives it. Today's path
+/// (BridgeDemodulator) has 17 ms of delay and stays for the record. Fixed size.
 class BridgeWindow {
  public:
   static constexpr int kMostFrames = 1024;
 
   BridgeWindow() = default;
   /// Throws std::invalid_argument for a window of fewer than 32 or more than 1024 frames, for channels that
-  /// do not exist, and for a carrier that is nearer than 4 / window to 0 or to half the rate.
-  explicit BridgeWindow(const Bridges& bridges);
+  /// do not exist, and for a carrier that is nearer than 4 / window to 0, to half the rate, or to one of the
+  /// tones of the drive.
+  BridgeWindow(const Bridges& bridges, const Timing& timing, std::span<const double> drive_Hz);
 
   /// Takes frames, of which the first has the number `first` in the playback's clock. Frames that are left
-  /// out empty the window.
+  /// out empty the window. 32 equal samples of a bridge in a row, or 32 frames that equal those of the push
+  /// before, are a fault for as long as one of them is in the window. (BridgeDemodulator, for the record,
+  /// also finds blocks of other lengths that come again.)
   void push(std::int64_t first, const std::int32_t* frames, int count) noexcept;
   /// The force at the centre of the newest window. Fault::force until the window is full.
   FingerSample sample() const noexcept;
 
  private:
   Bridges bridges_;
+  int window_frames_ = 0;
   std::array<float, kMostFrames> cosine_{}, sine_{};      ///< window times carrier
   std::array<std::array<float, 4>, kMostFrames> kept_{};  ///< newest frames in a ring: reference, bridges
   std::array<std::int32_t, 3> last_{};
   std::array<int, 3> unchanged_{};  ///< how many samples of a bridge in a row were the same
+  int repeated_ = 0;                ///< how many frames in a row were those of the push before
+  std::int64_t dead_until_ = 0;     ///< frame number behind the last frame that was dead or came again
   std::int64_t end_ = 0;            ///< frame number behind the newest frame
   int filled_ = 0, next_ = 0;
 };
@@ -106,12 +115,15 @@ struct Finger {
 
 /// Estimates place and speed by a Kalman filter for constant speed with random acceleration (Bar-Shalom, Li &
 /// Kirubarajan 2001, section 6.2). The variance of a measured place is (moment noise / normal force)^2, so a
-/// light finger is filtered more. It has no lag at constant speed, also for predictions; an acceleration a
-/// lags by about a/w^2, where w^4 = density / (variance times sample interval).
+/// light finger is filtered more. Windows of 1.5 ms in periods of 0.5 ms overlap, so their noise is
+/// correlated, but the filter takes it as independent: with shorter periods the place gets noisier. It has no
+/// lag at constant speed, also for predictions; an acceleration a lags by about a/w^2, where w^4 = density /
+/// (variance times sample interval).
 class FingerEstimator {
  public:
   FingerEstimator() = default;
-  explicit FingerEstimator(const EstimatorSettings& settings) : settings_(settings) {}
+  /// Throws std::invalid_argument for values that are not finite or not possible.
+  explicit FingerEstimator(const EstimatorSettings& settings);
 
   /// Takes the next sample.
   const Finger& push(const FingerSample& sample) noexcept;

@@ -68,8 +68,10 @@ FrictionLoop::FrictionLoop(const LoopSettings& settings, double resting_friction
     : settings_(settings) {
   if (!(resting_friction >= settings.lowest && resting_friction <= settings.highest))
     throw std::invalid_argument("loop: the friction of the surface at rest is outside its limits");
-  if (!(settings.cutoff_Hz > 0 && period_s > 0))
-    throw std::invalid_argument("loop: cut-off or period not above 0");
+  for (const double value : {settings.cutoff_Hz, settings.least_normal_N, settings.least_speed_m_s,
+                             settings.lowest, settings.highest, period_s})
+    if (!(std::isfinite(value) && value > 0)) throw std::invalid_argument("loop: a value is not above 0");
+  if (!(settings.settle_m >= 0)) throw std::invalid_argument("loop: settle_m is below 0");
   take_ = 1 - std::exp(-2 * std::numbers::pi * settings.cutoff_Hz * period_s);
   log_resting_ = std::log(resting_friction);
   resting_ = resting_friction;

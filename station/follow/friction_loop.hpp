@@ -10,6 +10,9 @@ struct LoopSettings {
   double least_speed_m_s = 0.01;
   /// The finger must have moved this far in one direction: before, its skin is still being stretched.
   double settle_m = 2e-3;
+  /// What comes on top of the known delay, by which share the table's slope may be wrong, and how much the
+  /// largest disturbance may then be amplified. Follower refuses a cut-off that is too high for that.
+  double unknown_delay_s = 5e-3, slope_share = 0.3, most_amplified = 1.5;
   double lowest = 0.05, highest = 3;  ///< of the coefficient of friction of the surface at rest
 };
 

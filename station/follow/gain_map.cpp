@@ -26,6 +26,10 @@ GainMap::GainMap(std::span<const double> x_m, std::span<const double> displaceme
   if (!(std::isfinite(most_gain) && most_gain > 0)) throw std::invalid_argument("most_gain must be above 0");
   for (const double value : displacement_m)
     if (!(std::isfinite(value) && value >= 0)) throw std::invalid_argument("a displacement is below 0");
+  if (!(std::isfinite(fingertip_m) && fingertip_m >= 0))
+    throw std::invalid_argument("the length of the fingertip is below 0");
+  for (std::size_t i = 1; i < x_m.size(); ++i)
+    if (!(x_m[i] > x_m[i - 1])) throw std::invalid_argument("the places do not ascend");
   const auto under = physics::fingertip_average(x_m, displacement_m, fingertip_m);
   first_m_ = x_m.front();
   step_m_ = (x_m.back() - x_m.front()) / (kPlaces - 1);
@@ -62,7 +66,8 @@ GainMap::GainMap(std::span<const double> x_m, std::span<const double> displaceme
 }
 
 GainMap::Between GainMap::between(double place_m) const noexcept {
-  const double at = std::clamp((place_m - first_m_) / step_m_, 0.0, static_cast<double>(kPlaces - 1));
+  const double steps = (place_m - first_m_) / step_m_;
+  const double at = steps > 0 ? std::min(steps, static_cast<double>(kPlaces - 1)) : 0;  // NaN: 0
   const auto i = std::min(static_cast<std::size_t>(at), static_cast<std::size_t>(kPlaces - 2));
   return {i, at - static_cast<double>(i)};
 }
@@ -83,7 +88,7 @@ double mix(double a, double b, double t) { return a + t * (b - a); }
 
 double GainMap::relative_friction(double place_m, double gain) const noexcept {
   const auto [i, t] = between(place_m);
-  const double share = std::clamp(gain / most_gain_, 0.0, 1.0);
+  const double share = gain > 0 ? std::min(gain / most_gain_, 1.0) : 0;  // NaN: 0
   const double drop = mix(level_of(drop_[i], share), level_of(drop_[i + 1], share), t);
   return 1 - drop * drop;
 }
@@ -99,6 +104,7 @@ double GainMap::gain(double place_m, double relative_friction) const noexcept {
 
 double GainMap::gain_for_displacement(double place_m, double displacement_m) const noexcept {
   const double most = most_displacement_m(place_m);
+  if (!(displacement_m > 0)) return 0;
   return displacement_m >= most ? most_gain_ : most_gain_ * std::max(0.0, displacement_m / most);
 }
 

@@ -15,7 +15,7 @@ namespace turnpoint::benchmark {
 namespace {
 
 constexpr int kRepeats = 15;
-constexpr int kRate_Hz = 192000, kChannels = 6, kPeriod = 96, kPeriods = 4000;
+constexpr int kRate_Hz = 192000, kChannels = 6, kPeriod = 96, kPeriods = 4000, kCaptured = 64;
 
 void synthesise() {
   audio::Burst burst;
@@ -54,15 +54,15 @@ follow::Plan plan() {
   return plan;
 }
 
-/// Captured frames of one period: a carrier on all channels.
+/// Captured frames of 64 periods: the carrier on all channels, with noise.
 std::vector<std::int32_t> captured() {
-  std::vector<std::int32_t> frames(kPeriod * kChannels);
+  std::vector<std::int32_t> frames(kCaptured * kPeriod * kChannels);
   std::mt19937 random(1);
   std::normal_distribution<double> noise(0, 1000);
-  for (int n = 0; n < kPeriod; ++n)
+  for (int n = 0; n < kCaptured * kPeriod; ++n)
     for (int c = 0; c < kChannels; ++c)
-      frames[static_cast<std::size_t>(n * kChannels + c)] =
-          static_cast<std::int32_t>(1e9 * std::cos(2 * M_PI * 6 * n / kPeriod) + noise(random));
+      frames[static_cast<std::size_t>(n * kChannels + c)] = static_cast<std::int32_t>(
+          (c == 0 ? 0.5 : 0.05) * 0x1p31 * std::cos(2 * M_PI * 10525 * n / kRate_Hz) + noise(random));
   return frames;
 }
 
@@ -71,7 +71,7 @@ void follow_finger(const std::vector<std::int32_t>& frames, follow::BridgeWindow
                    follow::Follower* follower) {
   volatile double sum = 0;
   for (std::int64_t k = 0; k < kPeriods; ++k) {
-    window.push(k * kPeriod, frames.data(), kPeriod);
+    window.push(k * kPeriod, frames.data() + k % kCaptured * kPeriod * kChannels, kPeriod);
     auto sample = window.sample();
     sum = sum + sample.normal_N;
     if (follower == nullptr) continue;
@@ -87,7 +87,7 @@ void follow_finger(const std::vector<std::int32_t>& frames, follow::BridgeWindow
 
 Report bench_follow() {
   const auto frames = captured();
-  const follow::BridgeWindow window(bridges());
+  const follow::BridgeWindow window(bridges(), {}, {});
   const follow::Follower fresh(plan());
   const std::vector<Work> works{
       {"synthesis of eight tones", synthesise},

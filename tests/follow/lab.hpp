@@ -1,6 +1,7 @@
 #pragma once
 // Joins a plant and a follower as a sound device would: periods of 96 frames, two of them on their way.
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -53,7 +54,9 @@ class Lab {
       }
       const auto read = plant_.reading();
       follow::FingerSample sample;
-      sample.frame = (period_ + 1) * plant::kPeriod - 144 + skipped_;
+      // with a stated delay of the converters, the readings are older by it (Setup::added_delay_s)
+      sample.frame = (period_ + 1) * plant::kPeriod - 144 + skipped_ -
+                     std::lround(follower_.plan().timing.converter_s * plant::kRate_Hz);
       sample.normal_N = read.normal_N, sample.lateral_N = read.lateral_N, sample.moment_Nm = read.moment_Nm;
       if (hooks.skip) skipped_ += hooks.skip(period_);
       if (hooks.sample) hooks.sample(period_, sample);

@@ -14,6 +14,9 @@ TEST_CASE("an update allocates no memory, whatever fails", "[follower]") {
   add(plan.pattern, part);
   follow::Follower follower(plan);
   std::int64_t frame = 0;
+  follow::BridgeWindow window(follow::Bridges{}, plan.timing, {});
+  const std::vector<std::int32_t> frames(4 * 96, 1000);
+  std::int64_t captured = 0;
   const long before = allocations;
   for (int k = 0; k < 400; ++k) {
     follow::FingerSample sample;
@@ -22,10 +25,13 @@ TEST_CASE("an update allocates no memory, whatever fails", "[follower]") {
     if (k % 100 == 90) sample.fault = follow::Fault::reference;
     if (k % 100 == 80) sample.normal_N = 0;
     if (k % 100 == 70) sample.moment_Nm = 2;
+    window.push(frame, frames.data(), 96);
+    captured += window.sample().frame;
     follower.update(frame, sample);
     frame += k % 100 == 60 ? 192 : 96;
   }
   CHECK(allocations == before);
+  CHECK(captured > 0);
   CHECK(follower.last().interrupted != 0);
   const std::vector<double> counted(1000);
   CHECK(allocations > before);

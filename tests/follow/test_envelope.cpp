@@ -120,23 +120,51 @@ TEST_CASE("a texture is presentable or not at a speed", "[envelope]") {
   texture.shape = Shape::sine, texture.from = 0.4, texture.to = 0.8, texture.cycles_per_m = 250;
   Envelope e;
   e.time_constant_s = envelope_time_constant_s(60, 30000);
-  const auto good = presented(pattern, texture, map, e, 1.0, 0.1, 0.2);
+  const auto good = presented(pattern, texture, map, e, 0.5e-3, 1.0, 0.1, 0.2);
   CAPTURE(good.amplitude_ratio, good.phase_cycles, good.residual);
   CHECK(good.frequency_Hz == Approx(50));
   CHECK(good.presentable);
   CHECK(good.residual < 0.05);
   e.time_constant_s = envelope_time_constant_s(500, 30000);
-  const auto slow = presented(pattern, texture, map, e, 1.0, 0.1, 0.02);
+  const auto slow = presented(pattern, texture, map, e, 0.5e-3, 1.0, 0.1, 0.02);
   CHECK(slow.presentable);
-  const auto fast = presented(pattern, texture, map, e, 1.0, 0.1, 0.4);
+  const auto fast = presented(pattern, texture, map, e, 0.5e-3, 1.0, 0.1, 0.4);
   CAPTURE(fast.amplitude_ratio, fast.phase_cycles, fast.residual, fast.limited);
   CHECK_FALSE(fast.presentable);
   CHECK(fast.limited > 0.2);
   e.time_constant_s = envelope_time_constant_s(60, 30000);
   texture.shape = Shape::square;
-  CHECK(presented(pattern, texture, map, e, 1.0, 0.1, 0.1).presentable);
+  CHECK(presented(pattern, texture, map, e, 0.5e-3, 1.0, 0.1, 0.1).presentable);
   texture.shape = Shape::sine, texture.cycles_per_m = 10000;  // 0.1 mm at 0.4 m/s: 4 kHz
-  CHECK_FALSE(presented(pattern, texture, map, e, 1.0, 0.1, 0.4).presentable);
+  CHECK_FALSE(presented(pattern, texture, map, e, 0.5e-3, 1.0, 0.1, 0.4).presentable);
+  // moving towards a finger that stays, or that moves: 50 Hz, and 50 + 200 Hz
+  texture.cycles_per_m = 0, texture.cycles_per_s = 50;
+  const auto standing = presented(pattern, texture, map, e, 0.5e-3, 1.0, 0.1, 0);
+  CHECK(standing.frequency_Hz == Approx(50));
+  CHECK(standing.amplitude_ratio == Approx(good.amplitude_ratio).epsilon(1e-6));
+  texture.cycles_per_m = 250, texture.cycles_per_s = 200;
+  CHECK(presented(pattern, texture, map, e, 0.5e-3, 1.0, 0.1, 0.2).frequency_Hz == Approx(250));
+  CHECK(presented(pattern, texture, map, e, 0.5e-3, 1.0, 0.1, -0.2).frequency_Hz == Approx(150));
+  // added to what lies below it, it is what it is alone
+  Part added = texture;
+  added.cycles_per_s = 0, added.combine = Combine::add, added.from = -0.2, added.to = 0.2;
+  Pattern below;
+  below.base = 0.9;
+  Part level;
+  level.to = 0.6;
+  add(below, level);
+  const auto sum = presented(below, added, map, e, 0.5e-3, 1.0, 0.1, 0.2);
+  CHECK(sum.presentable);
+  CHECK(sum.amplitude_ratio == Approx(good.amplitude_ratio).epsilon(1e-6));
+  // gains that are further apart follow 500 Hz worse
+  texture.cycles_per_s = 0, texture.cycles_per_m = 2500;
+  CHECK(presented(pattern, texture, map, e, 2e-3, 1.0, 0.1, 0.2).residual >
+        presented(pattern, texture, map, e, 0.5e-3, 1.0, 0.1, 0.2).residual);
+  texture.cycles_per_m = 250;
+  CHECK_THROWS_AS(presented(pattern, texture, map, e, 0.5e-3, 1.0, 0.1, 1e-12), std::invalid_argument);
+  CHECK_THROWS_AS(
+      presented(pattern, texture, lab::map_of(s, lab::table_of(s), 0.5), e, 0.5e-3, 1.0, 0.1, 0.2),
+      std::invalid_argument);
   texture.shape = Shape::edge;
-  CHECK_THROWS_AS(presented(pattern, texture, map, e, 1.0, 0.1, 0.4), std::invalid_argument);
+  CHECK_THROWS_AS(presented(pattern, texture, map, e, 0.5e-3, 1.0, 0.1, 0.4), std::invalid_argument);
 }

@@ -164,7 +164,7 @@ TEST_CASE("200 fingers feel the same friction: spread and drift", "[loop][finger
 }
 
 TEST_CASE("200 fingers: disturbances at each frequency", "[loop][fingers]") {
-  const std::vector<double> frequency{1, 3, 5.5, 9, 14, 20, 28, 40};
+  const std::vector<double> frequency{1, 3, 5.5, 9, 14, 17, 20, 24, 28, 33, 40};
   std::vector<std::vector<double>> remains(frequency.size());
   double least_slope = 10, most_slope = 0;
   int interrupted = 0;

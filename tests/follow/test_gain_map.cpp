@@ -51,6 +51,12 @@ TEST_CASE("the map knows a limit of the gain and the displacement under the fing
   CHECK(map.most_displacement_m(0.1) == Approx(0.5e-6 * free_um).epsilon(0.01));
   CHECK(map.gain_for_displacement(0.1, 0.25e-6 * free_um) == Approx(0.25).epsilon(0.01));
   CHECK(map.gain_for_displacement(0.1, 1e-3) == 0.5);
+  CHECK(map.gain_for_displacement(NAN, NAN) == 0);
+  CHECK(std::isfinite(map.gain(NAN, 0.5)));
+  // nothing moves there, and nothing is asked for
+  const std::vector<double> ends{0, 0.1}, still{0, 0};
+  const follow::GainMap dead(ends, still, lab::table_of(s), 0.01, 1);
+  CHECK(dead.gain_for_displacement(0.05, 0) == 0);
 }
 
 TEST_CASE("it is said where a pattern cannot be met", "[gain_map]") {
@@ -91,5 +97,7 @@ TEST_CASE("impossible maps are refused", "[gain_map]") {
   const std::vector<double> x{0, 0.1}, bad{1e-6, NAN}, good{1e-6, 1e-6};
   CHECK_THROWS_AS(follow::GainMap(x, bad, table, 0.01, 1), std::invalid_argument);
   CHECK_THROWS_AS(follow::GainMap(x, good, table, 0.01, 0), std::invalid_argument);
+  CHECK_THROWS_AS(follow::GainMap(x, good, table, NAN, 1), std::invalid_argument);
+  CHECK_THROWS_AS(follow::GainMap(std::vector<double>{0.1, 0.1}, good, table, 0, 1), std::invalid_argument);
   CHECK_THROWS_AS(follow::GainMap(x, std::vector<double>{1e-6}, table, 0.01, 1), std::invalid_argument);
 }
