@@ -129,7 +129,7 @@ struct Recorded {
 constexpr Recorded kSessions[] = {
     {"demo", "bda7b44a5a1ce1ab", "99a930b8032aed3f"},
     {"boundary-constant", "b00ab55acb68f700", "2bfac089950ea6a3"},
-    {"boundary-adaptive", "60c35b42c44ba56d", "3041bff75db687a8"},
+    {"boundary-adaptive", "60c35b42c44ba56d", "4999a71d7306cc3a"},
     {"boundary-adjustment", "20488ee64d19916e", "57e1e850803a6273"},
     {"friction-2ifc", "f254fac43e67db5f", "9eea4be7ac753c59"},
     {"friction-staircase", "73be2a4b407a38ee", "59166cc9296dd387"},
