@@ -148,10 +148,12 @@ GALLERY = {
             **curve(0.4, 1.5, 0.02), **diffusion(right_of_two((0.15, 0.3, 0.6, 1.2), 0.4, 1.5)), **BEFORE}),
         **no_difference("left", "right", *ALIKE), "share of second": 0.5}),
     "adaptation": ("sim:threshold=0.4,slope=1.5", {
-        **conditions(("adaptor 0.2 µm", "adaptor 1.5 µm"), {**curve(0.4, 1.5, 0.02), **BEFORE}),
+        **conditions(("adaptor 0.2 µm", "adaptor 1.5 µm"), {
+            **curve(0.4, 1.5, 0.02), **diffusion(right_of_two((0.15, 0.3, 0.6, 1.2), 0.4, 1.5)), **BEFORE}),
         **no_difference("adaptor 0.2 µm", "adaptor 1.5 µm", *ALIKE), "share of second": 0.5}),
     "pause-as-condition": ("sim:threshold=0.4,slope=1.5", {
-        **conditions(("pause 0.5 s", "pause 3 s", "pause 8 s"), {**curve(0.4, 1.5, 0.02), **BEFORE}),
+        **conditions(("pause 0.5 s", "pause 3 s", "pause 8 s"), {
+            **curve(0.4, 1.5, 0.02), **diffusion(right_of_two((0.15, 0.3, 0.6, 1.2), 0.4, 1.5)), **BEFORE}),
         **no_difference("pause 0.5 s", "pause 3 s", *ALIKE), **no_difference("pause 0.5 s", "pause 8 s", *ALIKE),
         **no_difference("pause 3 s", "pause 8 s", *ALIKE), "share of second": 0.5}),
     "tracks-in-passes": ("sim:threshold=0.4,slope=1.5", {**curve(0.4, 1.5, 0.02), **BEFORE, "share of second": 0.5}),

@@ -66,6 +66,7 @@ QStringList ReportModel::picture_names() const {
                                                        {"sensitivity-over-conditions", "figure.sensitivity"},
                                                        {"response-times", "live.times"},
                                                        {"quantiles", "report.quantiles"},
+                                                       {"trial-before", "report.trial_before"},
                                                        {"levels", "live.levels"},
                                                        {"finger", "report.finger"},
                                                        {"friction", "live.friction"},
