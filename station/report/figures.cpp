@@ -417,7 +417,10 @@ std::optional<Figure> before_figure(const Summary& summary) {
   figure.title = "The answer after each stimulus";
   figure.chart_width_px = 620;
   figure.chart_height_px = 320;
-  figure.caption = of_trials(summary.data, count) + " " + words("figure.caption_before");
+  const bool logistic =
+      std::ranges::any_of(summary.dependences, [](const auto& one) { return !one.answer.empty(); });
+  figure.caption = of_trials(summary.data, count) + " " +
+                   words("figure.caption_before", words(logistic ? "figure.penalised" : "figure.student"));
   return figure;
 }
 
