@@ -417,9 +417,13 @@ void check_whole(core::TableReader& file, Reading& reading) {
 void check_tasks(const Reading& reading) {
   if (reading.tasks.empty()) return;
   std::set<std::string> asked;
+  bool known =
+      true;  // otherwise some procedure or block does not say which task it asks, as has been reported
+  for (const auto& [name, task] : reading.asks) known = known && !task.empty();
   for (const auto& part : reading.protocol.plan) {
     const auto& block = block_of(part);
     if (block.kind != BlockKind::trials) continue;
+    known = known && (block.level.empty() || !block.task.empty());
     std::set<std::string> here;
     if (!block.task.empty()) here.insert(block.task);
     for (const auto& name : block.procedures)
@@ -432,7 +436,7 @@ void check_tasks(const Reading& reading) {
           phrase("block \"%1\" asks several tasks, so catch trials do not know theirs", {plain(block.name)}),
           phrase("leave it out, or add a procedure with easy levels"));
     for (const auto& task : reading.tasks)
-      if (here.contains(task.name) && task.cue.empty())
+      if (here.contains(task.name) && !reading.places.has(key_of(task, "cue")))
         reading.findings.add(
             reading.places.of("tasks." + task.name),
             phrase("block \"%1\" asks several tasks, but nothing tells people that \"%2\" comes",
@@ -447,7 +451,7 @@ void check_tasks(const Reading& reading) {
             phrase("leave out \"max_run\", or give each task blocks of its own"));
   }
   for (const auto& task : reading.tasks)
-    if (!asked.contains(task.name))
+    if (known && !asked.contains(task.name))
       reading.findings.add(reading.places.of("tasks." + task.name),
                            phrase("no block asks the task \"%1\"", {plain(task.name)}),
                            phrase("add a procedure with %1 to a block, or remove the task",

@@ -693,8 +693,10 @@ Task read_asked(TableReader& reader, const Reading& reading) {
                           phrase("\"task\" with %1", {core::quoted_list(known)}));
   else if (found == known.end())
     reader.problem("task", phrase("there is no [tasks.%1]", {plain(*name)}), core::suggestion(*name, known));
-  return found == known.end() ? reading.tasks.front()
-                              : reading.tasks[static_cast<std::size_t>(found - known.begin())];
+  if (found != known.end()) return reading.tasks[static_cast<std::size_t>(found - known.begin())];
+  auto unknown = reading.tasks.front();
+  unknown.name.clear();
+  return unknown;
 }
 
 std::vector<Protocol> as_tasks_see(const Reading& reading) {

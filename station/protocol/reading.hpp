@@ -37,7 +37,8 @@ void read_scenes(core::TableReader& file, Reading& reading);
 void read_instructions(core::TableReader& file, Reading& reading);
 void read_task(core::TableReader& file, Reading& reading);  ///< Reads [task], or all of [tasks].
 /// Reads which of several tasks a procedure or block asks. Reports a problem if it does not say so, or if
-/// there are not several. Returns the only task if there are not.
+/// there are not several. Returns the only task if there are not, and one without a name if it is not known
+/// which.
 Task read_asked(core::TableReader& reader, const Reading& reading);
 /// The protocol as each of its tasks sees it, as far as it has been read.
 std::vector<Protocol> as_tasks_see(const Reading& reading);

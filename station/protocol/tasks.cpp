@@ -52,7 +52,8 @@ Protocol with_task(const Protocol& whole, const Task& task, const std::map<std::
     auto* sequence = std::get_if<Sequence>(&part);
     auto& block = sequence ? sequence->block : std::get<Block>(part);
     if (block.kind != BlockKind::trials) return false;
-    std::erase_if(block.procedures, other);
+    // a block of several tasks has no catch trials; if it has, that has been reported
+    if (std::erase_if(block.procedures, other) > 0) block.catch_trials.reset();
     return block.procedures.empty() && block.task != task.name;
   });
   return one;

@@ -227,8 +227,8 @@ class Tasks(unittest.TestCase):
         with open(os.path.join(self.folder, "page.html"), encoding="utf-8") as file:
             page = file.read()
         self.assertLess(page.index("side"), page.index("which"))
-        self.assertTrue(os.path.exists(os.path.join(self.folder, "figures", "side-levels-85mm.svg"))
-                        or any(name.startswith("side-") for name in os.listdir(os.path.join(self.folder, "figures"))))
+        figures = os.listdir(os.path.join(self.folder, "figures"))
+        self.assertEqual({name.split("-")[0] for name in figures}, {"side", "which"})
 
     def test_a_study_reports_one_task(self):
         for i in (1, 2, 3):
@@ -271,6 +271,52 @@ class Tasks(unittest.TestCase):
         for k in (1, 2):
             self.write(f"part{k}.json", self.call(*words[:-1], "--task", "which", "--part", f"{k}/2"))
         self.assertEqual(json.loads(self.call("power", "--join", "part1.json", "part2.json", "--json"))["recoveries"], which["recoveries"])
+
+    def hands(self, task=""):
+        """The file with a sequence over both hands instead of its blocks; `task` is added to the procedure of the sides."""
+        head = TWO_TASKS.split("[[block]]")[0].replace("repeats = 24", "repeats = 6").replace('name = "sides"\n', 'name = "sides"\n' + task)
+        return head + """[[factor]]
+name = "instruction"
+levels = ["left", "right"]
+[instructions]
+left = { text = { en = "LEFT hand" } }
+right = { text = { en = "RIGHT hand" } }
+[[sequence]]
+name = "hands"
+design = "latin-square"
+over = "instruction"
+cycles = 2
+mirror = true
+block = { procedures = ["sides", "steps"], interleave = "alternate" }
+"""
+
+    def test_both_hands_are_a_condition_of_the_order_and_double_nothing(self):
+        self.write("hands.toml", self.hands())
+        orders = []
+        for i in (1, 2):
+            session = json.loads(self.call("run", "hands.toml", "--rig", "simulated", "--participant", f"P0{i}", "--db", "hands.sqlite",
+                                           "--observer", "sim:threshold=0.4", "--seed", str(i), "--json"))["session_id"]
+            with sqlite3.connect(os.path.join(self.folder, "hands.sqlite")) as source:
+                orders.append([row[0] for row in source.execute("SELECT instruction FROM block WHERE session_id = ?"
+                                                                " ORDER BY block_index", (session,))])
+            counts = {}
+            for trial in self.trials("hands.sqlite"):
+                if trial["session_id"] != session:
+                    continue
+                key = json.loads(trial["factors"])["instruction"], trial["procedure"]
+                counts[key] = counts.get(key, 0) + (trial["outcome"] == "answered")
+            # each hand has two blocks, of 6 repeats of 4 levels of each procedure
+            self.assertEqual(counts, {(hand, name): 48 for hand in ("left", "right") for name in ("sides", "steps")})
+        self.assertEqual(sorted(orders), [["left", "right", "right", "left"], ["right", "left", "left", "right"]])
+        report = json.loads(self.call("report", "--db", "hands.sqlite", "--json"))
+        for part in report["tasks"]:
+            self.assertEqual({fit["name"] for fit in part["fits"]}, {"left", "right"})
+            self.assertEqual({(pair["first"], pair["second"]) for pair in part["differences"]}, {("left", "right")})
+        self.write("doubled.toml", self.hands('for_each = "instruction"\n'))
+        warned = json.loads(self.call("check", "doubled.toml", "--rig", "simulated", "--sessions", "1", "--json"))["warnings"]
+        self.assertTrue(any("more trials than they need" in json.dumps(one) for one in warned), warned)
+        good = json.loads(self.call("check", "hands.toml", "--rig", "simulated", "--sessions", "1", "--json"))["warnings"]
+        self.assertFalse(any("more trials than they need" in json.dumps(one) for one in good), good)
 
     def test_mistakes_have_their_line(self):
         lines = TWO_TASKS.split("\n")

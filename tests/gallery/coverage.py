@@ -173,7 +173,7 @@ GALLERY = {
     "task-switching": ("sim:threshold=0.3,lapse=0", {
         f"{task}: {quantity}": value for task in ("strength", "place") for quantity, value in {
             **conditions(("switch", "repeat"), {**two_sides(0.0, 0.3, 0.0), **diffusion(signed((0.2, 0.4, 0.8), 0.3))}),
-            **conditions(("repeat",), BEFORE), **no_difference("switch", "repeat", *ALIKE)}.items()}),
+            **no_difference("switch", "repeat", *ALIKE)}.items()}),
     "stochastic-approximation": ("sim:threshold=0.4,slope=1.5", {**curve(0.4, 1.5, 0.02), **BEFORE, "share of second": 0.5}),
 }
 # file and quantity that are estimated, but have no true value
