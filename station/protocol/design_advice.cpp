@@ -294,15 +294,6 @@ void check_blocks(AdviceList& advice) {
             phrase("the sequence \"%1\" holds \"%2\" constant in each block, but \"balance\" would change it",
                    {plain(sequence->name), plain(sequence->over)}),
             phrase("remove one of the two"));
-    for (const auto& name : block.procedures)
-      if (const auto* spec = find_procedure(protocol, name);
-          sequence && spec && spec->with.count(sequence->over))
-        advice.add(
-            key_of(*spec, spec->family.empty() ? "with" : "for_each"),
-            phrase("the sequence \"%1\" has a block for each level of \"%2\", but \"%3\" sets it in all "
-                   "of them: blocks get trials of other levels, and more trials than they need",
-                   {plain(sequence->name), plain(sequence->over), plain(spec->name)}),
-            phrase("leave it out of the procedure: the sequence sets it"));
     const double trials = most_trials(protocol, block).value_or(1e9);
     (block.practice ? practice : rest) += trials;
     if (block.practice)
