@@ -103,6 +103,7 @@ Json to_json(const rehearsal::Check& check, const std::string& signal) {
                       {"duration_s", spread_json(block.duration_s)}});
   for (const auto& cue : check.cues.reports)
     cues.push_back({{"cue", cue.cue},
+                    {"task", cue.task.empty() ? Json(nullptr) : Json(cue.task)},
                     {"low", json_number(cue.low)},
                     {"high", json_number(cue.high)},
                     {"unit", cue.unit},
@@ -179,17 +180,18 @@ void print_cues(std::ostream& out, const rehearsal::CueGuard& cues) {
                cues.reports.size());
   if (cues.stopped && cues.reports.empty()) return;
   if (!cues.not_compared.empty())
-    return fmt::print(out,
-                      "Cues: NOT COMPARED ({}): it is not known whether unwanted cues give the answer away\n",
-                      cues.not_compared);
+    fmt::print(out, "Cues: NOT COMPARED ({}): it is not known whether unwanted cues give the answer away\n",
+               cues.not_compared);
   if (!cues.nothing_to_tell.empty())
-    return fmt::print(out, "Cues: there are none to compare: {}\n", cues.nothing_to_tell);
+    fmt::print(out, "Cues: there are none to compare: {}\n", cues.nothing_to_tell);
+  if (cues.reports.empty()) return;
   std::string named;
   double least = 1, most = 0;
   for (const auto& cue : cues.reports) {
     least = std::min(least, cue.chance), most = std::max(most, cue.chance);
     if (!cue.above_chance()) continue;
-    named += fmt::format("\n  {}: {} % right{} (chance {} %)", cue.cue, percent(cue.accuracy),
+    named += fmt::format("\n  {}{}: {} % right{} (chance {} %)", cue.task.empty() ? "" : cue.task + ", ",
+                         cue.cue, percent(cue.accuracy),
                          cue.error > 0 ? fmt::format(" +- {} %", number(100 * cue.error, 2)) : "",
                          percent(cue.chance));
     if (!cue.unit.empty())

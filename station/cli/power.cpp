@@ -19,6 +19,7 @@
 #include "station/core/number.hpp"
 #include "station/core/read_file.hpp"
 #include "station/core/usage_error.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/rehearsal/cue_guard.hpp"
 #include "station/rehearsal/parallel.hpp"
 #include "station/rehearsal/power.hpp"
@@ -44,9 +45,9 @@ struct PowerPart {
   std::vector<rehearsal::SessionOutcome> sessions;
   /// for each unwanted cue, what an observer could achieve with it alone; set in the first part only
   std::vector<rehearsal::CueReport> cues;
-  bool reward = false;  ///< the observer has the boundaries that earn the most
+  bool reward = false;                         ///< the observer has the boundaries that earn the most
   std::vector<rehearsal::BestReward> rewards;  ///< the same in all parts
-  bool whole = true;  ///< false if a signal stopped the work
+  bool whole = true;                           ///< false if a signal stopped the work
 };
 
 Json to_json(const PowerPart& part);
@@ -86,6 +87,7 @@ Json study_of(const PowerPart& part) {
           {"intervals", part.options.interval_sessions},
           {"replicates", part.options.replicates},
           {"people", part.options.people},
+          {"task", part.options.task},
           {"between", part.options.between},
           {"seed", part.options.seed},
           {"parts", part.options.part.of}};
@@ -117,8 +119,7 @@ Json comparisons_json(const std::map<std::vector<double>, std::array<double, 2>>
 
 Json measures_json(const rehearsal::Measures& measures) {
   Json json = Json::array();
-  for (const auto& one : measures)
-    json.push_back({one.condition, one.measure, one.unit, exact(one.value)});
+  for (const auto& one : measures) json.push_back({one.condition, one.measure, one.unit, exact(one.value)});
   return json;
 }
 
@@ -134,14 +135,11 @@ Json to_json(const SessionOutcome& session) {
                         {"claimed", f.claimed ? Json(*f.claimed) : Json(nullptr)}});
   }
   for (const auto& [name, sum] : session.generating.sums())
-    conditions[name] = {{"deadline_s", exact(sum.deadline_s)},
-                        {"caution", sum.caution ? exact(*sum.caution) : Json(nullptr)},
-                        {"one_bound", sum.one_bound},
-                        {"trials", sum.trials},
-                        {"correct", exact(sum.correct)},
-                        {"drifts", drifts_json(sum.drifts)},
-                        {"lags", lags_json(sum.lags)},
-                        {"comparisons", comparisons_json(sum.comparisons)}};
+    conditions[name] = {
+        {"deadline_s", exact(sum.deadline_s)}, {"caution", sum.caution ? exact(*sum.caution) : Json(nullptr)},
+        {"one_bound", sum.one_bound},          {"trials", sum.trials},
+        {"correct", exact(sum.correct)},       {"drifts", drifts_json(sum.drifts)},
+        {"lags", lags_json(sum.lags)},         {"comparisons", comparisons_json(sum.comparisons)}};
   return {{"trials", session.presented},
           {"scored", session.scored},
           {"right", session.right},
@@ -157,8 +155,7 @@ Json to_json(const SessionOutcome& session) {
 
 rehearsal::Measures measures_of(const Json& json) {
   rehearsal::Measures measures;
-  for (const auto& one : json)
-    measures.push_back({"", one.at(0), one.at(1), one.at(2), number(one.at(3))});
+  for (const auto& one : json) measures.push_back({"", one.at(0), one.at(1), one.at(2), number(one.at(3))});
   return measures;
 }
 
@@ -167,8 +164,7 @@ SessionOutcome session_of(const Json& json) {
   session.presented = json.at("trials"), session.scored = json.at("scored"), session.right = json.at("right");
   session.duration_s = json.at("duration_s");
   for (const auto& f : json.at("findings")) {
-    session.findings.push_back(
-        {f.at("source"), f.at("parameter"), f.at("unit"), number(f.at("value"))});
+    session.findings.push_back({f.at("source"), f.at("parameter"), f.at("unit"), number(f.at("value"))});
     if (const auto& claimed = f.at("claimed"); !claimed.is_null())
       session.findings.back().claimed = claimed.get<bool>();
     const auto& ends = f.at("interval");
@@ -177,17 +173,15 @@ SessionOutcome session_of(const Json& json) {
     interval.low = number(ends.at(0)), interval.high = number(ends.at(1));
   }
   std::map<std::string, rehearsal::GeneratingValues::Sum> sums;
-  for (const auto& [name, sum] : json.at("conditions").items())
-  {
+  for (const auto& [name, sum] : json.at("conditions").items()) {
     auto& read = sums[name];
     read.deadline_s = number(sum.at("deadline_s")), read.one_bound = sum.at("one_bound");
     if (const auto& caution = sum.at("caution"); !caution.is_null()) read.caution = number(caution);
     read.trials = sum.at("trials"), read.correct = number(sum.at("correct"));
     for (const auto& one : sum.at("drifts")) read.drifts[number(one.at(0))] = number(one.at(1));
     for (const auto& one : sum.at("lags"))
-      read.lags[number(one.at(0))] = {number(one.at(1)),
-                                      {number(one.at(2)), number(one.at(4))},
-                                      {number(one.at(3)), number(one.at(5))}};
+      read.lags[number(one.at(0))] = {
+          number(one.at(1)), {number(one.at(2)), number(one.at(4))}, {number(one.at(3)), number(one.at(5))}};
     for (const auto& one : sum.at("comparisons")) {
       std::vector<double> stimuli;
       for (const auto& stimulus : one.at(0)) stimuli.push_back(number(stimulus));
@@ -209,6 +203,7 @@ SessionOutcome session_of(const Json& json) {
 
 Json cue_json(const rehearsal::CueReport& cue) {
   return {{"cue", cue.cue},
+          {"task", cue.task},
           {"accuracy", exact(cue.accuracy)},
           {"chance", exact(cue.chance)},
           {"error", exact(cue.error)}};
@@ -251,11 +246,14 @@ PowerPart part_of(const Json& json) {
   part.protocol = study.at("protocol"), part.observer = study.at("observer");
   part.options.observers = study.at("observers"), part.options.interval_sessions = study.at("intervals");
   part.options.replicates = study.at("replicates"), part.options.seed = study.at("seed");
-  part.options.people = study.at("people"), part.options.between = study.at("between").get<simulation::Spread>();
+  part.options.task = study.at("task");
+  part.options.people = study.at("people"),
+  part.options.between = study.at("between").get<simulation::Spread>();
   part.options.part = {json.at("part"), study.at("parts")};
   for (const auto& session : json.at("sessions")) part.sessions.push_back(session_of(session));
   for (const auto& cue : json.at("cues")) {
     auto& report = part.cues.emplace_back();
+    report.task = cue.at("task");
     report.cue = cue.at("cue"), report.accuracy = number(cue.at("accuracy"));
     report.chance = number(cue.at("chance")), report.error = number(cue.at("error"));
   }
@@ -351,7 +349,7 @@ namespace power_command {
 using core::number;
 
 struct Options {
-  std::string protocol, rig, calibration, observer = "sim", out, part;
+  std::string protocol, rig, calibration, observer = "sim", out, part, task;
   std::vector<std::string> join;
   int observers = 1000, intervals = 200, people = 0;
   std::string between;
@@ -393,6 +391,7 @@ Json to_json(const std::vector<rehearsal::CueReport>& cues) {
   Json list = Json::array();
   for (const auto& cue : cues)
     list.push_back({{"cue", cue.cue},
+                    {"task", cue.task.empty() ? Json(nullptr) : Json(cue.task)},
                     {"accuracy", json_number(cue.accuracy)},
                     {"chance", json_number(cue.chance)},
                     {"accuracy_error", json_number(cue.error)},
@@ -406,8 +405,9 @@ struct Found {
   rehearsal::Power power;
   std::vector<rehearsal::CueReport> cues;
   std::vector<rehearsal::BestReward> rewards;  ///< empty without --reward
-  std::string id, title;  ///< id and title of the protocol
-  std::string signal;     ///< the signal that stopped the work; usually ""
+  std::string id, title;                       ///< id and title of the protocol
+  std::string task;                            ///< of a protocol with several: the one that this is about
+  std::string signal;                          ///< the signal that stopped the work; usually ""
 };
 
 Json to_json(const Found& found, const std::vector<std::string>& files) {
@@ -415,6 +415,7 @@ Json to_json(const Found& found, const std::vector<std::string>& files) {
   Json recoveries = Json::array();
   for (const auto& recovery : power.recoveries) recoveries.push_back(to_json(recovery));
   return {{"protocol", found.id},
+          {"task", found.task.empty() ? Json(nullptr) : Json(found.task)},
           {"observers", power.observers},
           {"wanted_observers", power.asked},
           {"stopped", found.signal.empty() ? Json(nullptr) : Json(found.signal)},
@@ -431,7 +432,9 @@ Json to_json(const Found& found, const std::vector<std::string>& files) {
           {"files", files}};
 }
 
-void print(std::ostream& out, const rehearsal::Power& power) {
+void print(std::ostream& out, const Found& found) {
+  const auto& power = found.power;
+  if (!found.task.empty()) fmt::print(out, "Task {}\n", found.task);
   fmt::print(out, "{}{} simulated sessions, on average {} trials and {} minutes each{}\n", power.observers,
              power.observers < power.asked ? fmt::format(" of {}", power.asked) : "", number(power.trials, 4),
              number(power.minutes, 3),
@@ -445,10 +448,11 @@ void print(std::ostream& out, const rehearsal::Power& power) {
     fmt::print(out, "The check of the diffusion model finds a misfit in {} % of {} sessions\n",
                number(100 * power.misfits->value, 3), power.misfits->trials);
   if (power.separated)
-    fmt::print(out,
-               "In {} % of {} sessions the answers set no limit to some distances on the scale. The prior then "
-               "decides places and intervals, and coverage can be far from 95 %\n",
-               number(100 * power.separated->value, 3), power.separated->trials);
+    fmt::print(
+        out,
+        "In {} % of {} sessions the answers set no limit to some distances on the scale. The prior then "
+        "decides places and intervals, and coverage can be far from 95 %\n",
+        number(100 * power.separated->value, 3), power.separated->trials);
   const auto named = [](const rehearsal::Recovery& r) {
     return core::say(report::in_unit(core::plain(r.parameter), core::plain(r.unit)), "en");
   };
@@ -474,39 +478,51 @@ void print(std::ostream& out, const rehearsal::Power& power) {
   fmt::print(out,
              "Truth: the parameters of the simulated observer. Bias: mean - truth (for slopes and spreads, "
              "whose distribution has a long tail: median - truth)\n");
-  fmt::print(out, "Claimed: how often a difference is found, because its interval excludes 0 (of a ratio: because the model "
-                  "with one rate is rejected), or by its corrected p value if the protocol asks for that. If the truth "
-                  "is 0, these are false alarms\n");
+  fmt::print(
+      out,
+      "Claimed: how often a difference is found, because its interval excludes 0 (of a ratio: because the "
+      "model "
+      "with one rate is rejected), or by its corrected p value if the protocol asks for that. If the truth "
+      "is 0, these are false alarms\n");
   if (power.people == 0)
-    fmt::print(out,
-               "Median width and coverage are those of the 95 % intervals of the first {} sessions, or of all "
-               "sessions if the intervals come from a posterior\n",
-               power.interval_sessions);
+    fmt::print(
+        out,
+        "Median width and coverage are those of the 95 % intervals of the first {} sessions, or of all "
+        "sessions if the intervals come from a posterior\n",
+        power.interval_sessions);
   else
     fmt::print(out, "Truth is the mean over all simulated people\n");
+}
+
+std::string named(const rehearsal::CueReport& cue) {
+  return cue.task.empty() ? cue.cue : cue.task + ": " + cue.cue;
 }
 
 void print(std::ostream& out, const std::vector<rehearsal::CueReport>& cues) {
   if (cues.empty()) return;
   fmt::print(out, "An observer who uses only one cue, with the best rule for it:\n");
   for (const auto& cue : cues)
-    fmt::print(out, "  {:<30} {:>5} % right (chance {} %){}\n", cue.cue, number(100 * cue.accuracy, 3),
+    fmt::print(out, "  {:<30} {:>5} % right (chance {} %){}\n", named(cue), number(100 * cue.accuracy, 3),
                number(100 * cue.chance, 3), cue.above_chance() ? ", above chance" : "");
 }
 
 void print(std::ostream& out, const std::vector<rehearsal::BestReward>& rewards) {
   if (rewards.empty()) return;
-  fmt::print(out, "The observer above has in each block the decision boundaries that earn the most points per minute:\n");
+  fmt::print(
+      out,
+      "The observer above has in each block the decision boundaries that earn the most points per minute:\n");
   for (const auto& reward : rewards) {
-    fmt::print(out, "  {}: {} times --observer's bound: {} points a minute, {} % right, {} s; with its own bound {}, {} %, {} s\n",
+    fmt::print(out,
+               "  {}: {} times --observer's bound: {} points a minute, {} % right, {} s; with its own bound "
+               "{}, {} %, {} s\n",
                reward.block, number(reward.caution, 2), number(reward.best.points_per_minute, 3),
                number(100 * reward.best.right, 3), number(reward.best.response_time_s, 3),
                number(reward.own.points_per_minute, 3), number(100 * reward.own.right, 3),
                number(reward.own.response_time_s, 3));
     if (reward.at_end)
-      fmt::print(out, "    {}\n", reward.caution < 1
-                                      ? "this is the lowest that is tried: it pays to guess at once"
-                                      : "this is the highest that is tried: waiting costs nothing");
+      fmt::print(out, "    {}\n",
+                 reward.caution < 1 ? "this is the lowest that is tried: it pays to guess at once"
+                                    : "this is the highest that is tried: waiting costs nothing");
   }
 }
 
@@ -543,20 +559,21 @@ void show(const Found& found, const Options& options, Context& context) {
   if (context.json)
     print_json(context.out, to_json(found, files));
   else
-    print(context.out, found.power), print(context.out, found.rewards), print(context.out, found.cues);
+    print(context.out, found), print(context.out, found.rewards), print(context.out, found.cues);
   for (const auto& file : files)
     if (!context.json) fmt::print(context.out, "wrote {}\n", file);
 }
 
 void join(const Options& options, Context& context) {
-  if (options.reward) throw UsageError("--reward cannot be used with --join: the parts say which observer they have");
+  if (options.reward)
+    throw UsageError("--reward cannot be used with --join: the parts say which observer they have");
   auto all = join_parts(options.join);
   const auto protocol = protocol::parse(all.protocol, all.path);
   all.options.observer = simulation::parse(all.observer);
   all.options.cautions = rehearsal::cautions_of(all.rewards);
   rehearsal::complete(protocol, all.options, all.sessions);
   show({rehearsal::power_of(protocol, all.options, all.sessions), all.cues, all.rewards, protocol.id,
-        protocol.title, ""},
+        protocol.title, protocol::of_task(protocol, all.options.task).task.name, ""},
        options, context);
 }
 
@@ -577,7 +594,8 @@ void power(const Options& options, Context& context) {
   wanted.people = options.people;
   if ((options.people > 0) == options.between.empty())
     throw UsageError(
-        "--people and --between belong together: how much people differ decides how many a study needs; write "
+        "--people and --between belong together: how much people differ decides how many a study needs; "
+        "write "
         "for example --people 8 --between bound=0.15,residual=0.1");
   if (options.people > 0) {
     wanted.between = simulation::parse_spread(options.between);
@@ -595,6 +613,7 @@ void power(const Options& options, Context& context) {
   if (!options.part.empty()) wanted.part = part_of(options.part, options.observers);
   const auto protocol = protocol::load(options.protocol);
   part.protocol = protocol.source, part.path = protocol.path;
+  wanted.task = protocol::chosen_task(protocol, options.task);
   const auto rig = session::calibrated_rig(session::rig_or_default(options.rig, context.err),
                                            options.calibration, context.err);
   for (const auto& note : trial::observer_notes(protocol, simulation::Observer{wanted.observer}))
@@ -627,7 +646,7 @@ void power(const Options& options, Context& context) {
     context.out << to_json(part).dump(-1, ' ', false, kInvalidBytes) << "\n";
   else if (!part.sessions.empty())
     show({rehearsal::power_of(protocol, wanted, part.sessions), part.cues, part.rewards, protocol.id,
-          protocol.title, signal},
+          protocol.title, protocol::of_task(protocol, wanted.task).task.name, signal},
          options, context);
 }
 
@@ -649,16 +668,20 @@ void add_power(CommandLine& app, Context& context) {
                                      "Number of sessions for which 95 % intervals are computed as well")
                         ->capture_default_str()
                         ->check(range(0, 1'000'000));
-  auto* people = command
-                     ->add_option("--people", options->people,
-                                  "Simulate studies with this number of people, and report what each study finds")
-                     ->check(range(3, 1000));
-  auto* between = command
-                      ->add_option("--between", options->between,
-                                   "How much people differ: standard deviations of the observer's parameters, "
-                                   "such as bound=0.15,residual=0.1 (of the logarithm; of threshold, bias and "
-                                   "criterion in their own unit)")
-                      ->value("KEY=SD,...");
+  auto* people =
+      command
+          ->add_option("--people", options->people,
+                       "Simulate studies with this number of people, and report what each study finds")
+          ->check(range(3, 1000));
+  auto* between =
+      command
+          ->add_option("--between", options->between,
+                       "How much people differ: standard deviations of the observer's parameters, "
+                       "such as bound=0.15,residual=0.1 (of the logarithm; of threshold, bias and "
+                       "criterion in their own unit)")
+          ->value("KEY=SD,...");
+  auto* task = command->add_option("--task", options->task,
+                                   "Of a protocol with several tasks: the one whose estimates are simulated");
   command->add_flag(
       "--reward", options->reward,
       "The observer has the decision boundaries that earn the most points per minute; print what they earn");
@@ -683,7 +706,8 @@ void add_power(CommandLine& app, Context& context) {
               "--join", options->join,
               "Files of all parts, in any order: print what one machine would have found in all sessions")
           ->value("FILE");
-  for (const auto* other : {protocol, rig, calibration, observers, intervals, people, between, observer, seed, part})
+  for (const auto* other :
+       {protocol, rig, calibration, observers, intervals, people, between, observer, seed, part, task})
     join->excludes(other);
   people->excludes(intervals);
   add_progress(*command, options->progress);

@@ -384,7 +384,7 @@ double quick_trial_s(const Protocol& protocol, double answer_s) {
         stimuli_s += mean(*task.foreperiod_s);
     }
   if (task.gap_s) stimuli_s += static_cast<double>(intervals.size() - 1) * middle(*task.gap_s);
-  return kCue_s + stimuli_s + answer_s + mean(protocol.timing.iti_s);
+  return middle(task.cue_s) + stimuli_s + answer_s + mean(protocol.timing.iti_s);
 }
 
 std::optional<double> accepted(const ValueAnswer& answer, double given) {

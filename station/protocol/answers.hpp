@@ -20,6 +20,9 @@ AnswerRule answer_rule_of(const Protocol& protocol, const std::string& level);
 /// only.
 std::vector<Meaning> meanings_of(const Protocol& protocol);
 
+/// The meanings of a file with several tasks: those of each, with its name.
+std::vector<Meaning> meanings_of_tasks(const Protocol& protocol);
+
 /// In 2ifc, the scene of the interval with this number (0 or 1) as the protocol lists them, by which
 /// `correct` names it.
 std::string scene_of(const Task& task, int number);
@@ -81,8 +84,8 @@ struct LatestChange {
 };
 std::optional<LatestChange> latest_change(const Protocol& protocol);
 
-/// About how long a trial lasts that is answered `answer_s` after its stimuli: the get-ready cue, the
-/// stimuli, the answer and the pause.
+/// About how long a trial of the task lasts that is answered `answer_s` after its stimuli: the get-ready cue,
+/// the stimuli, the answer and the pause.
 double quick_trial_s(const Protocol& protocol, double answer_s);
 
 /// True if answers are ratings or numbers, none of which is right or wrong.

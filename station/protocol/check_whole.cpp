@@ -9,6 +9,7 @@
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/protocol/tasks.hpp"
 
 namespace turnpoint::protocol {
 
@@ -88,12 +89,19 @@ core::Phrase instead_of_judging(const Task& task) {
   return phrase("set \"correct\" in [task]");
 }
 
+/// True if the file has a task, or several.
+bool has_task(const Reading& reading) { return reading.places.has("task") || reading.places.has("tasks"); }
+
 // Points and goals need answers that are right or wrong.
 void check_goals(const Reading& reading) {
   const auto& protocol = reading.protocol;
   const auto& task = protocol.task;
-  const bool judged = task.kind != TaskKind::adjustment && scored(task);
-  if (judged || !reading.places.has("task") || reading.places.has("task.correct")) return;
+  const auto judged = [&](const Protocol& one) {
+    return (one.task.kind != TaskKind::adjustment && scored(one.task)) ||
+           reading.places.has(key_of(one.task, "correct"));
+  };
+  const auto all = as_tasks_see(reading);
+  if (!has_task(reading) || std::any_of(all.begin(), all.end(), judged)) return;
   const auto report = [&](const std::string& key) {
     reading.findings.add(reading.places.of(key),
                          phrase("\"%1\" judges answers, but no answer is correct", {plain(key)}),
@@ -106,12 +114,11 @@ void check_goals(const Reading& reading) {
 
 // Without correct answers, a procedure cannot follow right answers, and practice cannot be passed. Reports
 // such procedures and blocks.
-void check_scored(core::TableReader& file, const Reading& reading) {
+void check_scored(const Reading& reading) {
   const auto& protocol = reading.protocol;
   const auto& task = protocol.task;
-  const auto* table = file.take("task");
-  const bool stated = table && table->find("correct");
-  if (!table || task.kind == TaskKind::adjustment || scored(task) || stated) return;
+  const bool stated = reading.places.has(key_of(task, "correct"));
+  if (!has_task(reading) || task.kind == TaskKind::adjustment || scored(task) || stated) return;
   for (const auto& spec : protocol.procedures) {
     if (procedure::follows_answers(spec) && judges(task))
       reading.findings.add(
@@ -119,7 +126,7 @@ void check_scored(core::TableReader& file, const Reading& reading) {
           phrase("the procedure \"%1\" needs answers that are right or wrong", {plain(spec.name)}),
           plain("kind = \"constant-stimuli\""));
     else if (procedure::follows_answers(spec) && spec.tracks.empty())
-      reading.findings.add(table->place,
+      reading.findings.add(reading.places.of(task.name.empty() ? "task" : "tasks." + task.name),
                            phrase("the procedure \"%1\" depends on correct answers, but no answer is correct",
                                   {plain(spec.name)}),
                            phrase("set \"correct\" in [task], or \"tracks\" in the procedure"));
@@ -291,10 +298,25 @@ void check_foreperiod(const Reading& reading) {
   const auto change = latest_change(reading.protocol);
   if (change && change->change_s >= change->whole_s)
     reading.findings.add(
-        reading.places.of("task.foreperiod_s"),
+        reading.places.of(key_of(reading.protocol.task, "foreperiod_s")),
         phrase("the second scene can begin %1 s after the tones begin, but they last only %2 s",
                {plain(core::number(change->change_s)), plain(core::number(change->whole_s))}),
         phrase("a foreperiod that is shorter than the tones for all values of the factors"));
+}
+
+// A cue whose length depends on what decides the right answer tells it.
+void check_cue(const Reading& reading) {
+  const auto& task = reading.protocol.task;
+  const auto lengths = factors_in(task.cue_s);
+  for (const auto& [id, comparison] : task.correct_answer)
+    for (const auto* side : {&comparison.left, &comparison.right})
+      for (const auto& name : factors_in(*side))
+        if (std::find(lengths.begin(), lengths.end(), name) != lengths.end())
+          return reading.findings.add(
+              task.cue_s.place,
+              phrase("the length of the cue depends on \"%1\", which decides the right answer",
+                     {plain(name)}),
+              phrase("other factors"));
 }
 
 void check_timing(core::TableReader& file, const Reading& reading) {
@@ -313,7 +335,10 @@ void check_timing(core::TableReader& file, const Reading& reading) {
         table->place, phrase("nothing ends the interval: [timing] has no \"explore_s\""),
         phrase(
             "set it to the longest time that the tones last, in seconds (or set \"duration_s\" in [task])"));
-  if (!one_interval && table->find("explore_s"))
+  const auto all = as_tasks_see(reading);
+  const bool none_explored =
+      std::none_of(all.begin(), all.end(), [](const Protocol& one) { return explored(one.task); });
+  if (none_explored && table->find("explore_s"))
     findings.add(
         place("explore_s"),
         phrase("\"explore_s\" does not apply to intervals that last for the \"duration_s\" of [task]"),
@@ -355,13 +380,12 @@ void check_timing(core::TableReader& file, const Reading& reading) {
     }
 }
 
-}  // namespace
-
-void check_whole(core::TableReader& file, Reading& reading) {
+/// Checks the protocol as one of its tasks sees it.
+void check_one(core::TableReader& file, const Reading& reading) {
   check_timing(file, reading);
   check_signal(reading);
-  check_scored(file, reading);
-  check_goals(reading);
+  check_scored(reading);
+  check_cue(reading);
   check_limits(reading);
   check_detection(reading);
   check_adjustment(reading);
@@ -371,6 +395,67 @@ void check_whole(core::TableReader& file, Reading& reading) {
   for (const auto& name : needed) check_values(sources, name, reading);
   check_answers(sources, reading);
   check_present(sources, reading);
+}
+
+}  // namespace
+
+void check_whole(core::TableReader& file, Reading& reading) {
+  check_goals(reading);
+  check_tasks(reading);
+  for (auto& one : as_tasks_see(reading)) {
+    const Reading part{
+        one,           reading.findings, reading.places, reading.declared_scenes, reading.families,
+        reading.tasks, reading.asks};
+    check_one(file, part);
+  }
+  if (reading.tasks.empty()) return;
+  std::vector<core::Problem> once;
+  for (auto& problem : reading.findings.problems) add_once(std::move(problem), once);
+  reading.findings.problems = std::move(once);
+}
+
+void check_tasks(const Reading& reading) {
+  if (reading.tasks.empty()) return;
+  std::set<std::string> asked;
+  bool known =
+      true;  // otherwise some procedure or block does not say which task it asks, as has been reported
+  for (const auto& [name, task] : reading.asks) known = known && !task.empty();
+  for (const auto& part : reading.protocol.plan) {
+    const auto& block = block_of(part);
+    if (block.kind != BlockKind::trials) continue;
+    known = known && (block.level.empty() || !block.task.empty());
+    std::set<std::string> here;
+    if (!block.task.empty()) here.insert(block.task);
+    for (const auto& name : block.procedures)
+      if (const auto found = reading.asks.find(name); found != reading.asks.end()) here.insert(found->second);
+    asked.insert(here.begin(), here.end());
+    if (here.size() < 2) continue;
+    if (block.catch_trials)
+      reading.findings.add(
+          reading.places.of(key_of(part, "catch")),
+          phrase("block \"%1\" asks several tasks, so catch trials do not know theirs", {plain(block.name)}),
+          phrase("leave it out, or add a procedure with easy levels"));
+    for (const auto& task : reading.tasks)
+      if (here.contains(task.name) && !reading.places.has(key_of(task, "cue")))
+        reading.findings.add(
+            reading.places.of("tasks." + task.name),
+            phrase("block \"%1\" asks several tasks, but nothing tells people that \"%2\" comes",
+                   {plain(block.name), plain(task.name)}),
+            phrase("give it a \"cue\", which the page shows before each trial"));
+    for (const auto& name : block.procedures)
+      if (const auto* spec = find_procedure(reading.protocol, name); spec && !spec->max_run.empty())
+        reading.findings.add(
+            reading.places.of(key_of(*spec, "order")),
+            phrase("block \"%1\" asks several tasks, whose answers do not make runs together",
+                   {plain(block.name)}),
+            phrase("leave out \"max_run\", or give each task blocks of its own"));
+  }
+  for (const auto& task : reading.tasks)
+    if (known && !asked.contains(task.name))
+      reading.findings.add(reading.places.of("tasks." + task.name),
+                           phrase("no block asks the task \"%1\"", {plain(task.name)}),
+                           phrase("add a procedure with %1 to a block, or remove the task",
+                                  {plain("task = \"" + task.name + "\"")}));
 }
 
 }  // namespace turnpoint::protocol

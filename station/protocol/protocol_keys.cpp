@@ -243,6 +243,10 @@ Keys task() {
           .required(),
       word("sound", {"none", "masking_noise"}, "noise on the rig's headphones while the surface vibrates")
           .by_default("\"none\""),
+      localised("cue", "what the page says before each trial")
+          .without_it("where to put the finger, or to get ready; required in blocks of several tasks"),
+      expression("cue_s", {kCue_s, 60, Ends::closed, "s"}, "how long it does so, in silence")
+          .without_it("0.8"),
       localised("question", "what is asked").required(),
       string("question_shows", "a factor whose value in the trial stands for %1 in the question"),
       choices("the answers").holding(1, most_choices),
@@ -356,6 +360,8 @@ Keys trials(bool of_block) {
       strings("procedures", "procedures that choose the levels"),
       string("level", "instead of procedures: the factor of the fixed levels"),
       numbers("levels", any_value, "fixed levels, presented in shuffled order"),
+      string("task", "which of [tasks] the trials with fixed levels ask")
+          .without_it("[task]; required with [tasks]"),
       integer("trials", 1, 100000, "number of trials at most").without_it("until the procedures end"),
       number(
           "lasts_s", {10, 7200, Ends::closed, "s"},
@@ -458,6 +464,7 @@ Keys procedure() {
       word("kind", procedure::kind_names(), "how it chooses levels")
           .without_it("that of the copied one; else required"),
       string("level", "the factor that it sets").without_it("that of the copied one; else required"),
+      string("task", "which of [tasks] its trials ask").without_it("[task]; required with [tasks]"),
   };
   keys.and_also(procedure::procedure_keys());
   return keys.and_also({
@@ -550,7 +557,9 @@ const Keys& all() {
       table("scene", Keys{}.with_free_names(scene()).holding(1),
             "what the surface presents: one table [scene.NAME] for each scene")
           .required(),
-      table("task", task(), "what a trial is and how people answer").required(),
+      table("task", task(), "what a trial is and how people answer").required().only_without("tasks"),
+      table("tasks", Keys{}.with_free_names(table("NAME", task(), "one of several tasks")).holding(2),
+            "several tasks, instead of [task]; each procedure names its own"),
       table("timing", timing(), "when things happen in a trial").required(),
       table("payoff", payoff(), "points for answers"),
       tables("procedure", procedure(), "how levels are chosen"),

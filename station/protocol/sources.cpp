@@ -105,6 +105,10 @@ std::vector<Source> sources_of(const Protocol& protocol) {
 
 std::vector<std::string> scenes_used(const Protocol& protocol) {
   std::vector<std::string> names;
+  for (const auto& one : protocol.by_task)
+    for (const auto& name : scenes_used(one))
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  if (!protocol.by_task.empty()) return names;
   const auto add_name = [&](const std::string& name) {
     if (protocol.scenes.count(name) && std::find(names.begin(), names.end(), name) == names.end())
       names.push_back(name);
@@ -122,6 +126,8 @@ std::vector<std::string> scenes_used(const Protocol& protocol) {
 
 std::set<std::string> factors_used(const Protocol& protocol) {
   std::set<std::string> names;
+  for (const auto& one : protocol.by_task) names.merge(factors_used(one));
+  if (!protocol.by_task.empty()) return names;
   for (const auto& name : scenes_used(protocol))
     for (const auto* expression : expressions_of(protocol.scenes.at(name))) add(*expression, names);
   for (const auto& [id, comparison] : protocol.task.correct_answer)
@@ -129,6 +135,7 @@ std::set<std::string> factors_used(const Protocol& protocol) {
   if (const auto& present = protocol.task.present) add(present->left, names), add(present->right, names);
   const auto& timing = protocol.timing;
   for (const auto& time : stimulus_times(protocol.task)) add(time, names);
+  add(protocol.task.cue_s, names);
   if (timing.iti_s.expression) add(*timing.iti_s.expression, names);
   add(timing.anticipation_s, names);
   for (const auto* delay : {&timing.delay_s.wrong, &timing.delay_s.late, &timing.delay_s.early})

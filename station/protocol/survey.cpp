@@ -23,6 +23,7 @@
 #include "station/protocol/orders.hpp"
 #include "station/protocol/resolve.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/scene/planner.hpp"
 #include "station/scene/transducer.hpp"
 
@@ -378,9 +379,9 @@ void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey)
   const auto longest = longest_of(protocol, orders);
   if (longest.run_part == nullptr) return;
   const auto& part = *longest.run_part;
-  const std::string key = longest.over_intervals             ? "task.gap_s"
-                          : part.duration_s || part.first_s  ? "task.parts"
-                          : length_of(task, part) != nullptr ? "task.duration_s"
+  const std::string key = longest.over_intervals             ? key_of(task, "gap_s")
+                          : part.duration_s || part.first_s  ? key_of(task, "parts")
+                          : length_of(task, part) != nullptr ? key_of(task, "duration_s")
                                                              : "timing.explore_s";
   if (longest.run_s > rig.limits.continuous_s + 1e-9)
     survey.problems.push_back(
@@ -391,7 +392,7 @@ void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey)
   const double most_s = rig.limits.duty * core::kExposureWindow_s;
   if (longest.minute_s > most_s + 1e-9)
     survey.problems.push_back(
-        {places.of(task.parts.empty() ? key : "task.parts"),
+        {places.of(task.parts.empty() ? key : key_of(task, "parts")),
          phrase("the tones of a trial last up to %1 s in %2 s",
                 {plain(core::number(longest.minute_s)), plain(core::number(core::kExposureWindow_s))}),
          phrase("the rig allows at most %1 s (duty = %2)",
@@ -400,16 +401,36 @@ void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey)
 
 }  // namespace
 
-Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop,
-              const std::function<void(int done, int of)>& progress) {
+namespace {
+
+/// The survey of one task, without advice.
+Survey survey_of_task(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop,
+                      const std::function<void(int done, int of)>& progress) {
   Survey survey;
   check_needs(protocol, rig, survey);
   check_limits(protocol, rig, survey);
   plan_scenes(protocol, rig, stop, progress, survey);
   for (auto& warning : carrier_warnings(protocol, rig, survey.sights))
     survey.warnings.push_back(std::move(warning));
-  for (auto& warning : advice(protocol)) survey.warnings.push_back(std::move(warning));
   return survey;
+}
+
+}  // namespace
+
+Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop,
+              const std::function<void(int done, int of)>& progress) {
+  Survey whole;
+  if (protocol.by_task.empty()) whole = survey_of_task(protocol, rig, stop, progress);
+  for (const auto& one : protocol.by_task) {
+    const auto& own = whole.by_task.emplace_back(survey_of_task(one, rig, stop, progress));
+    for (const auto& problem : own.problems) add_once(problem, whole.problems);
+    for (const auto& warning : own.warnings) add_once(warning, whole.warnings);
+    whole.sights.insert(whole.sights.end(), own.sights.begin(), own.sights.end());
+    whole.combinations += own.combinations;
+    whole.models.insert(own.models.begin(), own.models.end());
+  }
+  for (auto& warning : advice(protocol)) whole.warnings.push_back(std::move(warning));
+  return whole;
 }
 
 }  // namespace turnpoint::protocol

@@ -20,6 +20,7 @@
 #include "station/protocol/design_advice.hpp"
 #include "station/protocol/glyphs.hpp"
 #include "station/protocol/interludes.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/protocol/triggers.hpp"
 #include "station/protocol/visits.hpp"
 #include "station/rehearsal/parallel.hpp"
@@ -84,8 +85,8 @@ Rehearser person(const Protocol& protocol) {
 
 /// The time for which people explore the surface in each trial before they decide, if the task lets them
 /// choose when to answer.
-double exploring_s(const Protocol& protocol) {
-  const auto& task = protocol.task;
+double exploring_s(const Protocol& protocol, std::size_t of_task) {
+  const auto& task = protocol::of_task(protocol, of_task).task;
   const bool free =
       task.kind == protocol::TaskKind::single_interval && protocol::explored(task) && !task.foreperiod_s;
   return free ? explored_share * longest_s(protocol) : 0;
@@ -135,10 +136,12 @@ Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::u
       estimate.trials.push_back(0);
       estimate.durations_s.push_back(0);
     }
-    const auto count = static_cast<double>(trials.size());
-    estimate.trials.back() += count;
+    double exploring = 0;
+    for (const auto& row : trials)
+      exploring += exploring_s(protocol, protocol::task_of(protocol, row.procedure, start.name));
+    estimate.trials.back() += static_cast<double>(trials.size());
     estimate.durations_s.back() +=
-        rehearsal.block_s[b] + count * exploring_s(protocol) + instruction_s +
+        rehearsal.block_s[b] + exploring + instruction_s +
         breaks_s(order[static_cast<std::size_t>(start.block_index)], trials.size());
   }
   if (!estimate.blocks.empty())
@@ -458,8 +461,8 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   }
   if (check.problems.empty() && options.try_programs) check.problems = options.try_programs(*protocol);
   if (!check.problems.empty()) return check;
-  for (const auto& meaning : protocol->meanings)
-    check.measures.push_back(protocol::line_of(meaning, *protocol));
+  for (const auto* one : protocol::tasks_of(*protocol))
+    for (const auto& meaning : one->meanings) check.measures.push_back(protocol::line_of(meaning, *one));
   check.languages = options.drawable ? drawn.languages : protocol->languages;
   check.id = protocol->id, check.title = protocol->title, check.rig_name = rig->name;
   check.different_places = protocol::place_count(*protocol);

@@ -11,6 +11,7 @@
 #include "station/analysis/quantile.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/protocol/visits.hpp"
 #include "station/rehearsal/power_session.hpp"
 #include "station/report/stored_trials.hpp"
@@ -360,9 +361,10 @@ Measures true_measures(const SessionOutcome& outcome, const simulation::Observer
 
 int sessions_of(const Part& part, int observers) { return (observers - part.number) / part.of + 1; }
 
-Power power_of(const protocol::Protocol& protocol, const PowerOptions& asked,
+Power power_of(const protocol::Protocol& whole, const PowerOptions& asked,
                const std::vector<SessionOutcome>& outcomes) {
   auto options = asked;
+  const auto& protocol = protocol::of_task(whole, options.task);
   options.observers = static_cast<int>(outcomes.size());
   Power power;
   power.observers = options.observers, power.asked = asked.observers;

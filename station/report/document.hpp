@@ -131,6 +131,8 @@ struct Document {
 
 Document document(const Summary& summary);
 Document document(const Study& study);
+/// The reports of a session, one for each of its tasks, as one document.
+Document joined(std::vector<Document> of_tasks);
 /// The figures of a document, in its order.
 std::vector<NamedFigure> figures_of(const Document& document);
 

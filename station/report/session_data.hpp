@@ -111,6 +111,7 @@ struct SessionData : LevelAnalysis {
   /// itself inherits is then that of the first one, with all conditions.
   std::vector<LevelAnalysis> parts;
   std::string title;  ///< title of the protocol
+  std::string task;   ///< "" if the file has one task; otherwise all data are about this one
   std::string participant, session_id, run_mode, status;
   std::string language = "en";  ///< the language of the figures, such as "de"
   std::vector<Fact> facts;      ///< rows for the head of the report: protocol, date, rig, ...

@@ -852,6 +852,7 @@ Document document(const Summary& summary) {
   document.about = "Participant " + Text(data.participant, Look::strong) + ", session " + data.session_id +
                    ", " + data.status;
   document.facts(data.facts);
+  if (!data.task.empty()) document.heading(Text(phrase("design.keys.task"), Look::label) + ": " + data.task);
   add_meanings(data, document);
   if (judges(data.design)) {
     add_judgements(summary, document);
@@ -884,6 +885,9 @@ Document document(const Summary& summary) {
     document.heading(phrase("report.station"));
     document.facts(data.health);
   }
+  for (auto& part : document.parts)
+    if (auto* figure = std::get_if<NamedFigure>(&part); figure && !data.task.empty())
+      figure->name = data.task + "-" + figure->name;
   return document;
 }
 

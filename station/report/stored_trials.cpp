@@ -120,6 +120,16 @@ bool nothing_asked(const protocol::Protocol& protocol, const std::string& block)
   });
 }
 
+/// True if the trial asks the task of a protocol as one of several tasks sees it. Warm-up trials, which no
+/// analysis counts, belong to none.
+bool asks(const protocol::Protocol& protocol, const core::TrialRow& row, const std::string& block) {
+  if (protocol.task.name.empty()) return true;
+  if (!row.procedure.empty()) return protocol::find_procedure(protocol, row.procedure) != nullptr;
+  return row.type != core::TrialType::warmup && std::ranges::any_of(protocol.plan, [&](const auto& part) {
+           return protocol::block_of(part).name == block;
+         });
+}
+
 /// True if the trial was presented again because the finger did not move in the way that the protocol asks
 /// for.
 bool moved_otherwise(const core::TrialRow& row) {
@@ -268,6 +278,7 @@ void add_trials(const std::vector<core::BlockRecord>& blocks, const protocol::Pr
   for (const auto* block : counted) {
     if (nothing_asked(protocol, block->start.name)) continue;
     for (const auto& row : block->trials) {
+      if (!asks(protocol, row, block->start.name)) continue;
       if (!block->start.practice && protocol.sensing && protocol.sensing->repeats > 0) {
         auto& at = repeats[row.level];
         at.level = row.level;
@@ -281,6 +292,7 @@ void add_trials(const std::vector<core::BlockRecord>& blocks, const protocol::Pr
   }
   for (const auto& [level, at] : repeats) data.repeats.push_back(at);
   set_analyses(protocol, data);
+  data.task = protocol.task.name;
   data.scored = protocol::scored(protocol.task);
   data.alternatives = std::max(2, static_cast<int>(protocol.task.choices.size()));
   data.deciding = deciding_in(protocol.task.kind);

@@ -13,7 +13,8 @@ std::vector<analysis::Deciding> deciding_in(protocol::TaskKind kind);
 /// Fills in a session's trials, from the last attempt at each block, with what force cells measured. Also
 /// fills in the settings that determine their analysis: design, conditions, function, scale, ids of the
 /// answers, the parts of the report, and the rule that excludes response times. Used for both stored and
-/// simulated sessions.
+/// simulated sessions. If the file has several tasks, `protocol` is as one of them sees it, and only its
+/// trials are filled in.
 void add_trials(const std::vector<core::BlockRecord>& blocks, const protocol::Protocol& protocol,
                 SessionData& data);
 

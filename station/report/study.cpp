@@ -303,7 +303,9 @@ protocol::Protocol by_group(protocol::Protocol protocol) {
       std::find(groups.begin(), groups.end(), "instruction") == groups.end())
     by.push_back("instruction");
   by.insert(by.begin(), groups.begin(), groups.end());
-  protocol.meanings = protocol::meanings_of(protocol);
+  for (auto& one : protocol.by_task) one = by_group(std::move(one));
+  protocol.meanings =
+      protocol.by_task.empty() ? protocol::meanings_of(protocol) : protocol::meanings_of_tasks(protocol);
   return protocol;
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "station/protocol/answers.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/session/rows.hpp"
 #include "station/store/error.hpp"
 
@@ -50,8 +51,9 @@ Input OperatorGate::received(Input input) {
   if (!button) return input;
   const auto& names = stage_.buttons();
   const auto index = static_cast<std::size_t>(button->index);
-  const auto answer = setup_.protocol.task.device != protocol::Device::touch && index < names.size()
-                          ? answer_of(names[index], setup_.protocol.task)
+  const auto& task = protocol::of_task(setup_.protocol, director_.task()).task;
+  const auto answer = task.device != protocol::Device::touch && index < names.size()
+                          ? answer_of(names[index], task)
                           : std::nullopt;
   if (answer)
     input.content = input::Answer{*answer};

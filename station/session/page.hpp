@@ -108,6 +108,7 @@ struct Page {
   PageKind kind = PageKind::interval;
   std::string title;  ///< title of the block, or headline of the page
   std::string text;   ///< the question, instruction or message, in the session's language
+  std::string cue;    ///< cue: what the task says instead of the station's own words; may be ""
   std::vector<AnswerButton> answers;
   bool answers_open = false;
   bool back = false;        ///< the participant can return to the previous question or page

@@ -55,7 +55,7 @@ class Pages {
  private:
   Page blank(PageKind kind, const protocol::Block* block, const trial::Director* director) const;
   std::string text(const protocol::Localised& localised) const;
-  std::string question_in(const trial::TrialSpec* spec) const;
+  std::string question_in(std::size_t of_task, const trial::TrialSpec* spec) const;
   const protocol::Goal* goal_of(const protocol::Block& block) const;
   std::string score_in_words(double points) const;
   void add_value(Page& page, const protocol::ValueAnswer& value) const;

@@ -17,6 +17,7 @@
 #include "station/core/usage_error.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/protocol/triggers.hpp"
 #include "station/session/burst.hpp"
 #include "station/session/rows.hpp"
@@ -542,7 +543,7 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
 std::optional<trial::Event> SessionRun::event_in_trial(const Input& input, Running& trial, bool by_button) {
   const trial::Event touch{input.time_ns, trial::EventKind::touch, 0};
   const bool confiding = trial.machine.phase() == trial::Phase::confidence;
-  const auto& answer = setup_.protocol.task.value;
+  const auto& answer = protocol::of_task(setup_.protocol, trial.spec.task).task.value;
   if (const auto* given = input.as<input::Value>()) {
     const auto value = answer ? protocol::accepted(*answer, given->number) : std::nullopt;
     if (!value || confiding) return touch;
@@ -570,7 +571,7 @@ void SessionRun::glide(Running& trial) {
   const double wanted = trial.slider->glide(stage_->now_ns());
   if (!trial.is_set()) return;
   auto spec = trial.spec;
-  spec.factors[setup_.protocol.task.adjusts] = wanted;
+  spec.factors[protocol::of_task(setup_.protocol, spec.task).task.adjusts] = wanted;
   plans_.begin(spec);
   stage_->wait_for([&] { return plans_.ready(spec); });
   const auto plan = plans_.take(spec).plans.back().back();

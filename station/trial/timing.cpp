@@ -6,6 +6,7 @@
 
 #include "station/core/limits.hpp"
 #include "station/protocol/answers.hpp"
+#include "station/protocol/tasks.hpp"
 
 namespace turnpoint::trial {
 
@@ -18,7 +19,7 @@ std::int64_t whole_ns(double s) { return static_cast<std::int64_t>(s * 1e9); }
 
 /// The parts that the task names; a buzz, if there is one, is not among them.
 std::vector<Part> task_parts(const protocol::Protocol& protocol, const TrialSpec& spec) {
-  const auto& task = protocol.task;
+  const auto& task = protocol::of_task(protocol, spec.task).task;
   const auto value = [&](const protocol::Linear& time_s) { return protocol::evaluate(time_s, spec.factors); };
   std::vector<Part> parts;
   bool fresh = spec.fresh;  // only one part of a trial is longer
@@ -84,13 +85,19 @@ core::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& 
   return spec.strokes ? core::ResponseZero::interval_off : protocol.timing.response_zero;
 }
 
+double cue_s(const protocol::Protocol& protocol, const TrialSpec& spec) {
+  return spec.strokes ? protocol::kCue_s
+                      : protocol::evaluate(protocol::of_task(protocol, spec.task).task.cue_s, spec.factors);
+}
+
 double reach_s(double length_s) { return std::min(0.2, 0.5 * length_s); }
 
 SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSpec& spec,
                                std::int64_t onset_ns) {
   const auto last = parts_of(protocol, spec).back();
   SimulatedTimes times{onset_ns, onset_ns, {}, {}, onset_ns};
-  if (spec.strokes || !protocol::explored(protocol.task)) times.open_ns += whole_ns(last.length_s);
+  if (spec.strokes || !protocol::explored(protocol::of_task(protocol, spec.task).task))
+    times.open_ns += whole_ns(last.length_s);
   if (!spec.strokes)
     if (const auto parts = task_parts(protocol, spec); !parts.back().starts_s.empty())
       times.slider_ns += whole_ns(parts.back().starts_s.back());
@@ -146,14 +153,15 @@ std::int64_t simulated_done_ns(const SimulatedTimes& times, const TrialSpec& spe
 
 Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec) {
   Timing plan;
-  plan.cue_ns = ns(protocol::kCue_s);
+  const auto& task = protocol::of_task(protocol, spec.task).task;
+  plan.cue_ns = ns(cue_s(protocol, spec));
   plan.watermark_ns = core::kWatermark_ns;
   for (const auto& part : parts_of(protocol, spec)) {
     IntervalTiming timed{ns(part.length_s), {}, ns(part.silence_s)};
     for (const double start : part.starts_s) timed.scene_starts_ns.push_back(ns(start));
     plan.intervals.push_back(std::move(timed));
   }
-  plan.answer_ends_stimulus = !spec.strokes && protocol::explored(protocol.task);
+  plan.answer_ends_stimulus = !spec.strokes && protocol::explored(task);
   plan.response_zero = zero_of(protocol, spec);
   plan.deadline_ns = ns(spec.deadline_s);
   plan.anticipation_ns = ns(spec.anticipation_s);
@@ -173,7 +181,6 @@ Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& bloc
     if (block.kind == protocol::BlockKind::training) plan.feedback_ns = ns(protocol::kLate_s);
     return plan;
   }
-  const auto& task = protocol.task;
   plan.answers = task.kind == protocol::TaskKind::adjustment ? 1 : protocol::answer_count(task);
   plan.unsure = protocol::answer_index(task, protocol::kUnsure);
   if (task.confidence) plan.confidence = static_cast<int>(task.confidence->labels.size());

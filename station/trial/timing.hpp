@@ -15,6 +15,9 @@ namespace turnpoint::trial {
 /// the surface, it is the end of the interval, because the movement is judged then.
 core::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& spec);
 
+/// How long the page shows what comes, before the first stimulus of a trial.
+double cue_s(const protocol::Protocol& protocol, const TrialSpec& spec);
+
 /// When a simulated participant does what it does, given the onset of the last part. If response times
 /// count from the finger's contact, the finger touches the surface soon after the onset; if they count from
 /// its lift-off, it is lifted when the interval ends.

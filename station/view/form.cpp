@@ -25,7 +25,7 @@ struct Page {
 const std::vector<Page>& pages() {
   static const std::vector<Page> all{
       {"study", {"protocol", "random"}, {}},
-      {"question", {"task", "instructions"}, {"instructions"}},
+      {"question", {"task", "tasks", "instructions"}, {"instructions"}},
       {"scenes", {"scene"}, {"scene"}},
       {"levels", {"factor", "procedure"}, {"factor", "procedure"}},
       // the parts of a session, in the order in which they come
@@ -69,11 +69,21 @@ std::vector<std::string> languages_of(const Document& document) {
   return strings_at(document, {"protocol", "languages"});
 }
 
+/// The table of the task, or those of several tasks.
+std::vector<const Part*> tasks_of(const Document& document) {
+  std::vector<const Part*> tasks;
+  if (const auto* task = document.find({"task"}); task != nullptr) tasks.push_back(task);
+  if (const auto* several = document.find({"tasks"}); several != nullptr)
+    for (const auto& task : several->parts) tasks.push_back(&task);
+  return tasks;
+}
+
 std::vector<std::string> choices_of(const Document& document) {
   std::vector<std::string> ids;
-  if (const auto* part = document.find({"task", "choices"}); part != nullptr)
-    for (const auto& choice : part->parts)
-      if (const auto* id = choice.find("id"); id != nullptr) ids.push_back(id->scalar.string);
+  for (const auto& task : tasks_of(document))
+    if (const auto* part = task->find("choices"); part != nullptr)
+      for (const auto& choice : part->parts)
+        if (const auto* id = choice.find("id"); id != nullptr) ids.push_back(id->scalar.string);
   return ids;
 }
 
@@ -444,9 +454,10 @@ class Maker {
     const auto table = referred_table(name);
     if (table.empty() || field.closed) return;
     field.allowed = names_of(document_, table);
-    const auto* parts = document_.find({"task", "parts"});
-    if (parts != nullptr && (name == "intervals" || name == "standard" || name == "target"))
-      for (const auto& interval : parts->parts) field.allowed.push_back(interval.name);
+    if (name == "intervals" || name == "standard" || name == "target")
+      for (const auto* task : tasks_of(document_))
+        if (const auto* parts = task->find("parts"); parts != nullptr)
+          for (const auto& interval : parts->parts) field.allowed.push_back(interval.name);
     if (name == "after_each")
       for (const auto& sequence : names_of(document_, "sequence")) field.allowed.push_back(sequence);
     // A name refers to something that the file has. Until it has it, the name can be typed.
@@ -772,6 +783,7 @@ std::string new_table(const Document& document, const std::string& kind) {
 
 std::string referred_table(const std::string& key) {
   static const std::map<std::string, std::string> tables{{"base", "scene"},
+                                                         {"task", "tasks"},
                                                          {"intervals", "scene"},
                                                          {"standard", "scene"},
                                                          {"target", "scene"},

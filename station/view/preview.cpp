@@ -13,6 +13,7 @@
 #include "station/protocol/answers.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/protocol/resolve.hpp"
+#include "station/protocol/tasks.hpp"
 
 namespace turnpoint::view {
 
@@ -112,7 +113,9 @@ Preview::Preview(protocol::Protocol protocol, rig::Rig rig)
 std::vector<std::string> Preview::scenes() const {
   std::vector<std::string> used, others;
   for (const auto& [name, scene] : protocol_.scenes) {
-    const auto parts = protocol::parts_of(protocol_.task);
+    std::vector<protocol::Part> parts;
+    for (const auto* one : protocol::tasks_of(protocol_))
+      for (auto& part : protocol::parts_of(one->task)) parts.push_back(std::move(part));
     const bool shown = std::any_of(parts.begin(), parts.end(), [&, scene_name = name](const auto& part) {
       return std::find(part.scenes.begin(), part.scenes.end(), scene_name) != part.scenes.end();
     });

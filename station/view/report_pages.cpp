@@ -97,9 +97,21 @@ ReportPages report_pages(const report::Summary& summary) {
 
 ReportPages report_pages(const std::string& database, const std::string& session_id,
                          const std::string& language) {
-  auto data = report_data(database, session_id);
-  data.language = language;
-  return report_pages(report::summarise(std::move(data)));
+  std::optional<ReportPages> all;
+  for (auto& data : report_data(database, session_id)) {
+    data.language = language;
+    const auto task = data.task;
+    auto pages = report_pages(report::summarise(std::move(data)));
+    if (!task.empty())
+      for (auto& section : pages.sections) section.heading = {"", task + ": ", {section.heading}};
+    if (!all) {
+      all = std::move(pages);
+      continue;
+    }
+    std::move(pages.sections.begin(), pages.sections.end(), std::back_inserter(all->sections));
+    std::move(pages.figures.begin(), pages.figures.end(), std::back_inserter(all->figures));
+  }
+  return *std::move(all);
 }
 
 }  // namespace turnpoint::view

@@ -9,6 +9,7 @@
 #include "station/procedure/program.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/interludes.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/session/pages.hpp"
 #include "station/session/session.hpp"
 #include "station/trial/director.hpp"
@@ -77,7 +78,8 @@ class Sampler {
     const auto instruction = block.fixed.find("instruction");
     const auto* word =
         instruction == block.fixed.end() ? nullptr : std::get_if<std::string>(&instruction->second);
-    const auto told = std::tuple(block.kind, block.practice, word == nullptr ? std::string() : *word);
+    const auto asked = protocol::tasks_in(setup_.protocol, block);
+    const auto told = std::tuple(block.kind, block.practice, word == nullptr ? std::string() : *word, asked);
     if (!blocks_.insert(told).second) return;
     auto alone = setup_.protocol;
     alone.plan = {block};
@@ -87,7 +89,7 @@ class Sampler {
     auto page = pages_.instructions(block, director);
     pages_.add_mark(page, *spec);
     add("design.page.instructions", std::move(page));
-    const auto task = std::pair(block.kind, word == nullptr ? std::string() : *word);
+    const auto task = std::tuple(block.kind, word == nullptr ? std::string() : *word, spec->task);
     if (tasks_.insert(task).second) add_trial(*spec, block, director);
     const bool judged =
         block.feedback == protocol::Feedback::trial || block.kind == protocol::BlockKind::training;
@@ -112,7 +114,7 @@ class Sampler {
     const auto phase = [&](Phase of, int interval) {
       return pages_.of_phase(of, interval, spec, block, {}, director);
     };
-    const auto& task = setup_.protocol.task;
+    const auto& task = protocol::of_task(setup_.protocol, spec.task).task;
     const int last = last_of(spec);
     add("design.page.cue", phase(Phase::cue, 0));
     const auto parts = trial::parts_of(setup_.protocol, spec);
@@ -158,8 +160,8 @@ class Sampler {
   const trial::Director director_;
   std::vector<SamplePage> all_;
   std::set<std::string> interludes_;
-  std::set<std::tuple<protocol::BlockKind, bool, std::string>> blocks_, over_;
-  std::set<std::pair<protocol::BlockKind, std::string>> tasks_, feedback_;
+  std::set<std::tuple<protocol::BlockKind, bool, std::string, std::vector<std::size_t>>> blocks_, over_;
+  std::set<std::tuple<protocol::BlockKind, std::string, std::size_t>> tasks_, feedback_;
   bool rest_ = false;
 };
 

@@ -140,6 +140,8 @@ void add_trials(std::vector<Exhibit>& all, const Words& words) {
   cue.text.clear();
   cue.answers_open = false;
   all.push_back({"cue", cue});
+  cue.cue = boundary(words, PageKind::stimulus).text;  // what a task of several says before its trials
+  all.push_back({"cue-task", cue});
   all.push_back({"explore", boundary(words, PageKind::stimulus)});
   all.push_back({"response", boundary(words, PageKind::response)});
   Page now = boundary(words, PageKind::stimulus);

@@ -23,6 +23,7 @@ class PageModel : public QObject {
   Q_PROPERTY(Kind kind READ kind NOTIFY changed)
   Q_PROPERTY(QString title READ title NOTIFY changed)
   Q_PROPERTY(QString text READ text NOTIFY changed)
+  Q_PROPERTY(QString cue READ cue NOTIFY changed)
   Q_PROPERTY(QStringList answers READ answers NOTIFY changed)
   Q_PROPERTY(QStringList captions READ captions NOTIFY changed)
   Q_PROPERTY(double valueLow READ value_low NOTIFY changed)
@@ -120,6 +121,7 @@ class PageModel : public QObject {
   Kind kind() const;
   QString title() const { return QString::fromStdString(page_.title); }
   QString text() const { return QString::fromStdString(page_.text); }
+  QString cue() const { return QString::fromStdString(page_.cue); }
   QStringList answers() const;
   QStringList captions() const;
   double value_low() const { return page_.value.low; }
