@@ -168,6 +168,12 @@ constexpr int kRefusedBeforePage = 2;
 /// rest.
 constexpr double kLongStretch_s = 5;
 
+FollowPlans follow_plans_of(const PlanAhead::Plans& plans) {
+  FollowPlans follows;
+  for (const auto& scenes : plans) follows.push_back(scenes.front().follow);
+  return follows;
+}
+
 bool is_over(trial::Phase phase) {
   return phase == trial::Phase::feedback || phase == trial::Phase::late || phase == trial::Phase::interval ||
          phase == trial::Phase::done;
@@ -227,6 +233,8 @@ Flow SessionRun::prepare_trial(const trial::TrialSpec& spec) {
     if (keep_limits(spec) == Flow::stop) return Flow::stop;
     stage_->wait_for([&] { return plans_.ready(spec); });
     check_plans(spec);
+    const auto& planned = plans_.take(spec);
+    stage_->follow(follow_plans_of(planned.plans), planned.bursts);
   } catch (const scene::Unreachable& unreachable) {
     gate_.stop(unreachable.what());
   } catch (const LimitExceeded& limit) {
@@ -269,10 +277,12 @@ void SessionRun::check_plans(const trial::TrialSpec& spec) {
   const auto parts = trial::parts_of(setup_.protocol, spec);
   for (std::size_t i = 0; i < plans.size(); ++i)
     for (const auto& plan : plans[i]) {
-      account_.check(plan.peak_displacement_m, parts[i].length_s);
+      const double gain = plan.follow ? plan.follow->map.most_gain() : 1;
+      account_.check(gain * plan.peak_displacement_m, parts[i].length_s);
       if (setup_.run_mode != core::RunMode::live) continue;
       for (const auto& tone : plan.tones)
-        if (const auto problem = session::sound_problem(tone.frequency_Hz, tone.full_scale, setup_.sound))
+        if (const auto problem =
+                session::sound_problem(tone.frequency_Hz, gain * tone.full_scale, setup_.sound))
           throw LimitExceeded(core::say(*problem, "en"));
     }
 }

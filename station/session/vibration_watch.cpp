@@ -196,6 +196,11 @@ std::optional<sensing::FingerNow> VibrationWatch::finger_now() {
   return finger_ ? finger_->now() : std::nullopt;
 }
 
+std::optional<sensing::Readings> VibrationWatch::zero() {
+  const std::lock_guard lock(mutex_);
+  return finger_ ? finger_->zero() : std::nullopt;
+}
+
 std::shared_ptr<const sensing::TrialForces> VibrationWatch::forces(std::size_t interval) {
   const std::lock_guard lock(mutex_);
   if (!finger_ || interval + 1 != proofs_.size()) return nullptr;

@@ -85,6 +85,9 @@ class VibrationWatch {
   /// Returns force and movement of the finger at this moment. Empty if they are not known, and without force
   /// cells.
   std::optional<sensing::FingerNow> finger_now();
+  /// Readings of the force cells without a finger before the expected trial; see
+  /// sensing::TrialFinger::zero().
+  std::optional<sensing::Readings> zero();
   /// Returns what the force cells measured in the trial, if `interval` is its last interval. Null for other
   /// intervals, and without force cells.
   std::shared_ptr<const sensing::TrialForces> forces(std::size_t interval);
