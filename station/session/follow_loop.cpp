@@ -136,7 +136,7 @@ void FollowLoop::note(const audio::Event& event) {
 }
 
 void FollowLoop::gather() {
-  for (FollowedPeriod period; done_->pop(period);) followed_.periods.push_back(period);
+  for (follow::Recorded period; done_->pop(period);) followed_.periods.push_back(period);
 }
 
 Followed FollowLoop::take() {

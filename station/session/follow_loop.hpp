@@ -10,7 +10,7 @@
 #include "station/audio/alsa_capture.hpp"
 #include "station/audio/engine.hpp"
 #include "station/audio/ring.hpp"
-#include "station/follow/follower.hpp"
+#include "station/follow/record.hpp"
 #include "station/sensing/force_calibration.hpp"
 #include "station/sensing/trial_finger.hpp"
 
@@ -29,18 +29,9 @@ struct Alignment {
   std::uint32_t numbering = 0;
 };
 
-/// One update of an interval that follows the finger, as it was made.
-struct FollowedPeriod {
-  std::int32_t interval = 0;
-  std::int64_t frame = 0;         ///< first playback frame of the period for which it gives the gains
-  std::int64_t sample_frame = 0;  ///< playback frame at which the forces were measured
-  follow::Update update;
-};
-static_assert(std::is_trivially_copyable_v<FollowedPeriod>);
-
 /// What the intervals of a trial did that follow the finger.
 struct Followed {
-  std::vector<FollowedPeriod> periods;  ///< in the order in which they were made
+  std::vector<follow::Recorded> periods;  ///< in the order in which they were made
   /// frames from which a burst went to its resting gain because its gains came too late
   std::vector<std::int64_t> late;
   std::int64_t not_recorded = 0;  ///< updates that nobody has taken in time
@@ -93,8 +84,8 @@ class FollowLoop final : public audio::CaptureListener {
   const int channels_;
   std::atomic<Trial*> offered_{nullptr};  ///< from the session to the capture
   std::atomic<std::uint64_t> taken_{0};   ///< number of the newest trial that the capture has taken
-  std::unique_ptr<audio::Ring<FollowedPeriod, 4096>> done_ =
-      std::make_unique<audio::Ring<FollowedPeriod, 4096>>();
+  std::unique_ptr<audio::Ring<follow::Recorded, 4096>> done_ =
+      std::make_unique<audio::Ring<follow::Recorded, 4096>>();
   std::atomic<std::int64_t> not_recorded_{0};
   // used by the session only
   std::unique_ptr<Trial> next_;

@@ -213,7 +213,7 @@ TEST_CASE("the samples have exactly the gains of the updates, from one period to
       const double gain = static_cast<double>(period.update.gain[k]), middle = (before + gain) / 2;
       before = gain;
       const auto frame = period.frame + static_cast<std::int64_t>(k) * kEighth;
-      if (frame < bench.start() + 1920 || frame + kEighth > 0.39 * 192000) continue;
+      if (frame < bench.start() + 1920 || frame + kEighth > 74880) continue;
       worst = std::max(worst, std::abs(gain_at(bench, frame) - middle));
     }
   }
@@ -338,7 +338,7 @@ TEST_CASE("a plan that cannot be followed is refused with its reason", "[session
   contains(refused(plan, cells_of({}), 12000), "carrier");
   auto slow = plan;
   slow.timing.buffer_periods = 7;
-  contains(refused(slow, cells_of({}), 30000), "4.0 ms");
+  contains(refused(slow, cells_of({}), 30000), "allowed: 4 ms");
   auto other = plan;
   other.timing = follow::timing_of(96000);
   contains(refused(other, cells_of({}), 30000), "96000 Hz");
