@@ -415,9 +415,11 @@ void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
     return perform(trial.machine.handle({stage_->now_ns(), trial::EventKind::abort, 0}), trial);
   }
   if (trial.onsets.empty()) return;  // the stage has added a fault with the reason to the inputs
+  trial.follows = follow_plans_of(plans_.take(trial.spec).plans);
   const auto parts = trial::parts_of(setup_.protocol, trial.spec);
   for (std::size_t i = 0; i < bursts.size(); ++i) {
     const auto on_ns = trial.onsets[i].time_ns;
+    trial.presented.push_back({trial.onsets[i].frame, trial.onsets[i].frame + bursts[i].length_frames});
     surface_.push_back({on_ns, on_ns + static_cast<std::int64_t>(parts[i].length_s * 1e9)});
     perform(trial.machine.handle({on_ns, trial::EventKind::onset, static_cast<int>(i)}), trial);
   }
@@ -483,6 +485,12 @@ void SessionRun::leave_surface() {
 
 void SessionRun::finish_row(Running& trial) {
   auto& row = trial.row;
+  const auto followed = stage_->followed();
+  if (!trial.onsets.empty()) {
+    const auto& onset = trial.onsets.front();
+    add_followed(row, followed, trial.follows, trial.presented, setup_.rig.output.rate_Hz,
+                 {onset.frame, 1e-9 * static_cast<double>(onset.time_ns - started_ns_)});
+  }
   trial::fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_, trial.value);
   const bool good = row.surface.proof == core::Proof::ok || row.surface.proof == core::Proof::flagged;
   if (good && trial.measured < trial.begun) row.surface.proof = core::Proof::unproven;

@@ -39,6 +39,7 @@ const char* const kHeader =
     "confidence,confidence_time,points,"
     "sensing,contact_s,strokes,normal_n,normal_sd_n,normal_in_window,speed_mm_s,speed_in_window,mu_low,"
     "mu_high,boundary_felt_mm,boundary_se_mm,lag_mm,tare_mn,mu,silence_db,silence_tone_db,"
+    "followed,mu_asked,mu_commanded,mu_felt,follow_lag_ms,follow_inside,envelope_error_db,envelope_lag_us,"
     "previous_level,previous_correct_response,previous_response,previous_correct,previous_outcome,"
     "columns_version";
 
