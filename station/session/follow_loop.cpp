@@ -110,7 +110,9 @@ void FollowLoop::begin(std::span<const Burst> bursts, const std::optional<sensin
   }
   for (auto& one : trial->all) {
     one.burst = bursts[static_cast<std::size_t>(one.interval)];
-    begun_.push_back(one.burst);
+    const auto& plan = one.follower.plan();
+    begun_.push_back({static_cast<std::size_t>(one.interval), one.burst, plan.timing,
+                      std::llround((plan.ramp_s + plan.steady_s + plan.resume_s) * plan.timing.rate_Hz)});
   }
   offer(std::move(trial));
   active_ = true;
@@ -131,12 +133,50 @@ void FollowLoop::offer(std::unique_ptr<Trial> trial) {
 
 void FollowLoop::note(const audio::Event& event) {
   if (event.kind != audio::EventKind::burst_unfollowed) return;
-  if (std::any_of(begun_.begin(), begun_.end(), [&](const Burst& one) { return one.burst == event.burst; }))
+  if (std::any_of(begun_.begin(), begun_.end(),
+                  [&](const Begun& one) { return one.burst.burst == event.burst; }))
     followed_.late.push_back(event.frame);
 }
 
 void FollowLoop::gather() {
   for (follow::Recorded period; done_->pop(period);) followed_.periods.push_back(period);
+}
+
+sensing::CommandedEnvelope FollowLoop::commanded(std::size_t interval) {
+  gather();
+  sensing::CommandedEnvelope envelope;
+  const auto begun =
+      std::find_if(begun_.begin(), begun_.end(), [&](const Begun& one) { return one.interval == interval; });
+  if (begun == begun_.end()) return envelope;
+  const std::int64_t period = begun->timing.period_frames, eighth = period / follow::kGains;
+  const auto is_of = [&](const follow::Recorded& one) {
+    return one.interval == static_cast<std::int32_t>(interval);
+  };
+  const auto first = std::find_if(followed_.periods.begin(), followed_.periods.end(), is_of);
+  if (first == followed_.periods.end()) return envelope;
+  const auto last = std::find_if(followed_.periods.rbegin(), followed_.periods.rend(), is_of);
+  envelope.start_frame = first->frame + eighth;
+  envelope.step_frames = static_cast<int>(eighth);
+  envelope.gain.assign(static_cast<std::size_t>((last->frame - first->frame) / eighth + follow::kGains),
+                       std::nan(""));
+  for (const auto& one : followed_.periods)
+    for (std::size_t k = 0; k < follow::kGains && is_of(one); ++k)
+      envelope.gain[static_cast<std::size_t>((one.frame - first->frame) / eighth) + k] =
+          static_cast<double>(one.update.gain[k]);
+  const auto place = [&](std::int64_t frame) {
+    return std::clamp<std::int64_t>((frame - envelope.start_frame) / eighth, 0,
+                                    static_cast<std::int64_t>(envelope.gain.size()));
+  };
+  for (const auto late : followed_.late) {
+    if (late < begun->burst.start_frame || late >= begun->burst.end_frame) continue;
+    auto back = place(late);
+    while (back < static_cast<std::int64_t>(envelope.gain.size()) &&
+           !std::isfinite(envelope.gain[static_cast<std::size_t>(back)]))
+      ++back;
+    back = std::min(back + begun->away_frames / eighth + 1, static_cast<std::int64_t>(envelope.gain.size()));
+    std::fill(envelope.gain.begin() + place(late), envelope.gain.begin() + back, std::nan(""));
+  }
+  return envelope;
 }
 
 Followed FollowLoop::take() {

@@ -11,6 +11,7 @@
 #include "station/audio/engine.hpp"
 #include "station/audio/ring.hpp"
 #include "station/follow/record.hpp"
+#include "station/sensing/follow_proof.hpp"
 #include "station/sensing/force_calibration.hpp"
 #include "station/sensing/trial_finger.hpp"
 
@@ -69,6 +70,9 @@ class FollowLoop final : public audio::CaptureListener {
   void note(const audio::Event& event);
   /// Moves what was done to the session's side; call it at least once a second.
   void gather();
+  /// The gains that an interval of the trial has been given so far, without those of times at which the burst
+  /// went to its resting gain because they came too late.
+  sensing::CommandedEnvelope commanded(std::size_t interval);
   /// What was done since begin().
   Followed take();
 
@@ -92,7 +96,13 @@ class FollowLoop final : public audio::CaptureListener {
   std::deque<std::unique_ptr<Trial>> kept_;  ///< the capture may still use them
   std::uint64_t last_number_ = 0;
   bool active_ = false;  ///< a trial was begun, and has not ended
-  std::vector<Burst> begun_;
+  struct Begun {
+    std::size_t interval = 0;
+    Burst burst;
+    follow::Timing timing;
+    std::int64_t away_frames = 0;  ///< longest time from the end of a gap until the burst follows again
+  };
+  std::vector<Begun> begun_;
   Followed followed_;
   // used by the capture only
   Trial* trial_ = nullptr;

@@ -90,7 +90,8 @@ class RealStage : public Stage {
     auto onsets = schedule(*stream_, intervals, earliest_ns, presented_);
     if (capture_ && !onsets.empty()) {
       auto& watch = capture_->feed().watch();
-      watch.expect(scheduled(intervals, presented_), stream_->frame_at(now_ns()).value_or(0));
+      watch.expect(scheduled(intervals, presented_), stream_->frame_at(now_ns()).value_or(0),
+                   [this](std::size_t i) { return loop_->commanded(i); });
       if (loop_->prepared()) {
         const auto alignment = capture_->feed().alignment();
         loop_->begin(followed_of(presented_), alignment ? watch.zero() : std::nullopt,

@@ -167,12 +167,16 @@ void add_measured(core::TrialRow& row, const sensing::IntervalResult& measured, 
   for (const auto& tone : measured.glides)
     if (tone.seen) further(surface.drive_ratio_dB, tone.worst_ratio_dB);
   if (measured.onset_error_us) further(surface.onset_error_us, *measured.onset_error_us);
-  if (!measured.tones.empty())
+  if (!measured.tones.empty() && !measured.envelope_error_dB)
     surface.drive_residual_dB = std::max(surface.drive_residual_dB.value_or(-1e9), measured.residual_dB);
   if (const auto& silence = measured.silence; silence && silence->rms_dB > sensing::kNothing_dB) {
     surface.silence_dB = silence->rms_dB;
     if (silence->level_dB > sensing::kNothing_dB) surface.silence_tone_dB = silence->level_dB;
   }
+  if (measured.envelope_error_dB)
+    row.follow.envelope_error_dB =
+        std::max(row.follow.envelope_error_dB.value_or(-1e9), *measured.envelope_error_dB);
+  if (measured.envelope_lag_us) further(row.follow.envelope_lag_us, *measured.envelope_lag_us);
   const sensing::Finding now{measured.cause, measured.verdict};
   const auto all = first ? now : sensing::concluded({{surface.proof_cause, surface.proof}, now});
   surface.proof = all.verdict;

@@ -100,7 +100,7 @@ class VirtualStage : public Stage {
     if (watch_) {
       const auto bursts = scheduled(intervals, presented_);
       room_->expect(intervals);
-      watch_->expect(bursts, stream_->frame());
+      watch_->expect(bursts, stream_->frame(), [this](std::size_t i) { return loop_->commanded(i); });
       room_->touch(bursts.back().start_frame + bursts.back().length_frames - stream_->frame());
       if (loop_->prepared()) {
         const auto delay = static_cast<std::int64_t>(std::floor(room_->capture().delay_frames));
