@@ -169,6 +169,12 @@ constexpr int kRefusedBeforePage = 2;
 /// rest.
 constexpr double kLongStretch_s = 5;
 
+FollowPlans follow_plans_of(const PlanAhead::Plans& plans) {
+  FollowPlans follows;
+  for (const auto& scenes : plans) follows.push_back(scenes.front().follow);
+  return follows;
+}
+
 bool is_over(trial::Phase phase) {
   return phase == trial::Phase::feedback || phase == trial::Phase::late || phase == trial::Phase::interval ||
          phase == trial::Phase::done;
@@ -228,6 +234,8 @@ Flow SessionRun::prepare_trial(const trial::TrialSpec& spec) {
     if (keep_limits(spec) == Flow::stop) return Flow::stop;
     stage_->wait_for([&] { return plans_.ready(spec); });
     check_plans(spec);
+    const auto& planned = plans_.take(spec);
+    stage_->follow(follow_plans_of(planned.plans), planned.bursts);
   } catch (const scene::Unreachable& unreachable) {
     gate_.stop(unreachable.what());
   } catch (const LimitExceeded& limit) {
@@ -270,10 +278,12 @@ void SessionRun::check_plans(const trial::TrialSpec& spec) {
   const auto parts = trial::parts_of(setup_.protocol, spec);
   for (std::size_t i = 0; i < plans.size(); ++i)
     for (const auto& plan : plans[i]) {
-      account_.check(plan.peak_displacement_m, parts[i].length_s);
+      const double gain = plan.follow ? plan.follow->map.most_gain() : 1;
+      account_.check(gain * plan.peak_displacement_m, parts[i].length_s);
       if (setup_.run_mode != core::RunMode::live) continue;
       for (const auto& tone : plan.tones)
-        if (const auto problem = session::sound_problem(tone.frequency_Hz, tone.full_scale, setup_.sound))
+        if (const auto problem =
+                session::sound_problem(tone.frequency_Hz, gain * tone.full_scale, setup_.sound))
           throw LimitExceeded(core::say(*problem, "en"));
     }
 }
@@ -406,9 +416,11 @@ void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
     return perform(trial.machine.handle({stage_->now_ns(), trial::EventKind::abort, 0}), trial);
   }
   if (trial.onsets.empty()) return;  // the stage has added a fault with the reason to the inputs
+  trial.follows = follow_plans_of(plans_.take(trial.spec).plans);
   const auto parts = trial::parts_of(setup_.protocol, trial.spec);
   for (std::size_t i = 0; i < bursts.size(); ++i) {
     const auto on_ns = trial.onsets[i].time_ns;
+    trial.presented.push_back({trial.onsets[i].frame, trial.onsets[i].frame + bursts[i].length_frames});
     surface_.push_back({on_ns, on_ns + static_cast<std::int64_t>(parts[i].length_s * 1e9)});
     perform(trial.machine.handle({on_ns, trial::EventKind::onset, static_cast<int>(i)}), trial);
   }
@@ -474,6 +486,12 @@ void SessionRun::leave_surface() {
 
 void SessionRun::finish_row(Running& trial) {
   auto& row = trial.row;
+  const auto followed = stage_->followed();
+  if (!trial.onsets.empty()) {
+    const auto& onset = trial.onsets.front();
+    add_followed(row, followed, trial.follows, trial.presented, setup_.rig.output.rate_Hz,
+                 {onset.frame, 1e-9 * static_cast<double>(onset.time_ns - started_ns_)});
+  }
   trial::fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_, trial.value);
   const bool good = row.surface.proof == core::Proof::ok || row.surface.proof == core::Proof::flagged;
   if (good && trial.measured < trial.begun) row.surface.proof = core::Proof::unproven;

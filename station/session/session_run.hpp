@@ -14,6 +14,7 @@
 #include "station/session/pages.hpp"
 #include "station/session/plan_ahead.hpp"
 #include "station/session/programs.hpp"
+#include "station/session/rows.hpp"
 #include "station/session/session.hpp"
 #include "station/session/stage.hpp"
 #include "station/store/session_log.hpp"
@@ -59,6 +60,8 @@ class SessionRun {
     std::optional<double> friction_level = {};
     /// true if the answer came from a button, so that the touch panel's latency does not apply
     bool by_button = false;
+    FollowPlans follows = {};  ///< the plans of the scheduled intervals that follow the finger
+    std::vector<FollowedRange> presented = {};  ///< the frames of the scheduled intervals
   };
   /// Times at which one interval begins and ends on the surface.
   struct OnSurface {

@@ -22,6 +22,8 @@ constexpr double kStep_Hz = 20;  // distance between two points of a pick-up's r
 // The buffer turns the station's carrier into this peak voltage on the bridges. The reference input takes
 // more, because the pilot is added to the carrier.
 constexpr double kExcitation_V = 2.5, kReference_V = 4.0;
+// windows in which the amplitudes of tones are found that the finger feels
+constexpr double kShortWindow_s = 1e-3, kLongWindow_s = 10e-3;
 constexpr double kHeight_m = 8e-3;  // height of the surface above the pivots of the force cells
 
 /// Returns the ratio of bridge signal to reference signal for a force of 1 N on a cell.
@@ -127,7 +129,13 @@ void SimulatedRoom::expect(std::span<const audio::PreparedBurst> bursts) {
   }
   std::sort(frequencies.begin(), frequencies.end());
   frequencies.erase(std::unique(frequencies.begin(), frequencies.end()), frequencies.end());
-  plant_.set_tones(frequencies);
+  const bool follows =
+      std::any_of(bursts.begin(), bursts.end(), [](const auto& burst) { return burst.following.follows(); });
+  // The finger feels a gain that follows it as soon as the distance of the tones allows to tell them apart.
+  double window_s = follows ? kShortWindow_s : kLongWindow_s;
+  for (std::size_t i = 1; i < frequencies.size(); ++i)
+    window_s = std::max(window_s, std::min(kLongWindow_s, 10 / (frequencies[i] - frequencies[i - 1])));
+  plant_.set_tones(frequencies, window_s);
 }
 
 void SimulatedRoom::touch(std::int64_t frames) {

@@ -377,5 +377,5 @@ TEST_CASE("the bytes over which the checksums of a session are made change only 
       "UPDATE segment SET session_id = (SELECT session_id FROM session); DELETE FROM link");
   Transaction transaction(database);
   Chain chain(database, "00000000-0000-4000-8000-000000000000");
-  CHECK(chain.add().sha256 == "c46b47c63bf331ecfe50aed5962c3a85e1dffe75faf9d27102a8aa96071dc8e7");
+  CHECK(chain.add().sha256 == "50f8772fee6c2b1a05db411556a6f63b2d507963243b5ef41436fbf9a8b6d3a2");
 }

@@ -1,0 +1,130 @@
+#include "station/follow/record.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace turnpoint::follow {
+namespace {
+
+constexpr double kLeastLag_s = -0.01, kMostLag_s = 0.03;
+constexpr double kLeastVariation = 0.05;
+constexpr std::size_t kFewest = 100;  // felt values, for a lag
+
+/// What was asked and commanded over time, at the middles of the periods.
+class Course {
+ public:
+  Course(std::span<const Recorded> periods, int period_frames) : periods_(periods), period_(period_frames) {}
+
+  /// The two periods around a frame and the way between their middles; empty unless both follow the finger.
+  struct Between {
+    const Update *before, *after;
+    double along;
+  };
+  std::optional<Between> at(double frame) const {
+    const double middle = frame - 0.5 * period_;
+    const auto after = std::upper_bound(
+        periods_.begin(), periods_.end(), middle,
+        [](double value, const Recorded& one) { return value < static_cast<double>(one.frame); });
+    if (after == periods_.begin() || after == periods_.end()) return std::nullopt;
+    const Recorded &a = *(after - 1), &b = *after;
+    if (b.frame - a.frame != period_ || !follows(a.update) || !follows(b.update)) return std::nullopt;
+    return Between{&a.update, &b.update, (middle - static_cast<double>(a.frame)) / period_};
+  }
+
+ private:
+  static bool follows(const Update& update) { return update.fault == Fault::none && update.following >= 1; }
+  std::span<const Recorded> periods_;
+  int period_;
+};
+
+double asked(const Course::Between& at) {
+  return at.before->asked + at.along * (at.after->asked - at.before->asked);
+}
+double modelled(const Course::Between& at) {
+  return at.before->modelled + at.along * (at.after->modelled - at.before->modelled);
+}
+
+struct Felt {
+  double frame, friction;
+};
+
+/// Correlation of what was felt with what was asked `lag` frames before; empty if too few values have both.
+std::optional<double> correlation(std::span<const Felt> felt, const Course& course, double lag) {
+  double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
+  for (const Felt& one : felt) {
+    const auto at = course.at(one.frame - lag);
+    if (!at) continue;
+    const double a = asked(*at), f = one.friction;
+    n += 1, x += a, y += f, xx += a * a, yy += f * f, xy += a * f;
+  }
+  if (n < kFewest) return std::nullopt;
+  const double a = xx / n - x / n * x / n, f = yy / n - y / n * y / n;
+  if (!(std::sqrt(std::max(a, 0.0)) >= kLeastVariation * x / n) || !(f > 0)) return std::nullopt;
+  return (xy / n - x / n * y / n) / std::sqrt(a * f);
+}
+
+std::optional<double> lag_frames(std::span<const Felt> felt, const Course& course, const Timing& timing) {
+  const auto periods = [&](double seconds) {
+    return static_cast<int>(std::lround(seconds * timing.rate_Hz / timing.period_frames));
+  };
+  const int first = periods(kLeastLag_s), last = periods(kMostLag_s);
+  std::vector<std::optional<double>> found;
+  for (int k = first; k <= last; ++k) found.push_back(correlation(felt, course, k * timing.period_frames));
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < found.size(); ++k)
+    if (found[k] && (!found[best] || *found[k] > *found[best])) best = k;
+  if (!found[best] || best == 0 || best + 1 == found.size() || !found[best - 1] || !found[best + 1])
+    return std::nullopt;
+  const double before = *found[best - 1], here = *found[best], after = *found[best + 1];
+  const double bend = before - 2 * here + after;
+  const double part = bend < 0 ? 0.5 * (before - after) / bend : 0;
+  return (first + static_cast<double>(best) + part) * timing.period_frames;
+}
+
+}  // namespace
+
+Summary summarise(std::span<const Recorded> periods, const Plan& plan, std::int64_t first_frame,
+                  std::int64_t end_frame) {
+  const Course course(periods, plan.timing.period_frames);
+  const bool friction = plan.pattern.asked == Asked::friction;
+  std::vector<Felt> felt;
+  double sum_asked = 0, sum_modelled = 0, sum_felt = 0, inside = 0;
+  const Recorded* before = nullptr;
+  for (const Recorded& one : periods) {
+    const bool again = before != nullptr && before->sample_frame == one.sample_frame;
+    before = &one;
+    // The cells say later what the finger feels.
+    const double frame = static_cast<double>(one.sample_frame) - plan.timing.cells_s * plan.timing.rate_Hz;
+    if (again || !std::isfinite(one.update.felt) || frame < static_cast<double>(first_frame) ||
+        frame >= static_cast<double>(end_frame))
+      continue;
+    const auto at = course.at(frame);
+    if (!at) continue;
+    felt.push_back({frame, one.update.felt});
+    sum_asked += asked(*at), sum_modelled += modelled(*at), sum_felt += one.update.felt;
+    inside += std::abs(one.update.felt - asked(*at)) < kTolerance * asked(*at) ? 1 : 0;
+  }
+  Summary summary;
+  if (felt.empty()) return summary;
+  const auto n = static_cast<double>(felt.size());
+  summary.commanded = sum_modelled / n, summary.felt = sum_felt / n;
+  if (!friction) return summary;
+  summary.asked = sum_asked / n, summary.inside = inside / n;
+  if (const auto lag = lag_frames(felt, course, plan.timing)) summary.lag_s = *lag / plan.timing.rate_Hz;
+  return summary;
+}
+
+std::string fault_names(std::span<const Recorded> periods, bool late) {
+  const auto bit = [](Fault fault) { return 1u << static_cast<unsigned>(fault); };
+  std::uint32_t faults = late ? bit(Fault::late) : 0;
+  for (const Recorded& one : periods)
+    faults |= one.update.interrupted |
+              (one.update.seen & (bit(Fault::late) | bit(Fault::reference) | bit(Fault::force)));
+  std::string text;
+  for (int k = 1; k < kFaults; ++k)
+    if (faults >> k & 1u) text += (text.empty() ? "" : " ") + std::string(name(static_cast<Fault>(k)));
+  return text.empty() ? "ok" : text;
+}
+
+}  // namespace turnpoint::follow
