@@ -73,6 +73,10 @@ std::vector<Choice> read_choice_list(core::TableReader& reader, const std::strin
 /// Reads the name of a scene. Reports a problem if the file has no such scene.
 std::string read_scene_name(core::TableReader& reader, const std::string& key, const Reading& reading);
 
+/// Reads what a scene's gain follows, from its table `follow`.
+Follow read_follow(const core::Value& table, const std::string& path, core::Findings& findings,
+                   const Reading& reading);
+
 /// Reads a number or an expression of factors; empty if the key is not there.
 std::optional<Linear> read_expression(core::TableReader& reader, const std::string& key,
                                       const Reading& reading);
