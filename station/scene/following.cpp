@@ -29,7 +29,8 @@ constexpr double kUsable_Hz = 100;
 constexpr double kUsableShare = 1.0 / 3;
 constexpr double kHighestSpeed_m_s = 1.0, kLowestSpeed_m_s = 1e-3;
 constexpr int kTexturePlaces = 5;
-constexpr double kCurveStep_m = 0.5e-3;
+constexpr double kMostResidual = 0.15;      // as in follow::Presented
+constexpr double kCurveStep_m = 0.0937e-3;  // no multiple of it is a usual period
 
 core::Phrase mm(double value_m, int digits = 4) { return plain(number(1e3 * value_m, digits)); }
 core::Phrase Hz(double value, int digits = 4) { return plain(number(value, digits)); }
@@ -179,9 +180,10 @@ std::optional<Swing> swing_at(const Plan& plan, int index, double place_m) {
 bool presentable(const Plan& plan, int index, double place_m, double speed_m_s) {
   const double period_s = static_cast<double>(plan.timing.period_frames) / plan.timing.rate_Hz;
   const auto& part = plan.pattern.parts[static_cast<std::size_t>(index)];
-  return follow::presented(below(plan.pattern, index), part, plan.map, plan.envelope, period_s,
-                           plan.resting_friction, place_m, speed_m_s)
-      .presentable;
+  const auto shown = follow::presented(below(plan.pattern, index), part, plan.map, plan.envelope, period_s,
+                                       plan.resting_friction, place_m, speed_m_s);
+  // A table need not have a fundamental of its own: noise that repeats after a long way has none.
+  return part.shape == Shape::table ? shown.residual < kMostResidual : shown.presentable;
 }
 
 /// Places at which a texture can be met at all.
