@@ -360,6 +360,7 @@ void check_timing(core::TableReader& file, const Reading& reading) {
 void check_whole(core::TableReader& file, Reading& reading) {
   check_timing(file, reading);
   check_signal(reading);
+  check_follow(reading);
   check_scored(file, reading);
   check_goals(reading);
   check_limits(reading);

@@ -207,7 +207,8 @@ Keys follow_part() {
 
 Key following() {
   Keys keys{
-      expression("friction", {0, 1, Ends::open_low}, "friction where no part acts, relative to that at rest"),
+      expression("friction", {0, 1, Ends::open_low}, "friction where no part acts, relative to that at rest")
+          .without_it("that of the base; else one of the three is required"),
       expression("coefficient", {0, 5, Ends::open_low},
                  "the same as a coefficient: lateral over normal force"),
       expression("displacement_um", {0, 1000, Ends::closed, "um"},
@@ -225,7 +226,7 @@ Key following() {
       tables("parts", follow_part(), "textures, edges and events, in order").holding(0, follow::kMostParts),
   };
   return table(
-      "follow", keys.one_of({"friction", "coefficient", "displacement_um"}),
+      "follow", keys,
       "the strength follows the finger: friction over place and time. The scene's own strength is the "
       "most that is used");
 }

@@ -6,6 +6,7 @@
 #include "station/protocol/expression.hpp"
 #include "station/protocol/follow_target.hpp"
 #include "station/protocol/reading.hpp"
+#include "station/protocol/sources.hpp"
 
 namespace turnpoint::protocol {
 
@@ -206,6 +207,15 @@ Follow read_follow(const Value& table, const std::string& path, Findings& findin
     follow.unit = unit;
     if (const auto value = read_declared(reader, key, reading)) follow.base = *value;
   };
+  const auto units = {"friction", "coefficient", "displacement_um"};
+  const auto stated =
+      std::count_if(units.begin(), units.end(), [&](const char* key) { return reader.has(key); });
+  if (stated != 1)
+    findings.add(stated == 0 ? reader.place()
+                             : reader.place(reader.has("coefficient") ? "coefficient" : "displacement_um"),
+                 stated == 0 ? phrase("%1 does not say what it follows", {reader.title()})
+                             : phrase("%1 has several units", {reader.title()}),
+                 phrase("give exactly one of \"friction\", \"coefficient\" and \"displacement_um\""));
   base("friction", scene::FollowUnit::relative);
   base("displacement_um", scene::FollowUnit::displacement);
   base("coefficient", scene::FollowUnit::coefficient);
@@ -226,6 +236,27 @@ Follow read_follow(const Value& table, const std::string& path, Findings& findin
                    phrase("allowed: at most %1", {plain(follow::kTableSamples)}));
   reader.finish();
   return follow;
+}
+
+void check_follow(const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  const auto refuse = [&](const std::string& name, const core::Phrase& what, const core::Phrase& allowed) {
+    const auto found = protocol.scenes.find(name);
+    if (found != protocol.scenes.end() && found->second.follow)
+      reading.findings.add(found->second.follow->place,
+                           phrase("scene \"%1\" follows the finger, but %2", {plain(name), what}), allowed);
+  };
+  for (const auto& interval : protocol.task.intervals)
+    if (interval.size() > 1)
+      for (const auto& name : interval)
+        refuse(name, phrase("it is one end of a change within an interval"),
+               phrase("let an \"event\" of a part make the change"));
+  if (const auto& signal = protocol.timing.signal; signal && signal->by == ResponseSignal::By::buzz)
+    refuse(signal->scene, phrase("it is a buzz"), phrase("a scene that does not follow the finger"));
+  for (const auto& part : protocol.plan)
+    if (const auto& block = block_of(part); block.kind == BlockKind::friction_table)
+      refuse(block.strokes.scene, phrase("a friction table is measured with it"),
+             phrase("a scene with the same tones that does not follow the finger"));
 }
 
 }  // namespace turnpoint::protocol

@@ -55,6 +55,9 @@ void read_resume(core::TableReader& file, Reading& reading);
 void check_whole(core::TableReader& file, Reading& reading);
 /// Checks that a response signal that is part of the stimulus (a tone or a buzz) fits into it.
 void check_signal(const Reading& reading);
+/// Checks that scenes that follow the finger are whole intervals: not one end of a change, a buzz, or what a
+/// friction table is measured with.
+void check_follow(const Reading& reading);
 /// Checks sessions and groups: that each has blocks, and that nothing depends on what a session does not
 /// have.
 void check_visits(const Reading& reading);
