@@ -384,6 +384,7 @@ void check_timing(core::TableReader& file, const Reading& reading) {
 void check_one(core::TableReader& file, const Reading& reading) {
   check_timing(file, reading);
   check_signal(reading);
+  check_follow(reading);
   check_scored(reading);
   check_cue(reading);
   check_limits(reading);

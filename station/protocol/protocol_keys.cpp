@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "station/core/trial.hpp"
+#include "station/follow/pattern.hpp"
 #include "station/procedure/procedure_keys.hpp"
 #include "station/procedure/spec.hpp"
 #include "station/protocol/protocol.hpp"
@@ -131,6 +132,105 @@ Key edge() {
       .only_with("boundary_mm");
 }
 
+Keys follow_event() {
+  Keys keys{
+      boolean("contact", "true: when the finger touches the surface"),
+      expression("force_N", {0, 20, Ends::open_low, "N"}, "when it presses with this normal force"),
+      expression("place_mm", {0, 1e5, Ends::open_low, "mm"},
+                 "when it passes this place, away from the wide end"),
+      expression("speed_mm_s", {0, 1000, Ends::open_low, "mm/s"}, "when it is as fast as this"),
+      word("until", {"released", "lifted"},
+           "until it falls below that again (by a fifth, or by 0.3 mm), or until the finger lifts")
+          .by_default("\"released\""),
+      expression("delay_s", {0, 10, Ends::closed, "s"}, "the part begins so much later").by_default("0"),
+      expression("lasts_s", {0, 600, Ends::open_low, "s"}, "its longest duration")
+          .without_it("until the event ends")};
+  return keys.one_of({"contact", "force_N", "place_mm", "speed_mm_s"});
+}
+
+Keys follow_part() {
+  const Words textures{"sine", "square", "triangle", "noise", "table"};
+  const Words ranged{"sine", "square", "triangle", "noise", "table", "gradient", "bump", "edge"};
+  const Range value{-1000, 1000}, place_mm{0, 1e5, Ends::closed, "mm"};
+  return {
+      word("shape", {"constant", "sine", "square", "triangle", "noise", "table", "gradient", "bump", "edge"},
+           "how its value varies between `from` and `to`")
+          .required(),
+      expression("from", value,
+                 "in the unit of the scene's `follow`: the lowest of a table or noise, the value "
+                 "before an edge, outside a bump, or at begin_mm of a gradient")
+          .required()
+          .only_with("shape", ranged),
+      expression("to", value, "the value of a constant, and the other end of all others").required(),
+      expression("begin_mm", place_mm, "where the part begins, from the wide end").without_it("everywhere"),
+      expression("end_mm", place_mm,
+                 "where it ends; with both, the rig must be able to present it between them")
+          .without_it("everywhere"),
+      expression("period_mm", {0.1, 1e5, Ends::closed, "mm"},
+                 "length of a cycle; of noise: the length after which it comes again")
+          .without_it("it varies only in time")
+          .only_with("shape", textures),
+      expression("frequency_Hz", {-1000, 1000, Ends::closed, "Hz"},
+                 "cycles in a second: it moves, or without period_mm it vibrates")
+          .by_default("0")
+          .only_with("shape", textures),
+      expression("phase_deg", {-360, 360, Ends::closed, "degrees"}, "its phase at place_mm")
+          .by_default("0")
+          .only_with("shape", textures),
+      expression("place_mm", place_mm, "the middle of a bump or an edge; where a texture has its phase")
+          .without_it("0; required for a bump and an edge")
+          .only_with("shape", {"sine", "square", "triangle", "noise", "table", "bump", "edge"}),
+      expression("width_mm", {0, 1e4, Ends::closed, "mm"}, "width of the bump, or of the change at an edge")
+          .without_it("0 for an edge; required for a bump")
+          .only_with("shape", {"bump", "edge"}),
+      tables("spectrum",
+             {number("cycles_per_mm", {0, 100, Ends::closed}, "spatial frequency").required(),
+              number("density", {0, 1e6, Ends::closed}, "power density there, in any unit").required()},
+             "points of the noise's spectrum, joined by straight lines")
+          .holding(2)
+          .required()
+          .only_with("shape", {"noise"}),
+      expression("instance", {0, 1e6, Ends::closed},
+                 "which one of the noises with this spectrum: each whole number is another")
+          .by_default("1")
+          .only_with("shape", {"noise"}),
+      numbers("samples", {0, 1, Ends::closed}, "one cycle of a table: 0 is `from`, 1 is `to`")
+          .holding(2, follow::kTableSamples)
+          .required()
+          .only_with("shape", {"table"}),
+      word("combine", {"replace", "add"},
+           "whether it takes the place of the parts before it, or is added to them")
+          .by_default("\"replace\""),
+      table("event", follow_event(), "what makes the part begin").without_it("it is always there"),
+  };
+}
+
+Key following() {
+  Keys keys{
+      expression("friction", {0, 1, Ends::open_low}, "friction where no part acts, relative to that at rest")
+          .without_it("that of the base; else one of the three is required"),
+      expression("coefficient", {0, 5, Ends::open_low},
+                 "the same as a coefficient: lateral over normal force"),
+      expression("displacement_um", {0, 1000, Ends::closed, "um"},
+                 "displacement under the finger where no part acts"),
+      word("control", {"open", "closed"},
+           "by the friction table alone, or corrected by the measured friction so that it is held")
+          .by_default("\"open\"")
+          .only_with("coefficient"),
+      expression("resting_friction", {0.05, 3, Ends::closed},
+                 "coefficient of friction of the surface at rest; in a closed loop, the first guess")
+          .by_default("1"),
+      number("resting_gain", {0, 1, Ends::closed},
+             "share of the strength without a finger, and after a fault")
+          .by_default("0"),
+      tables("parts", follow_part(), "textures, edges and events, in order").holding(0, follow::kMostParts),
+  };
+  return table(
+      "follow", keys,
+      "the strength follows the finger: friction over place and time. The scene's own strength is the "
+      "most that is used");
+}
+
 Key scene() {
   Keys tone{
       expression("boundary_mm", position_mm, "where its vibration ends").only_without("frequency_Hz"), edge(),
@@ -140,8 +240,8 @@ Key scene() {
   return table(
       "NAME",
       {string("base",
-              "scene from which everything is taken that this one does not state; of zone and tolerance, "
-              "each key"),
+              "scene from which everything is taken that this one does not state; of zone, tolerance and "
+              "follow, each key"),
        expression("boundary_mm", position_mm, "where the smooth part ends, from the wide end"), edge(),
        expression("displacement_um", displacement_um,
                   "peak displacement at the last maximum, without a finger"),
@@ -174,7 +274,8 @@ Key scene() {
              {number("boundary_mm", {0, 1000, Ends::open_low, "mm"}, "of the boundary"),
               number("level_dB", {0, 60, Ends::open_low, "dB"}, "of the level at the last maximum"),
               number("friction", share, "of the friction")},
-             "the largest error that the physics model may have; the simplest model within it is used")},
+             "the largest error that the physics model may have; the simplest model within it is used"),
+       following()},
       "what the surface presents");
 }
 

@@ -67,6 +67,9 @@ void check_whole(core::TableReader& file, Reading& reading);
 void check_tasks(const Reading& reading);
 /// Checks that a response signal that is part of the stimulus (a tone or a buzz) fits into it.
 void check_signal(const Reading& reading);
+/// Checks that scenes that follow the finger are whole intervals: not one end of a change, a buzz, or what a
+/// friction table is measured with.
+void check_follow(const Reading& reading);
 /// Checks sessions and groups: that each has blocks, and that nothing depends on what a session does not
 /// have.
 void check_visits(const Reading& reading);
@@ -84,6 +87,10 @@ std::vector<Choice> read_choice_list(core::TableReader& reader, const std::strin
                                      const Reading& reading);
 /// Reads the name of a scene. Reports a problem if the file has no such scene.
 std::string read_scene_name(core::TableReader& reader, const std::string& key, const Reading& reading);
+
+/// Reads what a scene's gain follows, from its table `follow`.
+Follow read_follow(const core::Value& table, const std::string& path, core::Findings& findings,
+                   const Reading& reading);
 
 /// Reads a number or an expression of factors; empty if the key is not there.
 std::optional<Linear> read_expression(core::TableReader& reader, const std::string& key,

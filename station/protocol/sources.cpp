@@ -5,6 +5,7 @@
 #include "station/procedure/limits.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
+#include "station/protocol/follow_target.hpp"
 
 namespace turnpoint::protocol {
 
@@ -90,6 +91,10 @@ std::vector<const Linear*> expressions_of(const Scene& scene) {
   for (const auto& tone : scene.tones) {
     add(tone.boundary_mm), add(tone.frequency_Hz);
     all.push_back(&tone.displacement_um);
+  }
+  if (scene.follow) {
+    const auto followed = expressions_of(*scene.follow);
+    all.insert(all.end(), followed.begin(), followed.end());
   }
   return all;
 }

@@ -24,6 +24,7 @@
 #include "station/protocol/resolve.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/protocol/tasks.hpp"
+#include "station/scene/following.hpp"
 #include "station/scene/planner.hpp"
 #include "station/scene/transducer.hpp"
 
@@ -109,9 +110,9 @@ std::vector<Combination> planned(const Protocol& protocol, const std::vector<Com
     for (const auto& combination : all)
       if (combination.scene == name) of_scene.push_back(combination);
     const auto& scene = protocol.scenes.at(name);
-    const auto most = !scene.zone              ? most_plans_of_a_scene
-                      : only_expression(scene) ? most_plans_of_a_zone
-                                               : most_plans_of_a_zone_grid;
+    const auto most = !scene.zone && !scene.follow ? most_plans_of_a_scene
+                      : only_expression(scene)     ? most_plans_of_a_zone
+                                                   : most_plans_of_a_zone_grid;
     const auto some = thinned(scene, of_scene, most);
     chosen.insert(chosen.end(), some.begin(), some.end());
   }
@@ -124,7 +125,8 @@ struct Answer {
   std::optional<scene::Cues> cues_roved_down;
   core::Phrase refused;
   std::optional<scene::Scene> refused_scene;
-  Place place;  ///< place in the file of the key that the rig cannot satisfy
+  bool follow_refused = false;  ///< the scene could be presented if it did not follow the finger
+  Place place;                  ///< place in the file of the key that the rig cannot satisfy
 };
 
 bool can_plan(const scene::Scene& scene, scene::Planner& planner) {
@@ -199,8 +201,9 @@ void plan_range(const Protocol& protocol, const std::vector<Combination>& combin
     const auto& from = protocol.scenes.at(combination.scene);
     // Plan with the largest strength that rove_dB allows: the limits must hold for the strongest stimulus
     // that can be drawn.
-    const auto scene = resolve(protocol, combination.scene, combination.factors, from.rove_dB);
+    scene::Scene scene;
     try {
+      scene = resolve(protocol, combination.scene, combination.factors, from.rove_dB);
       answers[i].plan = planner.plan(scene);
       if (edge_moves_with_strength(from))
         answers[i].cues_roved_down =
@@ -209,7 +212,15 @@ void plan_range(const Protocol& protocol, const std::vector<Combination>& combin
       answers[i].refused = error.why();
       answers[i].refused_scene = scene;
       answers[i].place = from.place;
-      if (explained.insert(combination.scene).second) try {
+      if (from.follow) {
+        auto still = scene;
+        still.follow.reset();
+        answers[i].follow_refused = can_plan(still, planner);
+      }
+      if (answers[i].follow_refused)
+        answers[i].place = from.follow->place;
+      else if (explained.insert(combination.scene).second)
+        try {
           answers[i].place = blamed_place(protocol, places, from, scene, planner);
         } catch (const std::domain_error&) {  // this rig cannot present any boundary with this kind of edge
         }
@@ -276,7 +287,7 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   survey.combinations = all.size();
   const auto combinations = planned(protocol, all);
   const auto answers = plan_all(protocol, rig, combinations, stop, progress);
-  std::map<std::string, Trouble> unreachable, inexact;
+  std::map<std::string, Trouble> unreachable, inexact, unmet;
   Reaches reaches(rig);
   // the text of the first warning with each warning code, because each code is reported only once
   std::map<std::string, core::Phrase> told;
@@ -285,7 +296,8 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
     if (!answers[i].plan) {
       auto& trouble = unreachable[combination.scene];
       if (trouble.cases++ == 0)
-        trouble = {in_case(combination, answers[i].refused), reaches.of(*answers[i].refused_scene),
+        trouble = {in_case(combination, answers[i].refused),
+                   answers[i].follow_refused ? core::Phrase{} : reaches.of(*answers[i].refused_scene),
                    answers[i].place, 1};
       continue;
     }
@@ -295,6 +307,10 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
     survey.models.emplace(physics::name(plan.model));
     if (!plan.inside_tolerance && inexact[combination.scene].cases++ == 0)
       inexact[combination.scene].first = in_case(combination, plan.beyond_tolerance);
+    if (plan.follow)
+      for (const auto& stretch : scene::unmet_of(plan))
+        if (unmet[combination.scene].cases++ == 0)
+          unmet[combination.scene].first = in_case(combination, scene::in_words(plan, stretch));
     for (const auto& warning : plan.warnings)
       told.emplace(warning.code, in_case(combination, rig::phrase_of(warning)));
   }
@@ -303,6 +319,12 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   for (const auto& [name, trouble] : inexact)
     survey.warnings.push_back({protocol.scenes.at(name).place, counted(trouble.first, trouble.cases),
                                phrase("no physical model is known to meet the scene's tolerance")});
+  for (const auto& [name, trouble] : unmet)
+    survey.warnings.push_back(
+        {protocol.scenes.at(name).follow->place, counted(trouble.first, trouble.cases),
+         phrase(
+             "where the finger feels something else, that is in the data: use a stronger scene, or keep the "
+             "finger in a stretch")});
   // this rig reproduces an historical one, whose weaknesses are known, so leave out the planner's warnings
   if (rig.reproduction) return;
   for (const auto& [code, warning] : told) survey.warnings.push_back({{protocol.path, 0, 0}, warning, {}});

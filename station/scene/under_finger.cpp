@@ -116,6 +116,20 @@ std::vector<physics::Finger> fingers_of(const rig::Rig& rig) {
   return all;
 }
 
+ToneUnderFinger tone_under_finger(const physics::Surface& surface, const rig::Rig& rig, physics::Model model,
+                                  double frequency_Hz) {
+  DrivePlan plan;
+  PlannedTone tone;
+  tone.frequency_Hz = frequency_Hz, tone.amplitude_m = 1;
+  plan.tones.push_back(std::move(tone));
+  const auto finger = finger_of(rig);
+  const auto loaded = solve(surface, finger, model, plan, 0);
+  ToneUnderFinger all{loaded.x_m, {}};
+  for (std::size_t i = 0; i < loaded.x_m.size(); ++i)
+    all.displacement.push_back(std::abs(loaded.fields[0].v[i]) * loaded.loads[0][i].share(finger));
+  return all;
+}
+
 std::optional<FingerShift> finger_shift(const rig::Rig& rig, double frequency_Hz, const physics::Edge& edge) {
   if (edge.kind != physics::Edge::Kind::peak && edge.kind != physics::Edge::Kind::percent)
     return std::nullopt;

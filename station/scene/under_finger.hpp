@@ -17,6 +17,15 @@ physics::Finger finger_of(const rig::Rig& rig);
 /// and phase.
 std::vector<physics::Finger> fingers_of(const rig::Rig& rig);
 
+/// For a tone with an amplitude of 1 at the drive edge: the displacement under the rig's finger at evenly
+/// spaced points along the surface, ends included, as finger_figures() takes it for friction. Takes some 0.1
+/// s.
+struct ToneUnderFinger {
+  std::vector<double> x_m, displacement;
+};
+ToneUnderFinger tone_under_finger(const physics::Surface& surface, const rig::Rig& rig, physics::Model model,
+                                  double frequency_Hz);
+
 /// How far a moving finger shifts an edge, positive towards the narrow tip of the surface, and the range of
 /// this shift over all fingers from fingers_of().
 struct FingerShift {
