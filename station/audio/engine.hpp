@@ -33,9 +33,10 @@ enum class EventKind : std::int32_t {
   burst_missed,
   /// the gains that the burst follows were missing from `frame` on: it goes to its resting gain
   burst_unfollowed,
-  underrun,     ///< frames [frame, frame + frames) were not played; sounding bursts continue with a ramp
-  device_lost,  ///< nothing is played from `frame` on, until the device is back and the operator re-arms
-  device_back,  ///< the device was reopened by name; frame numbers continue from `frame`
+  burst_follows,  ///< from `frame` on the burst follows its gains again
+  underrun,       ///< frames [frame, frame + frames) were not played; sounding bursts continue with a ramp
+  device_lost,    ///< nothing is played from `frame` on, until the device is back and the operator re-arms
+  device_back,    ///< the device was reopened by name; frame numbers continue from `frame`
   /// the measured rate is more than 200 ppm off, so the session must stop; `frames`: the rate in mHz
   rate_wrong,
 };

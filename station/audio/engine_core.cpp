@@ -162,6 +162,7 @@ void EngineCore::follow(Event& event) {
       event.burst = damage(0, forever);
       break;
     case EventKind::burst_unfollowed:
+    case EventKind::burst_follows:
     case EventKind::burst_heard:
     case EventKind::rate_wrong:
       break;
@@ -222,6 +223,7 @@ void EngineCore::report(const Event& event) noexcept {
       break;
     case EventKind::burst_ended:
     case EventKind::burst_unfollowed:
+    case EventKind::burst_follows:
     case EventKind::burst_heard:
     case EventKind::device_back:
     case EventKind::rate_wrong:
@@ -261,10 +263,11 @@ void EngineCore::take_commands() noexcept {
 // Sends the synthesiser's events up to `frame` to the control thread.
 void EngineCore::report_until(std::int64_t frame) noexcept {
   for (const SynthEvent& event : synth_.events()) {
-    const EventKind kind = event.kind == SynthEventKind::started  ? EventKind::burst_started
-                           : event.kind == SynthEventKind::ended  ? EventKind::burst_ended
-                           : event.kind == SynthEventKind::missed ? EventKind::burst_missed
-                                                                  : EventKind::burst_unfollowed;
+    const EventKind kind = event.kind == SynthEventKind::started      ? EventKind::burst_started
+                           : event.kind == SynthEventKind::ended      ? EventKind::burst_ended
+                           : event.kind == SynthEventKind::missed     ? EventKind::burst_missed
+                           : event.kind == SynthEventKind::unfollowed ? EventKind::burst_unfollowed
+                                                                      : EventKind::burst_follows;
     report({kind, event.burst, event.frame});
   }
   synth_.clear_events();

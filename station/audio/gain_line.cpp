@@ -12,6 +12,7 @@ void GainLine::begin(const Following& following) noexcept {
   end_frame_ = since_frame_ = steady_ = 0;
   begun_ = false;
   state_ = State::following;
+  news_ = {};
 }
 
 void GainLine::push(const GainPeriod& period) noexcept {
@@ -52,7 +53,7 @@ bool GainLine::line_at(std::int64_t frame, double& gain) noexcept {
   return true;
 }
 
-double GainLine::step(std::int64_t frame, bool& lost) noexcept {
+double GainLine::step(std::int64_t frame) noexcept {
   double line = 0;
   const bool there = line_at(frame, line);
   steady_ = there ? steady_ + 1 : 0;
@@ -61,7 +62,7 @@ double GainLine::step(std::int64_t frame, bool& lost) noexcept {
   if (!there && (state_ == State::following || state_ == State::resuming)) {
     leave_gain_ = gain_;
     enter(State::leaving);
-    lost = true;
+    news_.lost = frame;
   }
   if (state_ == State::resting && steady_ > following_.steady_frames) enter(State::resuming);
   const auto share = [&](std::int64_t frames) {
@@ -79,22 +80,15 @@ double GainLine::step(std::int64_t frame, bool& lost) noexcept {
       return rest;
     case State::resuming: {
       const double back = share(following_.resume_frames);
-      if (back >= 1) enter(State::following);
+      if (back >= 1) enter(State::following), news_.back = frame + 1;
       return rest + back * (line - rest);
     }
   }
   return rest;
 }
 
-std::optional<std::int64_t> GainLine::fill(std::int64_t at, int count, double* gain) noexcept {
-  std::optional<std::int64_t> lost_at;
-  for (int n = 0; n < count; ++n) {
-    bool lost = false;
-    gain_ = std::clamp(step(at + n, lost), 0.0, following_.most_gain);
-    if (lost && !lost_at) lost_at = at + n;
-    gain[n] = gain_;
-  }
-  return lost_at;
+void GainLine::fill(std::int64_t at, int count, double* gain) noexcept {
+  for (int n = 0; n < count; ++n) gain[n] = gain_ = std::clamp(step(at + n), 0.0, following_.most_gain);
 }
 
 }  // namespace turnpoint::audio

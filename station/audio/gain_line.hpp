@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 #include "station/audio/burst.hpp"
 
@@ -31,16 +32,21 @@ class GainLine {
   /// Takes the next period, whose `frame` counts from the start of the burst. Periods must come in order, and
   /// at most 32 may be waiting; others are left out, and gains that are not finite are, with their period.
   void push(const GainPeriod& period) noexcept;
-  /// Writes the gains of frames [at, at + count); `at` must not decrease. Returns the first of them from
-  /// which the gain goes to rest because gains are missing; empty if it does not begin to do so.
-  std::optional<std::int64_t> fill(std::int64_t at, int count, double* gain) noexcept;
+  /// Writes the gains of frames [at, at + count); `at` must not decrease.
+  void fill(std::int64_t at, int count, double* gain) noexcept;
+  /// Since the last call: the frame from which the gain has gone to rest because gains were missing, and the
+  /// one from which it has followed them again; empty if it has not.
+  struct News {
+    std::optional<std::int64_t> lost, back;
+  };
+  News take_news() noexcept { return std::exchange(news_, {}); }
 
  private:
   enum class State { following, leaving, resting, resuming };
   static constexpr std::size_t kWaiting = 32;
 
   bool line_at(std::int64_t frame, double& gain) noexcept;
-  double step(std::int64_t frame, bool& lost) noexcept;
+  double step(std::int64_t frame) noexcept;
 
   Following following_;
   std::array<GainPeriod, kWaiting> waiting_{};  ///< a ring; the oldest is at first_
@@ -53,6 +59,7 @@ class GainLine {
   std::int64_t since_frame_ = 0;  ///< frame at which the state began
   std::int64_t steady_ = 0;       ///< number of frames in a row whose gain was there
   double gain_ = 0, leave_gain_ = 0;
+  News news_;
 };
 
 }  // namespace turnpoint::audio

@@ -351,6 +351,7 @@ PreparedBurst prepare(const Burst& burst, const Format& format, const SynthLimit
 PreparedChange prepare_change(const Change& change, PreparedBurst& burst, const Format& format,
                               const SynthLimits& limits) {
   const double largest = largest_peak(format, limits);
+  if (burst.following.follows()) refuse("a burst that follows gains keeps its tones");
   PreparedChange out = prepare(change, burst.tones, burst.tone_count, format, limits);
   out.live = true;
   PreparedBurst with = burst;

@@ -77,8 +77,9 @@ struct Synth::State {
         report(SynthEventKind::started, burst.id, burst.start_frame);
       }
       go(slot.voice, at);
-      if (const auto lost = slot.voice.take_lost())
-        report(SynthEventKind::unfollowed, burst.id, burst.start_frame + *lost);
+      const auto news = slot.voice.take_news();
+      if (news.back) report(SynthEventKind::follows, burst.id, burst.start_frame + *news.back);
+      if (news.lost) report(SynthEventKind::unfollowed, burst.id, burst.start_frame + *news.lost);
       if (at + frames >= slot.voice.end()) {
         if (slot.phase == Phase::sounding)
           report(SynthEventKind::ended, burst.id, burst.start_frame + slot.voice.end());

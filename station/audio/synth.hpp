@@ -13,13 +13,13 @@
 namespace turnpoint::audio {
 
 /// An event of a burst. Its time is given as a frame of the stream.
-enum class SynthEventKind : std::int32_t { started, ended, missed, unfollowed };
+enum class SynthEventKind : std::int32_t { started, ended, missed, unfollowed, follows };
 struct SynthEvent {
   SynthEventKind kind = SynthEventKind::started;
   std::uint32_t burst = 0;
   /// started: first frame of the burst; ended: first silent frame after it; missed: the requested start,
   /// which was already past; unfollowed: the first frame for which the gains that the burst follows were
-  /// missing
+  /// missing; follows: the first from which it follows them again
   std::int64_t frame = 0;
 };
 

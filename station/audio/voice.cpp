@@ -27,7 +27,6 @@ void Voice::begin(const PreparedBurst& burst) noexcept {
   stop_count_ = 0;
   resume_at_ = -never;
   line_.begin(burst.following);
-  lost_at_.reset();
   high_[0] = high_[1] = low_[0] = low_[1] = 0;
 }
 
@@ -249,8 +248,7 @@ void Voice::add(std::int64_t at, Mix& mix, Scratch& scratch) noexcept {
     n += count;
   }
   if (burst_.following.follows()) {
-    const auto lost = line_.fill(at + first, last - first, scratch.followed.data() + first);
-    if (lost && !lost_at_) lost_at_ = lost;
+    line_.fill(at + first, last - first, scratch.followed.data() + first);
     for (std::size_t c = 0; c < max_channels; ++c)
       for (int n = first; (channels >> c & 1) && n < last; ++n)
         scratch.dry[c][static_cast<std::size_t>(n)] *= scratch.followed[static_cast<std::size_t>(n)];

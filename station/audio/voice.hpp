@@ -2,8 +2,6 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <optional>
-#include <utility>
 
 #include "station/audio/gain_line.hpp"
 #include "station/audio/oscillator.hpp"
@@ -74,9 +72,7 @@ class Voice {
   /// Advances by this many frames without computing them. The noise filters keep their state.
   void pass(std::int64_t at, int frames) noexcept;
 
-  /// Since the last call, the first frame from which the burst has gone to its resting gain because the gains
-  /// that it follows were missing; empty if it has not.
-  std::optional<std::int64_t> take_lost() noexcept { return std::exchange(lost_at_, std::nullopt); }
+  GainLine::News take_news() noexcept { return line_.take_news(); }  ///< frames from the burst's start
 
   std::int64_t end() const noexcept;  ///< the first silent frame after the burst
   const PreparedBurst& burst() const noexcept { return burst_; }
@@ -112,7 +108,6 @@ class Voice {
   std::size_t stop_count_ = 0;
   std::int64_t resume_at_ = -never;
   GainLine line_;
-  std::optional<std::int64_t> lost_at_;
   double high_[2] = {}, low_[2] = {};  ///< states of the noise's high-pass and low-pass filter
 };
 

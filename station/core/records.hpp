@@ -280,7 +280,8 @@ struct FollowRow {
   std::string followed;
   std::optional<double> mu_asked, mu_commanded, mu_felt;  ///< means of the coefficient of friction
   std::optional<double> lag_ms;                           ///< of felt behind asked friction
-  std::optional<double> inside;  ///< share of the time in which felt friction is within 10 % of the asked
+  std::optional<double> inside;  ///< share of that time in which felt friction is within 10 % of the asked
+  std::optional<double> share;   ///< share of the interval in which the surface followed the finger
   /// measured minus commanded envelope at the pick-up, relative to the commanded (rms), and its lag; of
   /// several intervals, the worst
   std::optional<double> envelope_error_dB, envelope_lag_us;

@@ -7,7 +7,7 @@
 namespace turnpoint::follow {
 namespace {
 
-constexpr double kLeastLag_s = -0.01, kMostLag_s = 0.03;
+constexpr double kFirstLag_s = -0.01, kLastLag_s = 0.03;
 constexpr double kLeastVariation = 0.05;
 constexpr std::size_t kFewest = 100;  // felt values, for a lag
 
@@ -32,8 +32,9 @@ class Course {
     return Between{&a.update, &b.update, (middle - static_cast<double>(a.frame)) / period_};
   }
 
- private:
   static bool follows(const Update& update) { return update.fault == Fault::none && update.following >= 1; }
+
+ private:
   std::span<const Recorded> periods_;
   int period_;
 };
@@ -68,12 +69,16 @@ std::optional<double> lag_frames(std::span<const Felt> felt, const Course& cours
   const auto periods = [&](double seconds) {
     return static_cast<int>(std::lround(seconds * timing.rate_Hz / timing.period_frames));
   };
-  const int first = periods(kLeastLag_s), last = periods(kMostLag_s);
+  const int first = periods(kFirstLag_s), last = periods(kLastLag_s);
   std::vector<std::optional<double>> found;
   for (int k = first; k <= last; ++k) found.push_back(correlation(felt, course, k * timing.period_frames));
-  std::size_t best = 0;
-  for (std::size_t k = 1; k < found.size(); ++k)
-    if (found[k] && (!found[best] || *found[k] > *found[best])) best = k;
+  // A texture repeats, and so does the correlation: the maximum that is reached from no lag is the right one.
+  auto best = static_cast<std::size_t>(-first);
+  const auto higher = [&](std::size_t k) {
+    return k < found.size() && found[k] && found[best] && *found[k] > *found[best];
+  };
+  const bool later = higher(best + 1);
+  while (later ? higher(best + 1) : best > 0 && higher(best - 1)) best = later ? best + 1 : best - 1;
   if (!found[best] || best == 0 || best + 1 == found.size() || !found[best - 1] || !found[best + 1])
     return std::nullopt;
   const double before = *found[best - 1], here = *found[best], after = *found[best + 1];
@@ -91,7 +96,11 @@ Summary summarise(std::span<const Recorded> periods, const Plan& plan, std::int6
   std::vector<Felt> felt;
   double sum_asked = 0, sum_modelled = 0, sum_felt = 0, inside = 0;
   const Recorded* before = nullptr;
+  std::int64_t followed = 0;  // periods within the interval
   for (const Recorded& one : periods) {
+    if (one.frame >= first_frame && one.frame + plan.timing.period_frames <= end_frame &&
+        Course::follows(one.update))
+      ++followed;
     const bool again = before != nullptr && before->sample_frame == one.sample_frame;
     before = &one;
     // The cells say later what the finger feels.
@@ -106,6 +115,8 @@ Summary summarise(std::span<const Recorded> periods, const Plan& plan, std::int6
     inside += std::abs(one.update.felt - asked(*at)) < kTolerance * asked(*at) ? 1 : 0;
   }
   Summary summary;
+  const auto length = static_cast<double>(end_frame - first_frame);
+  if (length > 0) summary.share = static_cast<double>(followed * plan.timing.period_frames) / length;
   if (felt.empty()) return summary;
   const auto n = static_cast<double>(felt.size());
   summary.commanded = sum_modelled / n, summary.felt = sum_felt / n;

@@ -31,6 +31,7 @@ struct Summary {
   /// what was asked varied by less than 5 % of its mean (standard deviation).
   std::optional<double> lag_s;
   std::optional<double> inside;  ///< share of the times at which felt friction was inside kTolerance
+  double share = 0;              ///< share of the interval in which the surface followed the finger
 };
 /// `periods` are those of one interval, in order, of which only the times from `first_frame` to before
 /// `end_frame` count. Periods that were left out are allowed.

@@ -45,6 +45,7 @@ core::Phrase trouble_of(const audio::Event& event, const audio::OutputConfig& ou
     case audio::EventKind::burst_started:
     case audio::EventKind::burst_ended:
     case audio::EventKind::burst_unfollowed:
+    case audio::EventKind::burst_follows:
     case audio::EventKind::burst_heard:
     case audio::EventKind::device_back:
       return {};

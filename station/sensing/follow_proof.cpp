@@ -17,14 +17,14 @@ using Complex = std::complex<double>;
 using core::Proof;
 using core::ProofCause;
 
-constexpr double kSettle_s = 0.005;  // the plate follows a ramp: 7 time constants at Q 60
-constexpr double kLead_s = 0.02;     // beyond both ends of the gains, so that the transform may wrap around
+constexpr double kAfterRamp_s = 0.005;  // the plate follows a ramp: 7 time constants at Q 60
+constexpr double kBeyond_s = 0.02;   // beyond both ends of the gains, so that the transform may wrap around
 constexpr double kAround_s = 0.005;  // so far from a gain that is not known, nothing is judged
 constexpr double kLeast_s = 0.05;    // of judged time
 constexpr double kLeastGain = 0.01;  // rms
 constexpr double kMostLag_s = 0.003;
 constexpr std::size_t kLagBlocks = 500;  // about so many blocks are used to find the lag
-constexpr double kShown = 1e-3;          // a lag must change the power that remains by this share
+constexpr double kShowsLag = 1e-3;       // a lag must change the power that remains by this share
 
 Proof by_size(double value, const Limits& limits) { return judged(std::fabs(value), limits); }
 
@@ -65,7 +65,7 @@ FollowProof::FollowProof(const IntervalPlan& plan)
   if (lines_.empty()) return;
   pick_up_ = main_pick_up(lines_, plan_.pick_ups.size());
   const auto delay = static_cast<std::int64_t>(std::ceil(plan.delay_frames));
-  first_ = stretch.first_frame + delay + std::llround(kSettle_s * plan.rate_Hz);
+  first_ = stretch.first_frame + delay + std::llround(kAfterRamp_s * plan.rate_Hz);
   end_ = stretch.end_frame + delay;
 }
 
@@ -112,7 +112,7 @@ void FollowProof::take(const AlignedBlock& block) {
 struct FollowProof::Expected {
   Expected(const FollowProof& proof, const CommandedEnvelope& commanded) : step(commanded.step_frames) {
     const double rate = static_cast<double>(proof.plan_.rate_Hz) / step;
-    lead = std::llround(kLead_s * rate);
+    lead = std::llround(kBeyond_s * rate);
     start_frame = commanded.start_frame - lead * step;
     const auto count = static_cast<std::int64_t>(commanded.gain.size());
     std::vector<double> gain(std::bit_ceil(static_cast<std::size_t>(count + 2 * lead)));
@@ -246,7 +246,7 @@ IntervalResult FollowProof::result(const CommandedEnvelope& commanded, std::opti
   for (int k = -most; k <= most; ++k) left.push_back(match(some, k * step).remains());
   const auto best = static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin());
   const double range = *std::max_element(left.begin(), left.end()) - left[best];
-  if (best > 0 && best + 1 < left.size() && range > kShown * std::norm(scale) * match(some, 0).power) {
+  if (best > 0 && best + 1 < left.size() && range > kShowsLag * std::norm(scale) * match(some, 0).power) {
     const double bend = left[best - 1] - 2 * left[best] + left[best + 1];
     const double part = bend > 0 ? 0.5 * (left[best - 1] - left[best + 1]) / bend : 0;
     result.envelope_lag_us = 1e6 * (static_cast<double>(best) - most + part) * step / plan_.rate_Hz;

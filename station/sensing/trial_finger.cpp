@@ -148,7 +148,7 @@ void TrialFinger::push(const BridgePoint& point) {
 
 std::optional<Readings> TrialFinger::zero() {
   take_tare();
-  return loaded_ ? std::nullopt : zero_;
+  return zero_;
 }
 
 std::int64_t TrialFinger::known_at() const {

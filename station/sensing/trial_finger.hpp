@@ -129,8 +129,9 @@ class TrialFinger {
   /// that were already received are ignored.
   void push(const BridgePoint& point);
 
-  /// Readings of the cells without a finger before the expected trial. Empty if they are not known, or if
-  /// something lay on the surface. Call it once what was captured before `quiet_until` has been pushed.
+  /// Readings of the cells without a finger: those before the expected trial, or the newest before them if
+  /// something lay on the surface. Empty if there are none. Call it once what was captured before
+  /// `quiet_until` has been pushed.
   std::optional<Readings> zero();
 
   /// The result of the expected trial is known once all playback frames before this one have been captured.

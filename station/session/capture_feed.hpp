@@ -45,7 +45,7 @@ class CaptureFeed {
   /// How captured frames are numbered, if that is known.
   std::optional<Alignment> alignment() const;
   /// Calls the listener with everything that is captured from now on; it must outlive the feed.
-  void call(audio::CaptureListener& listener) { capture_->listen(listener); }
+  void set_listener(audio::CaptureListener& listener) { capture_->listen(listener); }
   /// Call this after the playback was restarted: the delay from playback to capture is then unknown until the
   /// next pilot.
   void misalign();

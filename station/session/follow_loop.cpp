@@ -29,6 +29,8 @@ struct FollowLoop::Trial {
   std::vector<One> all;
   Alignment alignment;
   bool forces_known = true;  ///< false: the readings without a finger are not known, or frames were lost
+  /// Bit i: the gains of interval i were not played. From the session to the capture.
+  std::atomic<std::uint32_t> unplayed{0};
 };
 
 follow::Bridges bridges_of(const sensing::FingerSetup& finger, const sensing::Readings& tare) {
@@ -68,11 +70,20 @@ void FollowLoop::prepare(const FollowPlans& plans, std::span<const audio::Prepar
     for (std::size_t i = 0; i < plans.size(); ++i) {
       if (!plans[i]) continue;
       const auto& timing = plans[i]->timing;
+      const auto& output = stream_.config().output;
+      const auto buffered = std::int64_t{output.period_frames} * output.periods;
+      const auto planned = std::int64_t{timing.period_frames} * timing.buffer_periods;
+      if (timing.rate_Hz == rate_Hz && buffered > planned)
+        refuse(fmt::format(
+            "the sound device buffers {} periods of {} frames ({:.2f} ms), and {:.2f} ms were planned",
+            output.periods, output.period_frames, 1e3 * static_cast<double>(buffered) / rate_Hz,
+            1e3 * static_cast<double>(planned) / rate_Hz));
       if (timing.rate_Hz != rate_Hz)
         refuse(fmt::format("it was planned for {} Hz, and the sound device plays at {} Hz", timing.rate_Hz,
                            rate_Hz));
       if (!trial->all.empty() && (timing.period_frames != trial->timing.period_frames ||
-                                  timing.window_frames != trial->timing.window_frames))
+                                  timing.window_frames != trial->timing.window_frames ||
+                                  timing.converter_s != trial->timing.converter_s))
         refuse("the intervals of a trial have different periods");
       trial->timing = timing;
       const auto lead = std::int64_t{timing.buffer_periods} * timing.period_frames +
@@ -111,14 +122,15 @@ void FollowLoop::begin(std::span<const Burst> bursts, const std::optional<sensin
   for (auto& one : trial->all) {
     one.burst = bursts[static_cast<std::size_t>(one.interval)];
     const auto& plan = one.follower.plan();
-    begun_.push_back({static_cast<std::size_t>(one.interval), one.burst, plan.timing,
-                      std::llround((plan.ramp_s + plan.steady_s + plan.resume_s) * plan.timing.rate_Hz)});
+    begun_.push_back({static_cast<std::size_t>(one.interval), one.burst, plan.timing});
   }
+  current_ = trial.get();
   offer(std::move(trial));
   active_ = true;
 }
 
 void FollowLoop::end() {
+  current_ = nullptr;
   if (std::exchange(active_, false)) offer(std::make_unique<Trial>());
 }
 
@@ -131,19 +143,43 @@ void FollowLoop::offer(std::unique_ptr<Trial> trial) {
   while (kept_.front()->number < taken) kept_.pop_front();
 }
 
+void FollowLoop::cut(std::int64_t frame) { followed_.cut_frame = std::min(followed_.cut_frame, frame); }
+
 void FollowLoop::note(const audio::Event& event) {
+  const auto one = std::find_if(begun_.begin(), begun_.end(),
+                                [&](const Begun& begun) { return begun.burst.burst == event.burst; });
+  if (one == begun_.end()) return;
+  auto& late = followed_.late;
+  if (event.kind == audio::EventKind::burst_follows && !late.empty() && late.back().burst == event.burst)
+    late.back().to_frame = event.frame;
   if (event.kind != audio::EventKind::burst_unfollowed) return;
-  if (std::any_of(begun_.begin(), begun_.end(),
-                  [&](const Begun& one) { return one.burst.burst == event.burst; }))
-    followed_.late.push_back(event.frame);
+  late.push_back({event.burst, event.frame});
+  // The follower counts on gains that were not played; the frames that it leaves out tell it.
+  if (current_ != nullptr) current_->unplayed.fetch_or(1u << one->interval);
 }
 
 void FollowLoop::gather() {
   for (follow::Recorded period; done_->pop(period);) followed_.periods.push_back(period);
 }
 
+/// Drops the updates whose gains were not played as they say.
+void FollowLoop::drop_unplayed() {
+  std::erase_if(followed_.periods, [&](const follow::Recorded& one) {
+    const auto begun = std::find_if(begun_.begin(), begun_.end(), [&](const Begun& of) {
+      return of.interval == static_cast<std::size_t>(one.interval);
+    });
+    if (begun == begun_.end()) return true;
+    const auto end = one.frame + begun->timing.period_frames;
+    return end > followed_.cut_frame ||
+           std::any_of(followed_.late.begin(), followed_.late.end(), [&](const Followed::Late& late) {
+             return late.burst == begun->burst.burst && one.frame < late.to_frame && end > late.from_frame;
+           });
+  });
+}
+
 sensing::CommandedEnvelope FollowLoop::commanded(std::size_t interval) {
   gather();
+  drop_unplayed();
   sensing::CommandedEnvelope envelope;
   const auto begun =
       std::find_if(begun_.begin(), begun_.end(), [&](const Begun& one) { return one.interval == interval; });
@@ -163,24 +199,12 @@ sensing::CommandedEnvelope FollowLoop::commanded(std::size_t interval) {
     for (std::size_t k = 0; k < follow::kGains && is_of(one); ++k)
       envelope.gain[static_cast<std::size_t>((one.frame - first->frame) / eighth) + k] =
           static_cast<double>(one.update.gain[k]);
-  const auto place = [&](std::int64_t frame) {
-    return std::clamp<std::int64_t>((frame - envelope.start_frame) / eighth, 0,
-                                    static_cast<std::int64_t>(envelope.gain.size()));
-  };
-  for (const auto late : followed_.late) {
-    if (late < begun->burst.start_frame || late >= begun->burst.end_frame) continue;
-    auto back = place(late);
-    while (back < static_cast<std::int64_t>(envelope.gain.size()) &&
-           !std::isfinite(envelope.gain[static_cast<std::size_t>(back)]))
-      ++back;
-    back = std::min(back + begun->away_frames / eighth + 1, static_cast<std::int64_t>(envelope.gain.size()));
-    std::fill(envelope.gain.begin() + place(late), envelope.gain.begin() + back, std::nan(""));
-  }
   return envelope;
 }
 
 Followed FollowLoop::take() {
   gather();
+  drop_unplayed();
   followed_.not_recorded = not_recorded_.exchange(0);
   return std::exchange(followed_, {});
 }
@@ -213,6 +237,11 @@ void FollowLoop::update(Trial& trial, std::int64_t captured_end) noexcept {
   for (auto& one : trial.all) {
     const auto frame = captured_end + trial.alignment.shift + one.lead_frames;
     if (frame + period <= one.burst.start_frame || frame >= one.burst.end_frame) continue;
+    const auto bit = 1u << one.interval;
+    if ((trial.unplayed.load(std::memory_order_relaxed) & bit) != 0) {
+      trial.unplayed.fetch_and(~bit);
+      continue;
+    }
     const auto& update = one.follower.update(frame, sample);
     // If the audio thread does not take gains, it does not play either; it will find that they are missing.
     static_cast<void>(stream_.follow({one.burst.burst, period, frame, update.gain}));

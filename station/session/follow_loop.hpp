@@ -32,10 +32,17 @@ struct Alignment {
 
 /// What the intervals of a trial did that follow the finger.
 struct Followed {
-  std::vector<follow::Recorded> periods;  ///< in the order in which they were made
-  /// frames from which a burst went to its resting gain because its gains came too late
-  std::vector<std::int64_t> late;
-  std::int64_t not_recorded = 0;  ///< updates that nobody has taken in time
+  /// The updates whose gains were played, in the order in which they were made.
+  std::vector<follow::Recorded> periods;
+  /// Frames from which a burst went to its resting gain because its gains came too late, and those from which
+  /// it followed them again.
+  struct Late {
+    std::uint32_t burst = 0;
+    std::int64_t from_frame = 0, to_frame = INT64_MAX;
+  };
+  std::vector<Late> late;
+  std::int64_t cut_frame = INT64_MAX;  ///< from here on the bursts were ramped down
+  std::int64_t not_recorded = 0;       ///< updates that nobody has taken in time
 };
 
 /// The way from the finger to the gain: takes captured frames on the capture's own thread, updates the
@@ -66,12 +73,13 @@ class FollowLoop final : public audio::CaptureListener {
   /// Ends the trial: no more gains are sent.
   void end();
 
+  /// Call this if all bursts are ramped down from this frame on. What comes later is not recorded.
+  void cut(std::int64_t frame);
   /// Call this for each event of the stream.
   void note(const audio::Event& event);
   /// Moves what was done to the session's side; call it at least once a second.
   void gather();
-  /// The gains that an interval of the trial has been given so far, without those of times at which the burst
-  /// went to its resting gain because they came too late.
+  /// The gains that an interval of the trial has played so far, as far as they are known.
   sensing::CommandedEnvelope commanded(std::size_t interval);
   /// What was done since begin().
   Followed take();
@@ -82,6 +90,7 @@ class FollowLoop final : public audio::CaptureListener {
  private:
   struct Trial;
   void offer(std::unique_ptr<Trial> trial);
+  void drop_unplayed();
   void update(Trial& trial, std::int64_t captured_end) noexcept;
 
   audio::Stream& stream_;
@@ -93,6 +102,7 @@ class FollowLoop final : public audio::CaptureListener {
   std::atomic<std::int64_t> not_recorded_{0};
   // used by the session only
   std::unique_ptr<Trial> next_;
+  Trial* current_ = nullptr;                 ///< the trial that was begun last; one of kept_
   std::deque<std::unique_ptr<Trial>> kept_;  ///< the capture may still use them
   std::uint64_t last_number_ = 0;
   bool active_ = false;  ///< a trial was begun, and has not ended
@@ -100,7 +110,6 @@ class FollowLoop final : public audio::CaptureListener {
     std::size_t interval = 0;
     Burst burst;
     follow::Timing timing;
-    std::int64_t away_frames = 0;  ///< longest time from the end of a gap until the burst follows again
   };
   std::vector<Begun> begun_;
   Followed followed_;

@@ -41,7 +41,7 @@ class RealStage : public Stage {
       capture_ =
           std::make_unique<TrialCapture>(*capture, devices_, *stream_, inputs_,
                                          [this](const std::function<bool()>& ready) { wait_for(ready); });
-      capture_->feed().call(*loop_);
+      capture_->feed().set_listener(*loop_);
     }
   }
 
@@ -94,8 +94,12 @@ class RealStage : public Stage {
                    [this](std::size_t i) { return loop_->commanded(i); });
       if (loop_->prepared()) {
         const auto alignment = capture_->feed().alignment();
-        loop_->begin(followed_of(presented_), alignment ? watch.zero() : std::nullopt,
-                     alignment.value_or(Alignment{}));
+        const auto zero = alignment ? watch.zero() : std::nullopt;
+        loop_->begin(followed_of(presented_), zero, alignment.value_or(Alignment{}));
+        if (!zero)
+          inputs_.push({now_ns(), Fault{FaultKind::capture,
+                                        "the surface cannot follow the finger: the force cells were not read "
+                                        "without a finger"}});
       }
     }
     if (onsets.empty())
@@ -132,6 +136,7 @@ class RealStage : public Stage {
       if (awaits_heard) miss(now_ns(), "the trial was answered before the drive had begun the stimulus");
     }
     if (capture_) capture_->feed().watch().cut(stream_->counters().frames);
+    if (loop_) loop_->cut(from);
     const auto silent_ns = ramp_down(*stream_, presented_, now_ns());
     triggers_->cut(from, stream_->frame_at(silent_ns).value_or(from), now_ns());
     return quiet_ns_ = lost_ns_.value_or(silent_ns);
@@ -332,7 +337,9 @@ class RealStage : public Stage {
       case audio::EventKind::burst_ended:
         return;
       case audio::EventKind::burst_unfollowed:
-        return loop_->note(event);
+      case audio::EventKind::burst_follows:
+        if (loop_) loop_->note(event);
+        return;
       case audio::EventKind::burst_heard:
         if (!interval) return;
         if (unheard_ > 0) --unheard_;

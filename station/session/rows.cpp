@@ -327,18 +327,20 @@ void add_followed(core::TrialRow& row, const Followed& followed, const FollowPla
       std::find_if(plans.rbegin(), plans.rend(), [](const auto& plan) { return plan != nullptr; });
   if (last == plans.rend()) return;
   row.follow.followed = follow::fault_names(followed.periods, !followed.late.empty());
+  if (followed.not_recorded > 0) row.follow.followed += " unrecorded";
   if (followed.periods.empty()) return;
   const auto interval = static_cast<std::size_t>(plans.rend() - last - 1);
   std::vector<follow::Recorded> of_last;
   for (const auto& one : followed.periods)
     if (one.interval == static_cast<std::int32_t>(interval)) of_last.push_back(one);
   if (interval < ranges.size()) {
-    const auto summary =
-        follow::summarise(of_last, **last, ranges[interval].first_frame, ranges[interval].end_frame);
+    const auto summary = follow::summarise(of_last, **last, ranges[interval].first_frame,
+                                           std::min(ranges[interval].end_frame, followed.cut_frame));
     row.follow.mu_asked = summary.asked;
     row.follow.mu_commanded = summary.commanded;
     row.follow.mu_felt = summary.felt;
     row.follow.inside = summary.inside;
+    row.follow.share = summary.share;
     if (summary.lag_s) row.follow.lag_ms = 1e3 * *summary.lag_s;
   }
   add_signals(row, followed.periods, **last, rate_Hz, at);

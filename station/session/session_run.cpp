@@ -489,6 +489,7 @@ void SessionRun::finish_row(Running& trial) {
   const auto followed = stage_->followed();
   if (!trial.onsets.empty()) {
     const auto& onset = trial.onsets.front();
+    trial.follows.resize(std::min(trial.follows.size(), trial.begun));  // the others were not presented
     add_followed(row, followed, trial.follows, trial.presented, setup_.rig.output.rate_Hz,
                  {onset.frame, 1e-9 * static_cast<double>(onset.time_ns - started_ns_)});
   }

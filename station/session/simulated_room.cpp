@@ -129,12 +129,19 @@ void SimulatedRoom::expect(std::span<const audio::PreparedBurst> bursts) {
   }
   std::sort(frequencies.begin(), frequencies.end());
   frequencies.erase(std::unique(frequencies.begin(), frequencies.end()), frequencies.end());
+  // The finger feels a gain that follows it as soon as the distance of the tones allows to tell them apart.
   const bool follows =
       std::any_of(bursts.begin(), bursts.end(), [](const auto& burst) { return burst.following.follows(); });
-  // The finger feels a gain that follows it as soon as the distance of the tones allows to tell them apart.
   double window_s = follows ? kShortWindow_s : kLongWindow_s;
-  for (std::size_t i = 1; i < frequencies.size(); ++i)
-    window_s = std::max(window_s, std::min(kLongWindow_s, 10 / (frequencies[i] - frequencies[i - 1])));
+  for (const auto& burst : bursts)
+    for (int a = 0; a < burst.tone_count; ++a)
+      for (int b = 0; b < a; ++b) {
+        const auto apart = static_cast<double>(static_cast<std::int64_t>(
+                               burst.tones[static_cast<std::size_t>(a)].increment -
+                               burst.tones[static_cast<std::size_t>(b)].increment)) *
+                           0x1p-64 * plant_.setup().rate_Hz;
+        if (apart != 0) window_s = std::max(window_s, std::min(kLongWindow_s, 10 / std::abs(apart)));
+      }
   plant_.set_tones(frequencies, window_s);
 }
 

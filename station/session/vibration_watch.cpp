@@ -189,13 +189,16 @@ std::int64_t VibrationWatch::known_at(std::size_t interval) const {
 }
 
 std::shared_ptr<const sensing::IntervalResult> VibrationWatch::result(std::size_t interval) {
-  const std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
   if (interval >= proofs_.size()) return nullptr;
   const auto contact = finger_ ? finger_->contact(interval) : setup_.in_contact;
-  const auto& follows = follow_proofs_[interval];
-  auto result = std::make_shared<sensing::IntervalResult>(follows && commanded_
-                                                              ? follows->result(commanded_(interval), contact)
-                                                              : proofs_[interval]->result(contact));
+  auto result = std::make_shared<sensing::IntervalResult>(proofs_[interval]->result(contact));
+  if (const auto follows = std::move(follow_proofs_[interval]); follows && commanded_) {
+    // This takes a while. The thread that pushes samples must not wait for it.
+    lock.unlock();
+    *result = follows->result(commanded_(interval), contact);
+    lock.lock();
+  }
   if (interval == 0) add_silence(silence_->result(), *result);
   return result;
 }

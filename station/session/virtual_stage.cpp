@@ -131,6 +131,7 @@ class VirtualStage : public Stage {
     if (watch_) {
       watch_->cut(from);
       room_->lift(from - stream_->frame());
+      loop_->cut(from);
     }
     quiet_ns_ = ramp_down(*stream_, presented_, now_ns_);
     triggers_.cut(from, stream_->frame_at(quiet_ns_).value(), now_ns_);

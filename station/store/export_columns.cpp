@@ -263,6 +263,7 @@ ExportColumns trial_columns(const std::vector<ExportedFactor>& factors) {
        "mu_felt",
        "follow_lag_ms",
        "follow_inside",
+       "follow_share",
        "envelope_error_db",
        "envelope_lag_us"});
   add(columns, previous, {"level", "correct_response", "response", "correct", "outcome"});

@@ -595,7 +595,8 @@ const Table<TrialRow>& trial_table() {
            {"followed", "followed",
             "Whether the surface followed the finger: ok, or what has interrupted it (late, reference, "
             "force, "
-            "lifted, position, saturated; several with spaces between them); n/a if no scene of the trial "
+            "lifted, position, saturated; several with spaces between them), or unrecorded; n/a if no scene "
+            "of the trial "
             "follows the finger"}),
        field<&T::follow, &FollowRow::mu_asked>(
            {"mu_asked", "mu_asked",
@@ -616,6 +617,9 @@ const Table<TrialRow>& trial_table() {
        field<&T::follow, &FollowRow::inside>({"follow_inside", "follow_inside",
                                               "Fraction of these times at which felt friction differs by "
                                               "less than 10 % from what was asked for"}),
+       field<&T::follow, &FollowRow::share>(
+           {"follow_share", "follow_share",
+            "Fraction of the interval presented last in which the surface followed the finger"}),
        field<&T::follow, &FollowRow::envelope_error_dB>({"envelope_error_dB", "envelope_error_db",
                                                          "Difference between the vibration's envelope at the "
                                                          "pick-up and the commanded one, relative to the "

@@ -206,6 +206,7 @@ CREATE TABLE trial (
   mu_felt REAL,
   follow_lag_ms REAL,
   follow_inside REAL CHECK (follow_inside BETWEEN 0 AND 1),
+  follow_share REAL CHECK (follow_share BETWEEN 0 AND 1),
   envelope_error_dB REAL,
   envelope_lag_us REAL,
   UNIQUE (session_id, trial_index),

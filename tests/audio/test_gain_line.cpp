@@ -50,7 +50,7 @@ double wave(std::int64_t frame) { return 0.8 + 0.4 * std::sin(2 * std::numbers::
 /// period that begins at this frame comes in time. Returns channel 0.
 struct Rendering {
   std::vector<double> samples;
-  std::vector<SynthEvent> lost;
+  std::vector<SynthEvent> lost, back;
 };
 Rendering rendered(Burst burst, const Gain& gain, const std::function<bool(std::int64_t)>& gives,
                    std::int64_t first = 0, std::int64_t skip_from = -1, std::int64_t skip_to = -1) {
@@ -71,7 +71,10 @@ Rendering rendered(Burst burst, const Gain& gain, const std::function<bool(std::
     synth.render(frame, std::span<double>(block));
     for (std::size_t n = 0; n < block.size(); n += 2) out.samples.push_back(block[n]);
     for (const auto& event : synth.events())
-      if (event.kind == SynthEventKind::unfollowed) out.lost.push_back(event);
+      if (event.kind == SynthEventKind::unfollowed)
+        out.lost.push_back(event);
+      else if (event.kind == SynthEventKind::follows)
+        out.back.push_back(event);
     synth.clear_events();
     frame += kPeriod;
   }
@@ -135,7 +138,7 @@ TEST_CASE("a burst is multiplied by the straight lines through the gains, whatev
     worst = std::max(worst, std::abs(sample - tone * polygon(wave, first, frame)));
     off_by_one = std::max(off_by_one, std::abs(sample - tone * polygon(wave, first, frame + 1)));
   }
-  CHECK(worst < 1e-10);  // the phase of the sine of this test
+  CHECK(worst < 1e-10);      // the phase of the sine of this test
   CHECK(off_by_one > 1e-4);  // negative control: a gain that is one frame early is noticed
 }
 
@@ -204,6 +207,9 @@ TEST_CASE("if gains are missing, the gain is at rest within the ramp, and it nev
   REQUIRE(found.lost.size() == 1);
   CHECK(found.lost[0].frame == from);
   CHECK(found.lost[0].burst == 7);
+  const bool returns = std::max(from + 960, to + 480) + 1920 < burst.length_frames;
+  REQUIRE(found.back.size() == (returns ? 1 : 0));
+  if (returns) CHECK(std::abs(found.back[0].frame - (std::max(from + 960, to + 480) + 1920)) <= 1);
   // the amplitude, from two frames that are a quarter of a cycle apart
   std::vector<double> gain;
   for (std::size_t n = 0; n + 1 < found.samples.size(); ++n)
@@ -256,12 +262,14 @@ TEST_CASE("gains of another burst, and gains that come out of order, change noth
   odd.frames = 100;  // not a multiple of 8
   line.push(odd);
   std::array<double, 192> gain{};
-  CHECK(line.fill(0, 96, gain.data()) == 0);  // nothing has come for these frames
+  line.fill(0, 96, gain.data());
+  CHECK(line.take_news().lost == 0);  // nothing has come for these frames
   CHECK(std::all_of(gain.begin(), gain.begin() + 96, [](double g) { return g == kRest; }));
   // A ring that is full takes no more; what is in it stays right.
   line.begin(following());
   for (int k = 0; k < 100; ++k) line.push(period_of(one, 96 * k));
-  CHECK_FALSE(line.fill(0, 96, gain.data()));
+  line.fill(0, 96, gain.data());
+  CHECK_FALSE(line.take_news().lost);
   CHECK(gain[95] == 1);
 }
 

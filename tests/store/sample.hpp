@@ -159,7 +159,7 @@ inline TrialRow answered(int index, int tones = 2) {
   t.finger.lag_mm = 0.625;
   t.finger.tare_mN = -1.5;
   t.finger.mu = 0.625;
-  t.follow = {"late lifted", 0.5, 0.5625, 0.59375, 1.75, 0.875, -32.5, 62.5};
+  t.follow = {"late lifted", 0.5, 0.5625, 0.59375, 1.75, 0.875, 0.9375, -32.5, 62.5};
   t.signal_rows.push_back(finger_signal(index));
   t.learned.state_hash = 0xfedcba9876543210ULL + static_cast<unsigned>(index);
   for (int i = 0; i < 2; ++i)

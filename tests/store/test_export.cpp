@@ -39,7 +39,8 @@ const char* const kHeader =
     "confidence,confidence_time,points,"
     "sensing,contact_s,strokes,normal_n,normal_sd_n,normal_in_window,speed_mm_s,speed_in_window,mu_low,"
     "mu_high,boundary_felt_mm,boundary_se_mm,lag_mm,tare_mn,mu,silence_db,silence_tone_db,"
-    "followed,mu_asked,mu_commanded,mu_felt,follow_lag_ms,follow_inside,envelope_error_db,envelope_lag_us,"
+    "followed,mu_asked,mu_commanded,mu_felt,follow_lag_ms,follow_inside,follow_share,envelope_error_db,"
+    "envelope_lag_us,"
     "previous_level,previous_correct_response,previous_response,previous_correct,previous_outcome,"
     "columns_version";
 
@@ -67,7 +68,7 @@ TEST_CASE("trials.csv has all fixed columns in order, and the factors at their p
           "20240229,bench-a,"
           "n/a,0.1.0,2,3.5,flagged,level,-0.75,-55,12.5,1,0.75,2.5,ok,2.25,9,0.5,0.0625,0.875,"
           "80.5,0.6875,0.25,0.8125,150.5,0.375,0.625,-1.5,0.625,-57.5,-82.25,late "
-          "lifted,0.5,0.5625,0.59375,1.75,0.875,-32.5,"
+          "lifted,0.5,0.5625,0.59375,1.75,0.875,0.9375,-32.5,"
           "62.5,n/a,n/a,n/a,n/a,n/a,2");
   CHECK(sample::contains(lines[5], ",mode,first,n/a,n/a,timeout,n/a,n/a,n/a,go_cue,n/a,"));
 }

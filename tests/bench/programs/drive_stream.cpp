@@ -26,6 +26,8 @@ const char* name(EventKind kind) {
       return "missed";
     case EventKind::burst_unfollowed:
       return "unfollowed";
+    case EventKind::burst_follows:
+      return "follows";
     case EventKind::underrun:
       return "underrun";
     case EventKind::device_lost:
