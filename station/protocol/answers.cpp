@@ -237,7 +237,9 @@ procedure::Answer learned_from(const procedure::Spec& spec, const std::string& r
 std::vector<Part> parts_of(const Task& task, const std::vector<std::string>& interval) {
   if (interval.size() == 1)
     if (const auto named = task.parts.find(interval.front()); named != task.parts.end()) return named->second;
-  return {{interval, {}, {}, {}}};
+  std::vector<Part> one(1);
+  one.front().scenes = interval;
+  return one;
 }
 
 std::vector<Part> parts_of(const Task& task) {

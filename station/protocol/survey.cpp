@@ -50,28 +50,18 @@ core::Phrase reach(const scene::Scene& scene, const rig::Rig& rig, const scene::
                                                 rig.friction.fingertip_m};
   const double low_Hz = scene::lowest_frequency(rig, 0),
                high_Hz = scene::highest_frequency(rig, core::kHighestShareOfRate * rig.output.rate_Hz);
-  // Without tones that this rig can play, a map of all frequencies says whether the edge exists at all.
-  const auto of_rig = [&]() -> std::optional<physics::BoundaryMap> {
-    auto in_band = options;
-    in_band.band = {low_Hz, high_Hz};
-    try {
-      return physics::BoundaryMap(planner.surface(), in_band);
-    } catch (const std::domain_error&) {
-      physics::BoundaryMap(planner.surface(), options);
-      return std::nullopt;
-    }
-  };
-  const auto map = of_rig();
-  std::optional<double> nearest, furthest;
-  constexpr int steps = 400;
-  for (int i = 0; map && i <= steps; ++i)
-    if (const auto x = map->boundary_m(low_Hz + (high_Hz - low_Hz) * i / steps)) {
-      nearest = std::min(nearest.value_or(*x), *x);
-      furthest = std::max(furthest.value_or(*x), *x);
-    }
-  if (!nearest) return phrase("this rig cannot present any boundary with this edge");
+  auto in_band = options;
+  in_band.band = {low_Hz, high_Hz};
+  physics::Reach reach{};
+  try {
+    reach = physics::boundary_reach_m(planner.surface(), in_band);
+  } catch (const std::domain_error&) {
+    // Without tones that this rig can play, all frequencies say whether the edge exists at all.
+    physics::boundary_reach_m(planner.surface(), options);
+    return phrase("this rig cannot present any boundary with this edge");
+  }
   return phrase("with this edge the rig can present boundaries from %1 to %2 mm (%3 to %4 kHz)",
-                {plain(core::number(1e3 * *nearest, 4)), plain(core::number(1e3 * *furthest, 4)),
+                {plain(core::number(1e3 * reach.first_m, 4)), plain(core::number(1e3 * reach.last_m, 4)),
                  plain(core::number(1e-3 * low_Hz, 4)), plain(core::number(1e-3 * high_Hz, 4))});
 }
 

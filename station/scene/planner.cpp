@@ -109,6 +109,7 @@ struct Planner::State : ToneDesigner {
   /// uncertainty of the level at a tone's last maximum, by the number of steps of the tone's frequency from 1
   /// Hz
   std::map<int, std::optional<double>> level_sd_dB;
+  FingerFigures finger_figures;
 
   using ToneDesigner::ToneDesigner;
 
@@ -472,7 +473,8 @@ void Planner::add_level_uncertainty(DrivePlan& plan) {
 UnderFinger Planner::under_finger(const DrivePlan& plan) {
   if (state_->rig.surface.plate_theory == rig::PlateTheory::automatic)
     return by_theory(plan.theory).under_finger(plan);
-  return finger_figures(state_->surface, state_->friction, state_->rig, at_least_mode(plan.model), plan);
+  return state_->finger_figures.of(state_->surface, state_->friction, state_->rig, at_least_mode(plan.model),
+                                   plan);
 }
 
 }  // namespace turnpoint::scene

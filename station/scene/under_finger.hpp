@@ -1,5 +1,8 @@
 #pragma once
+#include <map>
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "physics/finger.hpp"
@@ -43,9 +46,18 @@ enum class Parts { left_out, wanted };
 std::optional<physics::LevelBudget> level_of(const physics::Surface& surface, double frequency_Hz,
                                              double at_m, Parts parts);
 
-/// Computes the result of Planner::under_finger() for a surface whose plate theory is already chosen.
-UnderFinger finger_figures(const physics::Surface& surface, const physics::FrictionMap& friction,
-                           const rig::Rig& rig, physics::Model field_model, const DrivePlan& plan);
+struct FingerSolution;
+
+/// Computes the result of Planner::under_finger() for a surface whose plate theory is already chosen. Plans
+/// that differ only in the amplitude of their tones have the same solution, which is kept.
+class FingerFigures {
+ public:
+  UnderFinger of(const physics::Surface& surface, const physics::FrictionMap& friction, const rig::Rig& rig,
+                 physics::Model field_model, const DrivePlan& plan);
+
+ private:
+  std::map<std::string, std::shared_ptr<const FingerSolution>> known_;
+};
 
 /// The fraction of a tone's displacement that is left under the rig's finger, when the finger is at the
 /// tone's last maximum along the surface. The two values are the smallest and the largest over the tones.

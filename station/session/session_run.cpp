@@ -197,7 +197,8 @@ Flow SessionRun::run_trial(trial::TrialSpec spec) {
   }
   drift_.log_temperature(trial_index());
   Running trial{spec,
-                trial::Machine(trial::timing_of(setup_.protocol, *director_.block(), spec)),
+                trial::Machine(trial::timing_of(setup_.protocol, *director_.block(), spec,
+                                                trial::parts_of(setup_.protocol, spec))),
                 trial::row_of(spec, setup_.protocol, trial_index()),
                 {},
                 {},
@@ -442,7 +443,8 @@ void SessionRun::interval_begins(Running& trial) {
 void SessionRun::ask_observer(const Running& trial, std::int64_t onset_ns) {
   if (!participant_ || trial.spec.strokes) return;
   const auto now_ns = stage_->now_ns();
-  const auto times = trial::simulated_times(setup_.protocol, trial.spec, onset_ns);
+  const auto times = trial::simulated_times(setup_.protocol, trial.spec,
+                                            trial::parts_of(setup_.protocol, trial.spec).back(), onset_ns);
   try {
     if (trial.slider)
       participant_->set(trial::adjustment_of(trial.spec, setup_.protocol, summary_.seed), trial.spec, times,

@@ -143,8 +143,9 @@ int Director::State::order_number(const TrialSpec& spec) const {
 
 /// True if the next trial is the first one of the block or after a rest, and a part is then longer.
 bool Director::State::is_fresh(std::size_t task) const {
+  if (!fresh) return false;
   const auto parts = protocol::parts_of(seen_by(task).task);
-  return fresh && std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part.first_s; });
+  return std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part.first_s; });
 }
 
 /// Fills in what follows from the level and the factors: order of intervals, right answer, roving, times.

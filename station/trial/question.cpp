@@ -185,13 +185,14 @@ simulation::Adjustment adjustment_of(const TrialSpec& spec, const protocol::Prot
   adjustment.low = spec.slider->low, adjustment.high = spec.slider->high;
   adjustment.equal = equal_setting(protocol, spec.factors);
   // after the tones there is nothing to feel, and after the deadline nothing counts
-  const auto times = simulated_times(whole, spec, 0);
+  const auto last = parts_of(whole, spec).back();
+  const auto times = simulated_times(whole, spec, last, 0);
   const auto from_slider_s = [&times](std::int64_t from_onset_ns) {
     return 1e-9 * static_cast<double>(from_onset_ns - times.slider_ns);
   };
   constexpr double least_s = 0.05;  // where there is no time at all, the setting comes too late anyway
-  adjustment.within_s = std::max(least_s, std::min(parts_of(whole, spec).back().length_s + from_slider_s(0),
-                                                   spec.deadline_s + from_slider_s(times.zero_ns)));
+  adjustment.within_s = std::max(
+      least_s, std::min(last.length_s + from_slider_s(0), spec.deadline_s + from_slider_s(times.zero_ns)));
   adjustment.key = {seed, core::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
   return adjustment;
 }

@@ -92,15 +92,12 @@ double cue_s(const protocol::Protocol& protocol, const TrialSpec& spec) {
 
 double reach_s(double length_s) { return std::min(0.2, 0.5 * length_s); }
 
-SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSpec& spec,
+SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSpec& spec, const Part& last,
                                std::int64_t onset_ns) {
-  const auto last = parts_of(protocol, spec).back();
   SimulatedTimes times{onset_ns, onset_ns, {}, {}, onset_ns};
   if (spec.strokes || !protocol::explored(protocol::of_task(protocol, spec.task).task))
     times.open_ns += whole_ns(last.length_s);
-  if (!spec.strokes)
-    if (const auto parts = task_parts(protocol, spec); !parts.back().starts_s.empty())
-      times.slider_ns += whole_ns(parts.back().starts_s.back());
+  if (last.changes > 0) times.slider_ns += whole_ns(last.starts_s[last.changes - 1]);
   switch (zero_of(protocol, spec)) {
     case core::ResponseZero::go_cue:
       break;
@@ -151,12 +148,13 @@ std::int64_t simulated_done_ns(const SimulatedTimes& times, const TrialSpec& spe
              : times.zero_ns + whole_ns(spec.anticipation_s + press_s);
 }
 
-Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec) {
+Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec,
+                 const std::vector<Part>& parts) {
   Timing plan;
   const auto& task = protocol::of_task(protocol, spec.task).task;
   plan.cue_ns = ns(cue_s(protocol, spec));
   plan.watermark_ns = core::kWatermark_ns;
-  for (const auto& part : parts_of(protocol, spec)) {
+  for (const auto& part : parts) {
     IntervalTiming timed{ns(part.length_s), {}, ns(part.silence_s)};
     for (const double start : part.starts_s) timed.scene_starts_ns.push_back(ns(start));
     plan.intervals.push_back(std::move(timed));

@@ -18,30 +18,6 @@ core::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& 
 /// How long the page shows what comes, before the first stimulus of a trial.
 double cue_s(const protocol::Protocol& protocol, const TrialSpec& spec);
 
-/// When a simulated participant does what it does, given the onset of the last part. If response times
-/// count from the finger's contact, the finger touches the surface soon after the onset; if they count from
-/// its lift-off, it is lifted when the interval ends.
-struct SimulatedTimes {
-  std::int64_t zero_ns = 0;    ///< from which response times count
-  std::int64_t slider_ns = 0;  ///< from which the slider is moved: the onset of the last scene
-  std::optional<std::int64_t> touch_ns, lift_ns;
-  std::int64_t open_ns =
-      0;  ///< from which answers are taken; a participant who knows the answer earlier waits
-};
-SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSpec& spec,
-                               std::int64_t onset_ns);
-
-/// How long after the onset of an interval of this length the simulated finger touches the surface.
-double reach_s(double length_s);
-
-/// What the simulated participant does then, in order of time.
-std::vector<Event> simulated_events(const SimulatedTimes& times, const simulation::Reply& reply);
-
-/// When the simulated participant presses Done: never before answers count.
-std::int64_t simulated_done_ns(const SimulatedTimes& times, const TrialSpec& spec, double done_s);
-
-Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec);
-
 /// One part of a trial's intervals: what the surface presents without a pause. An interval of a single scene
 /// is one part.
 struct Part {
@@ -58,6 +34,32 @@ struct Part {
 };
 /// All parts of a trial, in the order of presentation.
 std::vector<Part> parts_of(const protocol::Protocol& protocol, const TrialSpec& spec);
+
+/// When a simulated participant does what it does, given the onset of the last part. If response times
+/// count from the finger's contact, the finger touches the surface soon after the onset; if they count from
+/// its lift-off, it is lifted when the interval ends.
+struct SimulatedTimes {
+  std::int64_t zero_ns = 0;    ///< from which response times count
+  std::int64_t slider_ns = 0;  ///< from which the slider is moved: the onset of the last scene
+  std::optional<std::int64_t> touch_ns, lift_ns;
+  std::int64_t open_ns =
+      0;  ///< from which answers are taken; a participant who knows the answer earlier waits
+};
+SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSpec& spec, const Part& last,
+                               std::int64_t onset_ns);
+
+/// How long after the onset of an interval of this length the simulated finger touches the surface.
+double reach_s(double length_s);
+
+/// What the simulated participant does then, in order of time.
+std::vector<Event> simulated_events(const SimulatedTimes& times, const simulation::Reply& reply);
+
+/// When the simulated participant presses Done: never before answers count.
+std::int64_t simulated_done_ns(const SimulatedTimes& times, const TrialSpec& spec, double done_s);
+
+/// `parts` are those of the trial.
+Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec,
+                 const std::vector<Part>& parts);
 
 /// Returns the time from the onset of the last part to the response signal, if the signal is part of the
 /// stimulus (a tone or a buzz).

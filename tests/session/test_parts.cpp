@@ -390,7 +390,8 @@ TEST_CASE("an interval of parts that lasts until the answer takes answers in its
   const auto protocol = protocol::parse(text, "p.toml");
   CHECK(protocol::explored(protocol.task));
   const auto spec = *trial::Director(protocol, 0, 5).next();
-  trial::Machine machine(trial::timing_of(protocol, *trial::Director(protocol, 0, 5).block(), spec));
+  trial::Machine machine(trial::timing_of(protocol, *trial::Director(protocol, 0, 5).block(), spec,
+                                          trial::parts_of(protocol, spec)));
   constexpr std::int64_t ms = 1'000'000;
   machine.start(0);
   machine.handle({800 * ms, trial::EventKind::onset, 0});
