@@ -149,6 +149,11 @@ void advise_on_times(AdviceList& advice) {
       for (const auto& silence : part.silences_s)
         check_length(advice, "task.parts." + name, longest(silence));
     }
+  for (const auto& part : task.before) {
+    check_length(advice, "task.before", std::max(longest(part.duration_s), part.first_s.value_or(0)));
+    for (const auto& silence : part.silences_s) check_length(advice, "task.before", longest(silence));
+  }
+  for (const auto& silence : task.before_silences_s) check_length(advice, "task.before", longest(silence));
   check_length(advice, "task.foreperiod_s", task.foreperiod_s.value_or(Distribution{}).high);
   check_change(advice);
 }

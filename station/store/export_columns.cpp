@@ -258,6 +258,7 @@ ExportColumns trial_columns(const std::vector<ExportedFactor>& factors) {
        "silence_db",
        "silence_tone_db"});
   add(columns, previous, {"level", "correct_response", "response", "correct", "outcome"});
+  add(columns, trial, {"again"});
   columns.push_back(columns_version());
   add_factors(columns, at, factors);
   return columns;

@@ -145,8 +145,10 @@ void Director::State::complete(TrialSpec& spec) const {
   spec.slider = slider(key);
   spec.fresh = is_fresh();
   auto rove = draws(Stream::roving, key);
-  for (const auto& interval : spec.intervals) {
-    const auto parts = protocol::parts_of(protocol.task, interval);
+  std::vector<std::vector<protocol::Part>> lists;
+  if (!protocol.task.before.empty()) lists.push_back(protocol.task.before);
+  for (const auto& interval : spec.intervals) lists.push_back(protocol::parts_of(protocol.task, interval));
+  for (const auto& parts : lists) {
     const auto range = [&](const protocol::Part& part) {
       return protocol.scenes.at(part.scenes.front()).rove_dB;
     };

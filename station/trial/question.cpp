@@ -114,6 +114,7 @@ simulation::Question question_of(const TrialSpec& spec, const protocol::Protocol
   set_second(spec, protocol, level, question);
   const auto& task = protocol.task;
   question.unsure = !task.unsure.empty();
+  question.again = task.again;
   if (task.confidence) question.confidence = static_cast<int>(task.confidence->labels.size());
   if (protocol::judges(task)) {
     question.decides = simulation::Decides::presence;
@@ -191,6 +192,7 @@ simulation::Adjustment adjustment_of(const TrialSpec& spec, const protocol::Prot
   adjustment.within_s =
       std::max(least_s, std::min(parts_of(protocol, spec).back().length_s + from_slider_s(0),
                                  spec.deadline_s + from_slider_s(times.zero_ns)));
+  adjustment.again = protocol.task.again;
   adjustment.key = {seed, core::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
   return adjustment;
 }

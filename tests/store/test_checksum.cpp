@@ -377,5 +377,5 @@ TEST_CASE("the bytes over which the checksums of a session are made change only 
       "UPDATE segment SET session_id = (SELECT session_id FROM session); DELETE FROM link");
   Transaction transaction(database);
   Chain chain(database, "00000000-0000-4000-8000-000000000000");
-  CHECK(chain.add().sha256 == "c46b47c63bf331ecfe50aed5962c3a85e1dffe75faf9d27102a8aa96071dc8e7");
+  CHECK(chain.add().sha256 == "552570d8dddb956b5051897c82bbb41d3e56bf246e12790fe21853f413f5502c");
 }
