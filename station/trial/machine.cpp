@@ -277,7 +277,6 @@ void Machine::again(const Event& event) {
   ++result_.again;
   result_.zero_ns.reset();
   no_contact_deadline_ns_.reset();
-  lift_off_ns_.reset();
   interval_ = 0;
   asked_again_ = true;
   enter(Phase::cue, kNever);
