@@ -116,7 +116,7 @@ Rectangle {
             readonly property real from: root.leftHanded ? pauseRoom : badgeRoom
             readonly property real room: parent.width - badgeRoom - pauseRoom
             width: Math.min(implicitWidth, room)
-            x: from + Math.round(Math.max(0, Math.min(room - width, (parent.width - width) / 2 - from)))
+            x: from + Math.round((room - width) / 2)
             implicitHeight: Math.max(pause.implicitHeight, theme.targetLeast)
             theme: theme
             primary: false
