@@ -135,6 +135,10 @@ Json to_json(const rehearsal::Check& check, const std::string& signal) {
       {"duration_range_s", {json_number(check.duration_s.low), json_number(check.duration_s.high)}},
       {"trials_error", json_number(check.trials.error)},
       {"duration_error_s", json_number(check.duration_s.error)},
+      {"longest_trial_again_s",
+       check.longest_trial_again_s ? json_number(*check.longest_trial_again_s) : Json(nullptr)},
+      {"longest_session_again_s",
+       check.longest_session_again_s ? json_number(*check.longest_session_again_s) : Json(nullptr)},
       {"simulated_sessions", check.simulated_sessions},
       {"wanted_sessions", check.wanted_sessions},
       {"stopped", signal.empty() ? Json(nullptr) : Json(signal)},
@@ -246,6 +250,12 @@ void print(std::ostream& out, const rehearsal::Check& check, const std::string& 
         range(check.trials, 1), range(check.duration_s, 60), check.simulated_sessions,
         check.simulated_sessions < check.wanted_sessions ? fmt::format(" of {}", check.wanted_sessions) : "",
         number(check.trials.error, 2), number(check.duration_s.error / 60, 2));
+  if (check.longest_session_again_s)
+    fmt::print(
+        out,
+        "If people ask for every trial as often as \"again\" allows: up to {} s for a trial and {} minutes "
+        "for the session, without the pauses that the rig's limits may add\n",
+        number(*check.longest_trial_again_s, 3), number(*check.longest_session_again_s / 60, 2));
   if (check.different_places > 1)
     fmt::print(
         out, "Places in the counterbalancing: {} different ones; {}\n", check.different_places,

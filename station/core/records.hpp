@@ -164,7 +164,7 @@ struct ToneRow {
   /// standard deviation of the level that the rig's parameters cause; empty if the rig does not say theirs
   std::optional<double> level_uncertainty_dB;
   /// the interval of the task to which the interval belongs, from 0; differs from interval_index if an
-  /// interval of the task has several parts
+  /// interval of the task has several parts, or is presented again; -1 before the first interval
   int of_interval = 0;
 };
 
@@ -234,6 +234,9 @@ struct ResponseRow {
   /// what the result was worth to the participant; empty without points in the protocol, and for void trials
   std::optional<double> points;
   int extra_touches = 0;
+  /// how often the intervals were presented again because the participant asked for it; empty where nobody
+  /// can
+  std::optional<int> again = {};
 };
 
 /// When a trial happened, and how its times were measured.

@@ -47,8 +47,13 @@ procedure::Answer learned_from(const procedure::Spec& spec, const std::string& r
 /// The parts of an interval that the task lists.
 std::vector<Part> parts_of(const Task& task, const std::vector<std::string>& interval);
 
-/// All parts that the task presents, in the order of the task: those of its intervals, or of standard and
-/// target.
+/// The parts of a trial with these intervals, a list for each. What comes before the first interval is at the
+/// beginning of the first list, and the silence after it before the next part.
+std::vector<std::vector<Part>> parts_of_trial(const Task& task,
+                                              const std::vector<std::vector<std::string>>& intervals);
+
+/// All parts that the task presents, in the order of the task: what comes before the intervals, and those of
+/// its intervals, or of standard and target.
 std::vector<Part> parts_of(const Task& task);
 
 /// The parts that can be the last one of a trial: one for each order of the intervals, without repetition.

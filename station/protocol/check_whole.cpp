@@ -319,6 +319,12 @@ void check_cue(const Reading& reading) {
               phrase("other factors"));
 }
 
+/// True if a scene comes before the one that the slider moves.
+bool has_standard(const Task& task) {
+  const auto parts = parts_of(task);
+  return parts.size() > 1 || (!parts.empty() && parts.front().scenes.size() > 1);
+}
+
 void check_timing(core::TableReader& file, const Reading& reading) {
   const auto* table = file.take("timing");
   if (!table || table->kind != core::Value::Kind::table) return;
@@ -348,6 +354,17 @@ void check_timing(core::TableReader& file, const Reading& reading) {
         place("response_signal"),
         phrase("a slider is not set at a signal: \"response_signal\" does not apply to \"adjustment\""),
         phrase("use \"deadline_s\""));
+  if (timing.signal && protocol.task.again > 0)
+    findings.add(
+        reading.places.of("task.again"),
+        phrase("nobody can ask for the intervals again and answer at a signal: \"again\" does not apply "
+               "with \"response_signal\""),
+        phrase("leave it out, or use \"deadline_s\""));
+  if (protocol.task.again > 0 && protocol.task.kind == TaskKind::adjustment && !has_standard(protocol.task))
+    findings.add(
+        reading.places.of("task.again"),
+        phrase("nothing comes before the scene that the slider moves, so there is nothing to feel again"),
+        phrase("leave it out, or use an interval that begins with a standard"));
   if (timing.response_zero == ResponseZero::change && !has_change(protocol.task))
     findings.add(place("response_zero"),
                  phrase("\"response_zero\" is \"change\", but no interval has a second scene"),

@@ -96,6 +96,9 @@ struct Task {
   /// The scene of each interval, or two scenes of which the second follows the first, or the name of `parts`
   std::vector<std::vector<std::string>> intervals;
   std::map<std::string, std::vector<Part>> parts;  ///< intervals of several parts, by their names
+  /// parts that a trial presents once, before its first interval, and the silences between them and it
+  std::vector<Part> before;
+  std::vector<Linear> before_silences_s;
   /// the two scenes that the task compares, if its kind has a standard and a target
   std::string standard, target;
   Odd odd = Odd::either;
@@ -103,6 +106,7 @@ struct Task {
   std::optional<Linear> duration_s, gap_s;
   std::optional<Distribution> foreperiod_s;  ///< time from the start of an interval to its second scene
   std::optional<double> transition_ms;
+  int again = 0;  ///< how often a participant may ask for the intervals of a trial again
   Device device = Device::touch;
   Place device_place;
   Sound sound = Sound::none;  ///< sound that is played while the surface vibrates

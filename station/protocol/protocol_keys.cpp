@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "station/core/parts.hpp"
 #include "station/core/trial.hpp"
 #include "station/follow/pattern.hpp"
 #include "station/procedure/procedure_keys.hpp"
@@ -335,10 +336,16 @@ Keys task() {
           .without_it("required with several intervals"),
       table("parts", Keys{}.with_free_names(tables("NAME", part(), "the parts of an interval, in order")),
             "intervals of several parts: scenes with silences between them"),
+      tables("before", part(), "parts that each trial presents once, before its first interval")
+          .only_with("kind", {"2ifc", "3ifc", "4ifc", "same-different", "oddity", "abx", "match-to-sample",
+                              "comparison"}),
       time("foreperiod_s", "time before the second scene of an interval")
           .without_it("required with a second scene"),
       number("transition_ms", {1, 5000, Ends::closed, "ms"}, "length of the change to the second scene")
           .without_it("required with a second scene"),
+      integer("again", 1, core::kMostAgain,
+              "how often people may ask for the intervals of a trial again before they answer")
+          .without_it("never"),
       word("device", {"touch", "buttons", "either"},
            "how people answer; buttons for response times, as a panel adds 50 ms and more")
           .required(),

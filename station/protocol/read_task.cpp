@@ -90,11 +90,10 @@ std::optional<Linear> read_length(TableReader& reader, const Reading& reading) {
   return length;
 }
 
-/// Reads one list of parts. A silence belongs to the scene after it.
-std::vector<Part> read_part_list(const core::Value& list, const std::string& name, const Reading& reading) {
+/// Reads a list of parts. A silence belongs to the scene after it; those after the last scene go to `after`.
+std::vector<Part> read_part_list(const core::Value& list, const std::string& path, const Reading& reading,
+                                 std::vector<Linear>& after) {
   std::vector<Part> parts;
-  std::vector<Linear> silences_s;
-  const auto path = key_of(reading.protocol.task, "parts." + name);
   for (const auto& item : list.items) {
     if (item.kind != Value::Kind::table) {
       reading.findings.add(item.place, phrase("a part is %1", {describe(item)}),
@@ -105,16 +104,25 @@ std::vector<Part> read_part_list(const core::Value& list, const std::string& nam
     TableReader reader(item, path, reading.findings, keys_of("task.parts.NAME"));
     if (reader.has("silence_s")) {
       if (auto silence_s = read_expression(reader, "silence_s", reading))
-        silences_s.push_back(std::move(*silence_s));
+        after.push_back(std::move(*silence_s));
     } else if (reader.require("scene")) {
-      Part part{{read_scene_name(reader, "scene", reading)}, {}, {}, std::exchange(silences_s, {})};
+      Part part{{read_scene_name(reader, "scene", reading)}, {}, {}, std::exchange(after, {})};
       part.duration_s = read_length(reader, reading);
       part.first_s = reader.maybe_number("first_s");
       parts.push_back(std::move(part));
     }
     reader.finish();
   }
-  const auto is_silence = [](const core::Value& item) { return item.find("silence_s") != nullptr; };
+  return parts;
+}
+
+bool is_silence(const core::Value& item) { return item.find("silence_s") != nullptr; }
+
+/// Reads the parts of an interval, which begins and ends with a scene.
+std::vector<Part> read_interval_parts(const core::Value& list, const std::string& name,
+                                      const Reading& reading) {
+  std::vector<Linear> after;
+  auto parts = read_part_list(list, "task.parts." + name, reading, after);
   if (!list.items.empty() && (is_silence(list.items.front()) || is_silence(list.items.back())))
     reading.findings.add(is_silence(list.items.front()) ? list.items.front().place : list.items.back().place,
                          phrase("\"%1\" begins or ends with a silence", {plain(name)}),
@@ -123,6 +131,26 @@ std::vector<Part> read_part_list(const core::Value& list, const std::string& nam
     reading.findings.add(list.place, phrase("\"%1\" has no parts", {plain(name)}),
                          phrase("write a list of parts: %1", {plain("[{ scene = \"edge\" }]")}));
   return parts;
+}
+
+/// Reads what a trial presents before its first interval. It begins with a scene; the silence at its end is
+/// that before the interval.
+void read_before(TableReader& reader, Task& task, const Reading& reading) {
+  const auto* list = reader.take("before");
+  if (!list) return;
+  if (list->kind != Value::Kind::array)
+    return reader.problem(
+        "before", phrase("\"%1\" is %2", {plain("before"), describe(*list)}),
+        phrase("write a list of parts: %1",
+               {plain("[{ scene = \"adaptor\", duration_s = 5.0 }, { silence_s = 0.5 }]")}));
+  task.before = read_part_list(*list, "task.before", reading, task.before_silences_s);
+  if (list->items.empty() || is_silence(list->items.front()))
+    reader.problem("before", phrase("\"before\" begins with no scene"),
+                   phrase("write a scene first, or leave \"before\" out"));
+  for (std::size_t i = 0; i < task.before.size(); ++i)
+    if (!task.before[i].duration_s)
+      reader.problem("before", phrase("part %1 of \"%2\" has no length", {plain(i + 1), plain("before")}),
+                     phrase("give it \"duration_s\""));
 }
 
 void read_parts(TableReader& reader, Task& task, const Reading& reading) {
@@ -134,7 +162,7 @@ void read_parts(TableReader& reader, Task& task, const Reading& reading) {
       reading.findings.add(entry.place, phrase("there is already a scene \"%1\"", {plain(entry.key)}),
                            phrase("give the parts another name"));
     if (entry.value.kind == Value::Kind::array)
-      task.parts[entry.key] = read_part_list(entry.value, entry.key, reading);
+      task.parts[entry.key] = read_interval_parts(entry.value, entry.key, reading);
     else
       reading.findings.add(entry.value.place,
                            phrase("\"%1\" is %2", {plain(entry.key), describe(entry.value)}),
@@ -158,14 +186,15 @@ std::size_t most_parts_of_trial(const Task& task, const TaskForm& kind) {
   if (!compares(task.kind)) {
     auto intervals = task.intervals;
     if (!task.standard.empty()) intervals.push_back({task.standard});
-    std::size_t sum = 0;
+    std::size_t sum = task.before.size();
     for (const auto& interval : intervals) sum += parts_of(task, interval).size();
     return sum;
   }
   const bool of_two = task.kind == TaskKind::same_different;
   const bool of_three = task.kind == TaskKind::abx || task.kind == TaskKind::match_to_sample;
   const std::size_t intervals = of_two ? 2 : of_three ? 3 : kind.most;
-  return intervals * std::max(parts_of(task, {task.standard}).size(), parts_of(task, {task.target}).size());
+  return task.before.size() +
+         intervals * std::max(parts_of(task, {task.standard}).size(), parts_of(task, {task.target}).size());
 }
 
 /// Where the intervals are presented in a random order, the place of the longest adaptor must not tell which
@@ -220,7 +249,7 @@ void check_parts(const Task& task, const TaskForm& kind, const Reading& reading)
   check_first(task, reading);
   const auto most = most_parts_of_trial(task, kind);
   if (most > core::kMostParts)
-    reading.findings.add(reading.places.of(key_of(task, "parts")),
+    reading.findings.add(reading.places.of(key_of(task, reading.places.has(key_of(task, "parts")) ? "parts" : "before")),
                          phrase("the intervals of a trial have up to %1 scenes", {plain(most)}),
                          phrase("at most %1", {plain(core::kMostParts)}));
 }
@@ -622,6 +651,7 @@ void read_one(const Value& table, const std::string& path, const core::Keys& key
   if (kind == std::end(task_forms)) kind = std::begin(task_forms);
   task.kind = kind->kind;
   read_parts(reader, task, reading);
+  read_before(reader, task, reading);
   read_intervals(reader, task, reading);
   const auto device = reader.word("device");
   task.device_place = reader.place("device");
@@ -632,6 +662,7 @@ void read_one(const Value& table, const std::string& path, const core::Keys& key
   task.sound_place = reader.place("sound");
   if (reader.has("cue")) task.cue = read_localised(reader, "cue", reading);
   task.cue_s = read_expression(reader, "cue_s", reading).value_or(task.cue_s);
+  task.again = static_cast<int>(reader.maybe_integer("again").value_or(0));
   task.question = read_localised(reader, "question", reading);
   read_shown(reader, task, reading);
   read_judgement(reader, task, reading);

@@ -123,6 +123,8 @@ std::vector<std::string> scenes_used(const Protocol& protocol) {
     for (const auto& part : parts_of(task, interval))
       for (const auto& name : part.scenes) add_name(name);
   };
+  for (const auto& part : task.before)
+    for (const auto& name : part.scenes) add_name(name);
   for (const auto& interval : task.intervals) add_interval(interval);
   add_interval({task.standard}), add_interval({task.target});
   if (protocol.timing.signal) add_name(protocol.timing.signal->scene);

@@ -332,6 +332,8 @@ struct Longest {
   double run_s = 0, minute_s = 0;
   const Part* run_part = nullptr;
   bool over_intervals = false;  ///< whether the run goes over the pause between two intervals
+  /// the longest vibration within any minute if the participant asks for the intervals as often as allowed
+  double again_minute_s = 0;
 };
 
 void lengthen(const std::vector<Felt>& trial, Longest& longest) {
@@ -343,7 +345,7 @@ void lengthen(const std::vector<Felt>& trial, Longest& longest) {
     if (rests) run_interval = felt.interval;
     run_s = (rests ? 0 : run_s + felt.silence_s) + felt.length_s;
     if (run_s > longest.run_s + 1e-9)
-      longest = {run_s, longest.minute_s, felt.part, run_interval != felt.interval};
+      longest = {run_s, longest.minute_s, felt.part, run_interval != felt.interval, longest.again_minute_s};
     presented.emplace_back(end_s + felt.silence_s, end_s + felt.silence_s + felt.length_s);
     end_s = presented.back().second;
     double minute_s = 0;
@@ -353,14 +355,23 @@ void lengthen(const std::vector<Felt>& trial, Longest& longest) {
   }
 }
 
+/// A trial whose intervals are presented so many times again, each time at once after the cue.
+std::vector<Felt> repeated(const std::vector<Felt>& trial, int again) {
+  static_assert(kCue_s >= core::kRest_s, "the finger rests before the intervals are presented again");
+  auto all = trial;
+  for (int i = 0; i < again; ++i)
+    for (auto felt : trial) {
+      if (felt.part == trial.front().part && felt.interval == 0) felt.silence_s += kCue_s;
+      all.push_back(felt);
+    }
+  return all;
+}
+
 /// The longest vibration of a trial, over all orders of its intervals, with and without a long first part, at
 /// the ends of the ranges of the factors.
 Longest longest_of(const Protocol& protocol, std::vector<std::vector<std::vector<Part>>>& orders) {
   const auto& task = protocol.task;
-  for (const auto& order : orders_of(task)) {
-    auto& intervals = orders.emplace_back();
-    for (const auto& interval : order.intervals) intervals.push_back(parts_of(task, interval));
-  }
+  for (const auto& order : orders_of(task)) orders.push_back(parts_of_trial(task, order.intervals));
   const auto times = stimulus_times(task);
   std::vector<const Linear*> expressions;
   for (const auto& time : times) expressions.push_back(&time);
@@ -380,6 +391,9 @@ Longest longest_of(const Protocol& protocol, std::vector<std::vector<std::vector
           }
         }
         lengthen(trial, longest);
+        Longest again;
+        lengthen(repeated(trial, task.again), again);
+        longest.again_minute_s = std::max(longest.again_minute_s, again.minute_s);
       }
   return longest;
 }
@@ -391,8 +405,9 @@ void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey)
   const auto longest = longest_of(protocol, orders);
   if (longest.run_part == nullptr) return;
   const auto& part = *longest.run_part;
+  const std::string parts_key = key_of(task, places.has(key_of(task, "parts")) ? "parts" : "before");
   const std::string key = longest.over_intervals             ? key_of(task, "gap_s")
-                          : part.duration_s || part.first_s  ? key_of(task, "parts")
+                          : part.duration_s || part.first_s  ? parts_key
                           : length_of(task, part) != nullptr ? key_of(task, "duration_s")
                                                              : "timing.explore_s";
   if (longest.run_s > rig.limits.continuous_s + 1e-9)
@@ -404,11 +419,20 @@ void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey)
   const double most_s = rig.limits.duty * core::kExposureWindow_s;
   if (longest.minute_s > most_s + 1e-9)
     survey.problems.push_back(
-        {places.of(task.parts.empty() ? key : key_of(task, "parts")),
+        {places.of(task.parts.empty() && task.before.empty() ? key : parts_key),
          phrase("the tones of a trial last up to %1 s in %2 s",
                 {plain(core::number(longest.minute_s)), plain(core::number(core::kExposureWindow_s))}),
          phrase("the rig allows at most %1 s (duty = %2)",
                 {plain(core::number(most_s)), plain(core::number(rig.limits.duty))})});
+  else if (longest.again_minute_s > most_s + 1e-9)
+    survey.warnings.push_back({places.of("task.again"),
+                               phrase("the tones of a trial that is presented %1 times would last up to %2 s "
+                                      "in %3 s: people wait until "
+                                      "the rig's limits allow them",
+                                      {plain(task.again + 1), plain(core::number(longest.again_minute_s)),
+                                       plain(core::number(core::kExposureWindow_s))}),
+                               phrase("the rig allows at most %1 s without a wait (duty = %2)",
+                                      {plain(core::number(most_s)), plain(core::number(rig.limits.duty))})});
 }
 
 }  // namespace

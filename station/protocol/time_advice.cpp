@@ -150,6 +150,12 @@ void advise_on_times(AdviceList& advice) {
       for (const auto& silence : part.silences_s)
         check_length(advice, key_of(task, "parts.") + name, longest(silence));
     }
+  const auto before = key_of(task, "before");
+  for (const auto& part : task.before) {
+    check_length(advice, before, std::max(longest(part.duration_s), part.first_s.value_or(0)));
+    for (const auto& silence : part.silences_s) check_length(advice, before, longest(silence));
+  }
+  for (const auto& silence : task.before_silences_s) check_length(advice, before, longest(silence));
   check_length(advice, key_of(task, "foreperiod_s"), task.foreperiod_s.value_or(Distribution{}).high);
   check_change(advice);
 }

@@ -29,7 +29,7 @@ std::int64_t ns(double s) { return static_cast<std::int64_t>(s * 1e9); }
 struct Doing {
   simulation::Reply reply;
   std::optional<double> setting;
-  double done_s = 0;  ///< for a setting
+  simulation::Setting made;  ///< for a setting
 };
 
 /// Runs one trial on a simulated clock, which advances to each event of the trial's state machine. Intervals
@@ -74,11 +74,10 @@ class Bench {
       if (action.kind != trial::ActionKind::present) continue;
       const auto onset_ns = present(std::max(now_ns_, action.time_ns), doing);
       const auto times = trial::simulated_times(protocol_, spec_, parts_.back(), onset_ns);
-      const auto events = trial::simulated_events(times, doing.setting ? simulation::Reply{} : doing.reply);
+      const int again = machine_.result().again;
+      const auto events = doing.setting ? trial::simulated_events(times, spec_, doing.made, again)
+                                        : trial::simulated_events(times, doing.reply, again);
       answers_.assign(events.begin(), events.end());
-      if (doing.setting)
-        answers_.push_back(
-            {trial::simulated_done_ns(times, spec_, doing.done_s), trial::EventKind::answer, 0});
       for (auto& answer : answers_) answer.time_ns = std::max(now_ns_, answer.time_ns);
     }
   }
@@ -109,7 +108,7 @@ Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol:
     doing.reply.choice = 0;  // 0: the finger moves as the protocol asks
     return doing;
   }
-  if (!spec.slider) return {rehearser.answer(spec, trial::question_of(spec, protocol, seed)), {}};
+  if (!spec.slider) return {rehearser.answer(spec, trial::question_of(spec, protocol, seed)), {}, {}};
   const auto set = rehearser.adjust(spec, trial::adjustment_of(spec, protocol, seed));
   trial::Slider slider(*spec.slider, spec.level.value_or(spec.slider->low));
   // Ignore slider movements after the tones have ended: the participant could not feel their effect.
@@ -119,7 +118,7 @@ Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol:
   for (const auto& move : set.moves)
     if (move.time_s < sounds_s) slider.move(move.value);
   Doing doing;
-  doing.reply.choice = 0, doing.done_s = set.done_s;
+  doing.reply.choice = 0, doing.made = set;
   doing.setting = slider.setting();
   return doing;
 }

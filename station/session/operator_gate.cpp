@@ -28,6 +28,11 @@ std::optional<int> answer_of(const std::string& button, const protocol::Task& ta
   return place >= 0 && place < protocol::answer_count(task) ? std::optional(place) : std::nullopt;
 }
 
+/// True if the button asks for the intervals again: the third one, if it is no answer.
+bool asks_again(const std::string& button, const protocol::Task& task) {
+  return task.again > 0 && button == "third" && !answer_of(button, task);
+}
+
 }  // namespace
 
 OperatorGate::OperatorGate(const Setup& setup, const Pages& pages, const trial::Director& director,
@@ -52,11 +57,12 @@ Input OperatorGate::received(Input input) {
   const auto& names = stage_.buttons();
   const auto index = static_cast<std::size_t>(button->index);
   const auto& task = protocol::of_task(setup_.protocol, director_.task()).task;
-  const auto answer = task.device != protocol::Device::touch && index < names.size()
-                          ? answer_of(names[index], task)
-                          : std::nullopt;
+  const bool counts = task.device != protocol::Device::touch && index < names.size();
+  const auto answer = counts ? answer_of(names[index], task) : std::nullopt;
   if (answer)
     input.content = input::Answer{*answer};
+  else if (counts && asks_again(names[index], task))
+    input.content = input::Again{};
   else
     input.content = input::Touch{};
   return input;

@@ -112,6 +112,7 @@ std::string Pages::text(const protocol::Localised& localised) const {
 
 Page Pages::blank(PageKind kind, const protocol::Block* block, const trial::Director* director) const {
   Page page;
+  page.offers_again = setup_.protocol.task.again > 0;
   page.kind = kind;
   page.language = setup_.language;
   page.run_mode = store::name(setup_.run_mode);
@@ -303,10 +304,10 @@ Page Pages::farewell(const protocol::Localised& words, const trial::Director& di
   return page;
 }
 
-void Pages::add_slider(Page& page, const trial::SliderSpan& span, double setting) const {
+void Pages::add_slider(Page& page, const trial::SliderSpan& span, double setting, bool moved) const {
   page.kind = PageKind::adjust;
   page.answers.clear();
-  page.slider = {setting, span.shown_low, span.shown_high, span.step};
+  page.slider = {setting, span.shown_low, span.shown_high, span.step, moved};
 }
 
 Page Pages::between_trials(const protocol::Block* block, const trial::Director& director) const {

@@ -37,6 +37,7 @@ struct Log {
   void operator()(const input::Value& value) const { say("value", core::exact(value.number)); }
   void operator()(const input::Next&) const { say("next", ""); }
   void operator()(const input::Back&) const { say("back", ""); }
+  void operator()(const input::Again&) const { say("again", ""); }
   void operator()(const input::Slider& slider) const { say("slider", core::exact(slider.value)); }
   void operator()(const input::Touch&) const { say("touch", ""); }
   void operator()(const input::Button& button) const { say("button", std::to_string(button.index)); }
@@ -229,7 +230,7 @@ void add_forces(core::TrialRow& row, const sensing::TrialForces& forces, const A
   finger.tare_mN = 1e3 * forces.tare_moved_N;
   if (forces.track.empty()) return;
   core::SignalRow signal;
-  signal.stream = "finger";
+  signal.stream = kFingerStream;
   signal.start_frame = forces.track.front().index * forces.frames_per_point;
   signal.start_s = at.time_s + static_cast<double>(signal.start_frame - at.frame) / rate_Hz;
   signal.rate_Hz = static_cast<double>(rate_Hz) / static_cast<double>(forces.frames_per_point);

@@ -49,6 +49,8 @@ struct Asked {
   std::optional<double> friction_level;
   sensing::StripPart part;  ///< the part of the surface in which friction is averaged
 };
+/// The stream of a trial's signal that add_forces() adds.
+inline constexpr const char* kFingerStream = "finger";
 /// Returns the part of the surface in which the trial's friction is averaged: in a trial for a friction
 /// table, the part that the table describes; otherwise the whole surface.
 sensing::StripPart part_of(const trial::TrialSpec& spec);

@@ -184,6 +184,16 @@ core::EventRow event(std::int64_t time_ns, const char* kind, double value, int t
   return {time_ns, kind, core::number(value, 9), trial_index};
 }
 
+/// Shortens the scenes of a part that was cut off at `off_ns`, because the participant asked for the
+/// intervals again.
+void cut_tones(core::TrialRow& row, int part, const Onset& onset, std::int64_t off_ns, int rate_Hz) {
+  const std::int64_t end =
+      onset.frame + std::llround(1e-9 * static_cast<double>(off_ns - onset.time_ns) * rate_Hz);
+  for (auto& tone : row.tones)
+    if (tone.interval_index == part)
+      tone.length_frames = std::clamp(end - tone.onset_frame, std::int64_t{0}, tone.length_frames);
+}
+
 }  // namespace
 
 Flow SessionRun::run_trial(trial::TrialSpec spec) {
@@ -197,6 +207,7 @@ Flow SessionRun::run_trial(trial::TrialSpec spec) {
   }
   drift_.log_temperature(trial_index());
   Running trial{spec,
+                spec,
                 trial::Machine(trial::timing_of(setup_.protocol, *director_.block(), spec,
                                                 trial::parts_of(setup_.protocol, spec))),
                 trial::row_of(spec, setup_.protocol, trial_index()),
@@ -344,10 +355,14 @@ void SessionRun::handle_in_trial(Input raw, Running& trial) {
   gate_.note(input);
   const auto* measured = input.as<input::Measured>();
   if (measured) drift_.follow(*measured->result);
-  if (measured) add_measured(trial.row, *measured->result, measured->interval, trial.measured++ == 0);
+  if (measured)
+    add_measured(trial.row, *measured->result, static_cast<int>(trial.first) + measured->interval,
+                 trial.measured++ == 0);
   if (measured && measured->forces && !trial.onsets.empty()) {
     const auto& forces = *measured->forces;
     const auto& onset = trial.onsets.front();
+    // the row describes the finger in the last presentation
+    std::erase_if(trial.row.signal_rows, [](const auto& signal) { return signal.stream == kFingerStream; });
     add_forces(trial.row, forces, {trial.friction_level, part_of(trial.spec)}, setup_.rig.output.rate_Hz,
                {onset.frame, 1e-9 * static_cast<double>(onset.time_ns - started_ns_)});
     const bool asked = setup_.protocol.sensing && forces.state == sensing::ForcesState::ok;
@@ -409,7 +424,12 @@ void SessionRun::perform(const std::vector<trial::Action>& actions, Running& tri
 
 /// Presents all intervals with one call, so that the distances between them are exact numbers of frames.
 void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
-  const auto& bursts = plans_.take(trial.spec).bursts;
+  if (trial.machine.result().again > 0) {
+    const auto after_ns = prepare_again(earliest_ns, trial);
+    if (!after_ns) return;
+    earliest_ns = *after_ns;
+  }
+  const auto& bursts = plans_.take(trial.shown).bursts;
   try {
     trial.onsets = stage_->present(bursts, earliest_ns);
   } catch (const audio::BurstRefused& refused) {
@@ -429,13 +449,52 @@ void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
   ask_observer(trial, trial.onsets.back().time_ns);
 }
 
+/// Does before the intervals are presented again what prepare_trial() does before a trial: records what the
+/// finger has felt, finds the time from which the rig's limits allow the intervals, and switches the
+/// amplifier on. Returns that time; nothing if the trial has ended instead.
+std::optional<std::int64_t> SessionRun::prepare_again(std::int64_t earliest_ns, Running& trial) {
+  stage_->close_amplifier();
+  if (trial.slider) {
+    trial.shown.factors[setup_.protocol.task.adjusts] = trial.slider->glide(stage_->now_ns());
+    trial.slider->followed();
+    plans_.begin(trial.shown);
+  }
+  cut_tones(trial.row, static_cast<int>(trial.begun) - 1, trial.onsets.back(), surface_.back().off_ns,
+            setup_.rig.output.rate_Hz);
+  trial.first = trial.begun;
+  leave_surface();
+  std::optional<trial::EventKind> cut_by;
+  try {
+    check_plans(trial.shown);
+    const auto now = stage_->now_ns();
+    const auto begin = account_.earliest_ns(now, session::stimuli_of(setup_.protocol, trial.spec));
+    if (begin > now) {
+      earliest_ns += begin - now;
+      const double stretch_s = static_cast<double>(begin - now) * 1e-9;
+      summary_.stretched_s += stretch_s;
+      log_.event(event(now, "interval_stretched", stretch_s, trial_index()));
+    }
+    // Write to the disk while the amplifier is off, as before the trial.
+    stage_->wait_for(
+        [&] { return stage_->amplifier() != audio::AmplifierState::enabled && plans_.ready(trial.shown); });
+    gate_.keep([&] { log_.presented(trial_index(), stage_->now_ns()); });
+    cut_by = open_amplifier();
+  } catch (const LimitExceeded& limit) {
+    gate_.stop(limit.what());
+    cut_by = trial::EventKind::abort;
+  }
+  if (!cut_by) return earliest_ns;
+  perform(trial.machine.handle({stage_->now_ns(), *cut_by, 0}), trial);
+  return std::nullopt;
+}
+
 /// Appends this part's tones to the row. This happens only when the part begins, so that parts that are
 /// cancelled do not appear in the row.
 void SessionRun::interval_begins(Running& trial) {
-  const auto i = trial.begun++;
-  const auto& planned = plans_.take(trial.spec);
+  const auto number = trial.begun++, i = number - trial.first;
+  const auto& planned = plans_.take(trial.shown);
   const auto interval = trial::parts_of(setup_.protocol, trial.spec)[i].interval;
-  add_tones(trial.row, planned.plans[i], static_cast<int>(i), interval, trial.onsets[i].frame,
+  add_tones(trial.row, planned.plans[i], static_cast<int>(number), interval, trial.onsets[i].frame,
             planned.bursts[i]);
   trial.friction_level = friction_level(planned.plans[i].back().scene);
 }
@@ -448,9 +507,10 @@ void SessionRun::ask_observer(const Running& trial, std::int64_t onset_ns) {
   try {
     if (trial.slider)
       participant_->set(trial::adjustment_of(trial.spec, setup_.protocol, summary_.seed), trial.spec, times,
-                        now_ns);
+                        now_ns, trial.machine.result().again);
     else
-      participant_->answer(trial::question_of(trial.spec, setup_.protocol, summary_.seed), times, now_ns);
+      participant_->answer(trial::question_of(trial.spec, setup_.protocol, summary_.seed), times, now_ns,
+                           trial.machine.result().again);
   } catch (const core::ProgramFailed& failed) {
     // The trial ends without a result, and the session is interrupted.
     participant_->will({now_ns, input::Failure{failed.what()}}, now_ns);
@@ -545,7 +605,8 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
     page.flash_ns = *trial.machine.result().zero_ns + std::llround(1e9 * *trial.spec.signal_s);
   const bool before_last = phase == trial::Phase::stimulus && !trial.is_set();
   if (trial.slider && adjusting && !before_last)
-    pages_.add_slider(page, *trial.spec.slider, trial.slider->setting());
+    pages_.add_slider(page, *trial.spec.slider, trial.slider->setting(),
+                      trial.slider->setting() != trial.spec.level.value_or(trial.spec.slider->low));
   if (phase == trial::Phase::late && trial.machine.result().outcome == core::Outcome::fault)
     page.text = pages_.movement(trial.row.finger.sensing);
   const bool judged = phase == trial::Phase::feedback || phase == trial::Phase::late;
@@ -554,6 +615,8 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
       pages_.add_points(
           page, *points,
           director_.block()->practice ? std::nullopt : std::optional(scores_.points() + *points));
+  page.again =
+      (phase == trial::Phase::stimulus || phase == trial::Phase::response) && trial.machine.may_ask_again();
   if (trial.spec.strokes && phase == trial::Phase::feedback)
     page.text = pages_.movement(trial.row.finger.sensing);
   hold_bars(phase, trial);
@@ -728,7 +791,7 @@ void SessionRun::trigger_intervals(const Running& trial) {
     trigger.time_ns = onset.time_ns + frames * 1'000'000'000 / setup_.rig.output.rate_Hz;
     if (trigger.code > 0) stage_->triggers().scheduled(std::move(trigger));
   };
-  const auto& bursts = plans_.take(trial.spec).bursts;
+  const auto& bursts = plans_.take(trial.shown).bursts;
   const auto parts = trial::parts_of(setup_.protocol, trial.spec);
   for (std::size_t i = 0; i < bursts.size(); ++i) {
     add(TriggerEvent::onset, trial.onsets[i], 0);

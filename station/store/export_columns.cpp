@@ -267,6 +267,7 @@ ExportColumns trial_columns(const std::vector<ExportedFactor>& factors) {
        "envelope_error_db",
        "envelope_lag_us"});
   add(columns, previous, {"level", "correct_response", "response", "correct", "outcome"});
+  add(columns, trial, {"again"});
   columns.push_back(columns_version());
   add_factors(columns, at, factors);
   return columns;

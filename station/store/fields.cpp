@@ -533,6 +533,10 @@ const Table<TrialRow>& trial_table() {
            {"points", "points",
             "Points that the result of the trial was worth to the participant; n/a if the "
             "protocol gives none, and for void trials"}),
+       field<&T::given, &ResponseRow::again>(
+           {"again", "again",
+            "How often the intervals were presented again because the participant asked for it; all times of "
+            "the trial are those of the last time. n/a if the task does not offer it"}),
        field<&T::finger, &FingerRow::sensing>(
            {"sensing", "sensing",
             "Whether the touch met the requirements of the protocol's [sensing]: ok, or too few "
@@ -683,7 +687,8 @@ const Table<ToneRow>& tone_table() {
        field<&T::of_interval>({"of_interval", "of_interval",
                                "Number of the task's interval to which this one belongs, in the order "
                                "presented, from 0; differs from interval_index if an interval of the task "
-                               "has several parts"})}};
+                               "has several parts, or is presented again; -1 for what comes before the first "
+                               "interval"})}};
   return table;
 }
 

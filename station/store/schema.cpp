@@ -182,6 +182,8 @@ CREATE TABLE trial (
     CHECK ((confidence_time_s IS NULL) = (confidence IS NULL) AND coalesce(confidence_time_s, 0) >= 0),
   -- what the result was worth to the participant
   points REAL CHECK (points IS NULL OR outcome NOT IN ('aborted', 'fault')),
+  -- how often the participant had the intervals presented again; NULL where nobody can
+  again INTEGER CHECK (again >= 0),
   -- what force sensors measured
   sensing TEXT NOT NULL
     CHECK (sensing IN ('', 'ok', 'strokes', 'light', 'hard', 'slow', 'fast', 'lost', 'wire', 'tare')),

@@ -159,8 +159,10 @@ void Director::State::complete(TrialSpec& spec) const {
   spec.slider = slider(spec.task, key);
   spec.fresh = is_fresh(spec.task);
   auto rove = draws(Stream::roving, key);
-  for (const auto& interval : spec.intervals) {
-    const auto parts = protocol::parts_of(task, interval);
+  std::vector<std::vector<protocol::Part>> lists;
+  if (!task.before.empty()) lists.push_back(task.before);
+  for (const auto& interval : spec.intervals) lists.push_back(protocol::parts_of(task, interval));
+  for (const auto& parts : lists) {
     const auto range = [&](const protocol::Part& part) {
       return protocol.scenes.at(part.scenes.front()).rove_dB;
     };

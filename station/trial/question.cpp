@@ -115,6 +115,7 @@ simulation::Question question_of(const TrialSpec& spec, const protocol::Protocol
   set_second(spec, protocol, level, question);
   const auto& task = protocol.task;
   question.unsure = !task.unsure.empty();
+  question.again = task.again;
   if (task.confidence) question.confidence = static_cast<int>(task.confidence->labels.size());
   if (protocol::judges(task)) {
     question.decides = simulation::Decides::presence;
@@ -193,6 +194,7 @@ simulation::Adjustment adjustment_of(const TrialSpec& spec, const protocol::Prot
   constexpr double least_s = 0.05;  // where there is no time at all, the setting comes too late anyway
   adjustment.within_s = std::max(
       least_s, std::min(last.length_s + from_slider_s(0), spec.deadline_s + from_slider_s(times.zero_ns)));
+  adjustment.again = protocol.task.again;
   adjustment.key = {seed, core::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
   return adjustment;
 }

@@ -23,11 +23,18 @@ std::vector<Part> task_parts(const protocol::Protocol& protocol, const TrialSpec
   const auto value = [&](const protocol::Linear& time_s) { return protocol::evaluate(time_s, spec.factors); };
   std::vector<Part> parts;
   bool fresh = spec.fresh;  // only one part of a trial is longer
-  for (std::size_t i = 0; i < spec.intervals.size(); ++i) {
+  // An example of an explanation, whose length the spec states, is a single scene.
+  const auto before = spec.length_s ? 0 : task.before.size();
+  std::vector<std::vector<protocol::Part>> intervals;
+  if (spec.length_s)
+    intervals.push_back(protocol::parts_of(task, spec.intervals.front()));
+  else
+    intervals = protocol::parts_of_trial(task, spec.intervals);
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
     double silence_s = i > 0 && task.gap_s ? value(*task.gap_s) : 0;
-    for (const auto& from : protocol::parts_of(task, spec.intervals[i])) {
+    for (const auto& from : intervals[i]) {
       Part part;
-      part.interval = static_cast<int>(i);
+      part.interval = parts.size() < before ? kBeforeIntervals : static_cast<int>(i);
       for (const auto& silence : from.silences_s) silence_s += value(silence);
       part.silence_s = std::exchange(silence_s, 0);
       // A part that is explored lasts until the answer, but at most explore_s or, if that is not set, until
@@ -119,7 +126,8 @@ SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSp
   return times;
 }
 
-std::vector<Event> simulated_events(const SimulatedTimes& times, const simulation::Reply& reply) {
+std::vector<Event> simulated_events(const SimulatedTimes& times, const simulation::Reply& reply,
+                                    int presented_again) {
   std::vector<Event> events;
   if (times.touch_ns) events.push_back({*times.touch_ns, EventKind::contact, 1});
   if (!reply.choice) {
@@ -132,11 +140,26 @@ std::vector<Event> simulated_events(const SimulatedTimes& times, const simulatio
   if (times.touch_ns && !lift_ns && reply.travel_s > 0)
     lift_ns = std::max(*times.touch_ns, at_ns - whole_ns(reply.travel_s));
   if (lift_ns) events.push_back({*lift_ns, EventKind::contact, 0});
-  events.push_back({at_ns, EventKind::answer, *reply.choice});
-  if (reply.confidence)
+  const bool asks_again = presented_again < reply.again;
+  if (asks_again)
+    events.push_back({at_ns, EventKind::again, 0});
+  else
+    events.push_back({at_ns, EventKind::answer, *reply.choice});
+  if (reply.confidence && !asks_again)
     events.push_back({at_ns + whole_ns(reply.confidence_time_s), EventKind::answer, *reply.confidence - 1});
   std::stable_sort(events.begin(), events.end(),
                    [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; });
+  return events;
+}
+
+std::vector<Event> simulated_events(const SimulatedTimes& times, const TrialSpec& spec,
+                                    const simulation::Setting& setting, int presented_again) {
+  auto events = simulated_events(times, simulation::Reply{});
+  if (presented_again < setting.again)
+    events.push_back(
+        {std::max(times.open_ns, times.slider_ns + whole_ns(setting.again_s)), EventKind::again, 0});
+  else
+    events.push_back({simulated_done_ns(times, spec, setting.done_s), EventKind::answer, 0});
   return events;
 }
 
@@ -181,6 +204,7 @@ Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& bloc
   }
   plan.answers = task.kind == protocol::TaskKind::adjustment ? 1 : protocol::answer_count(task);
   plan.unsure = protocol::answer_index(task, protocol::kUnsure);
+  plan.again = task.again;
   if (task.confidence) plan.confidence = static_cast<int>(task.confidence->labels.size());
   return plan;
 }

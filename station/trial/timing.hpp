@@ -18,10 +18,14 @@ core::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& 
 /// How long the page shows what comes, before the first stimulus of a trial.
 double cue_s(const protocol::Protocol& protocol, const TrialSpec& spec);
 
+/// Stands for the interval of a part that comes before the first interval.
+inline constexpr int kBeforeIntervals = -1;
+
 /// One part of a trial's intervals: what the surface presents without a pause. An interval of a single scene
 /// is one part.
 struct Part {
-  int interval = 0;      ///< the interval to which it belongs: an index of TrialSpec::intervals
+  /// the interval to which it belongs: an index of TrialSpec::intervals, or kBeforeIntervals
+  int interval = 0;
   double silence_s = 0;  ///< silence before it, from the end of the part before
   double length_s = 0;
   /// Its scenes. A buzz (a response signal on the surface) counts as a scene; after it, the scene before it
@@ -51,8 +55,15 @@ SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSp
 /// How long after the onset of an interval of this length the simulated finger touches the surface.
 double reach_s(double length_s);
 
-/// What the simulated participant does then, in order of time.
-std::vector<Event> simulated_events(const SimulatedTimes& times, const simulation::Reply& reply);
+/// What the simulated participant does then, in order of time: asks for the intervals again, if they have
+/// been presented again fewer times than it wants, or else answers.
+std::vector<Event> simulated_events(const SimulatedTimes& times, const simulation::Reply& reply,
+                                    int presented_again = 0);
+
+/// What the simulated participant does in an adjustment, in order of time, besides moving the slider: asks
+/// for the intervals again, or presses Done.
+std::vector<Event> simulated_events(const SimulatedTimes& times, const TrialSpec& spec,
+                                    const simulation::Setting& setting, int presented_again);
 
 /// When the simulated participant presses Done: never before answers count.
 std::int64_t simulated_done_ns(const SimulatedTimes& times, const TrialSpec& spec, double done_s);

@@ -352,8 +352,9 @@ class Maker {
         if (done.insert(entry.name).second) add_key(at.below(entry.name), named, &entry, false);
     for (const auto& name : names_for(document_, named))
       if (done.insert(name).second) add_key(at.below(name), named, nullptr, false);
-    if (named.kind != Key::Kind::any) return;
-    Field entry{at.path, Input::entry};
+    const bool lists = named.kind == Key::Kind::tables;
+    if (named.kind != Key::Kind::any && !lists) return;
+    Field entry{at.path, lists ? Input::list_name : Input::entry};
     entry.key = &named, entry.heading = at.heading;
     fields_->push_back(std::move(entry));
   }
@@ -706,6 +707,19 @@ std::string with_entry(const Document& document, const Field& field, const std::
   return document.with(path, typed.substr(part.value.begin, part.value.end - part.value.begin));
 }
 
+/// The text with one more list of tables, which begins with a table of the first scene, if there is one.
+std::string with_list(const Document& document, const Field& field, const std::string& name) {
+  const auto is_plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+  };
+  if (!std::all_of(name.begin(), name.end(), is_plain)) refuse(field, name, "letters, digits, - and _");
+  auto path = field.path;
+  path.push_back(name);
+  if (document.find(path) != nullptr) refuse(field, name, "a name that is not there yet");
+  const auto scenes = names_of(document, "scene");
+  return document.with(path, scenes.empty() ? "[{}]" : "[{ scene = " + toml_string(scenes.front()) + " }]");
+}
+
 /// A value as a person writes it, with another name in place of one of its names, also before a dot.
 std::string with_other_name(const std::string& value, const std::string& name, const std::string& other) {
   std::string all;
@@ -832,6 +846,8 @@ std::string changed(const Document& document, const Field& field, const std::str
   if (field.present && typed == field.value) return document.text();
   if (field.input == Input::entry)
     return typed.empty() ? document.text() : with_entry(document, field, typed);
+  if (field.input == Input::list_name)
+    return typed.empty() ? document.text() : with_list(document, field, typed);
   if (field.input == Input::name) return typed.empty() ? document.text() : renamed(document, field, typed);
   if (typed.empty()) {
     if (!field.present || field.required) return document.text();

@@ -126,13 +126,16 @@ class Sampler {
       if (i > 0 && begins && task.gap_s) add("design.page.gap", phase(Phase::gap, i - 1));
       auto page = phase(Phase::stimulus, i);
       if (spec.slider && i == last)
-        pages_.add_slider(page, *spec.slider, spec.level.value_or(spec.slider->low));
+        pages_.add_slider(page, *spec.slider, spec.level.value_or(spec.slider->low), false);
+      page.again = task.again > 0 && i == last && protocol::explored(task);
       add("design.page.interval", std::move(page));
     }
     if (spec.strokes) return;
     const bool answered = spec.slider || (task.kind == protocol::TaskKind::single_interval &&
                                           protocol::explored(task) && !task.value);
-    if (!answered) add("design.page.answer", phase(Phase::response, last));
+    auto answer = phase(Phase::response, last);
+    answer.again = task.again > 0;
+    if (!answered) add("design.page.answer", std::move(answer));
     if (task.confidence) add("design.page.confidence", phase(Phase::confidence, last));
     trial::Result late;
     late.outcome = core::Outcome::timeout;

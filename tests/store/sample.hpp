@@ -144,6 +144,7 @@ inline TrialRow answered(int index, int tones = 2) {
   t.given.confidence = 1 + index % 4;
   t.given.confidence_time_s = 0.75;
   t.given.points = 2.5;
+  t.given.again = 6;
   t.finger.sensing = "ok";
   t.finger.contact_s = 2.25;
   t.finger.strokes = 9;
