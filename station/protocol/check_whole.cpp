@@ -356,13 +356,13 @@ void check_timing(core::TableReader& file, const Reading& reading) {
         phrase("use \"deadline_s\""));
   if (timing.signal && protocol.task.again > 0)
     findings.add(
-        reading.places.of("task.again"),
+        reading.places.of(key_of(protocol.task, "again")),
         phrase("nobody can ask for the intervals again and answer at a signal: \"again\" does not apply "
                "with \"response_signal\""),
         phrase("leave it out, or use \"deadline_s\""));
   if (protocol.task.again > 0 && protocol.task.kind == TaskKind::adjustment && !has_standard(protocol.task))
     findings.add(
-        reading.places.of("task.again"),
+        reading.places.of(key_of(protocol.task, "again")),
         phrase("nothing comes before the scene that the slider moves, so there is nothing to feel again"),
         phrase("leave it out, or use an interval that begins with a standard"));
   if (timing.response_zero == ResponseZero::change && !has_change(protocol.task))

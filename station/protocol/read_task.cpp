@@ -122,7 +122,7 @@ bool is_silence(const core::Value& item) { return item.find("silence_s") != null
 std::vector<Part> read_interval_parts(const core::Value& list, const std::string& name,
                                       const Reading& reading) {
   std::vector<Linear> after;
-  auto parts = read_part_list(list, "task.parts." + name, reading, after);
+  auto parts = read_part_list(list, key_of(reading.protocol.task, "parts." + name), reading, after);
   if (!list.items.empty() && (is_silence(list.items.front()) || is_silence(list.items.back())))
     reading.findings.add(is_silence(list.items.front()) ? list.items.front().place : list.items.back().place,
                          phrase("\"%1\" begins or ends with a silence", {plain(name)}),
@@ -143,7 +143,8 @@ void read_before(TableReader& reader, Task& task, const Reading& reading) {
         "before", phrase("\"%1\" is %2", {plain("before"), describe(*list)}),
         phrase("write a list of parts: %1",
                {plain("[{ scene = \"adaptor\", duration_s = 5.0 }, { silence_s = 0.5 }]")}));
-  task.before = read_part_list(*list, "task.before", reading, task.before_silences_s);
+  task.before =
+      read_part_list(*list, key_of(reading.protocol.task, "before"), reading, task.before_silences_s);
   if (list->items.empty() || is_silence(list->items.front()))
     reader.problem("before", phrase("\"before\" begins with no scene"),
                    phrase("write a scene first, or leave \"before\" out"));
@@ -249,9 +250,10 @@ void check_parts(const Task& task, const TaskForm& kind, const Reading& reading)
   check_first(task, reading);
   const auto most = most_parts_of_trial(task, kind);
   if (most > core::kMostParts)
-    reading.findings.add(reading.places.of(key_of(task, reading.places.has(key_of(task, "parts")) ? "parts" : "before")),
-                         phrase("the intervals of a trial have up to %1 scenes", {plain(most)}),
-                         phrase("at most %1", {plain(core::kMostParts)}));
+    reading.findings.add(
+        reading.places.of(key_of(task, reading.places.has(key_of(task, "parts")) ? "parts" : "before")),
+        phrase("the intervals of a trial have up to %1 scenes", {plain(most)}),
+        phrase("at most %1", {plain(core::kMostParts)}));
 }
 
 void read_intervals(TableReader& reader, Task& task, const Reading& reading) {

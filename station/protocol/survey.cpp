@@ -425,7 +425,7 @@ void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey)
          phrase("the rig allows at most %1 s (duty = %2)",
                 {plain(core::number(most_s)), plain(core::number(rig.limits.duty))})});
   else if (longest.again_minute_s > most_s + 1e-9)
-    survey.warnings.push_back({places.of("task.again"),
+    survey.warnings.push_back({places.of(key_of(task, "again")),
                                phrase("the tones of a trial that is presented %1 times would last up to %2 s "
                                       "in %3 s: people wait until "
                                       "the rig's limits allow them",
