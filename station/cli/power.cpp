@@ -45,9 +45,9 @@ struct PowerPart {
   std::vector<rehearsal::SessionOutcome> sessions;
   /// for each unwanted cue, what an observer could achieve with it alone; set in the first part only
   std::vector<rehearsal::CueReport> cues;
-  bool reward = false;                         ///< the observer has the boundaries that earn the most
+  bool reward = false;  ///< the observer has the boundaries that earn the most
   std::vector<rehearsal::BestReward> rewards;  ///< the same in all parts
-  bool whole = true;                           ///< false if a signal stopped the work
+  bool whole = true;  ///< false if a signal stopped the work
 };
 
 Json to_json(const PowerPart& part);
@@ -119,7 +119,8 @@ Json comparisons_json(const std::map<std::vector<double>, std::array<double, 2>>
 
 Json measures_json(const rehearsal::Measures& measures) {
   Json json = Json::array();
-  for (const auto& one : measures) json.push_back({one.condition, one.measure, one.unit, exact(one.value)});
+  for (const auto& one : measures)
+    json.push_back({one.condition, one.measure, one.unit, exact(one.value)});
   return json;
 }
 
@@ -135,11 +136,14 @@ Json to_json(const SessionOutcome& session) {
                         {"claimed", f.claimed ? Json(*f.claimed) : Json(nullptr)}});
   }
   for (const auto& [name, sum] : session.generating.sums())
-    conditions[name] = {
-        {"deadline_s", exact(sum.deadline_s)}, {"caution", sum.caution ? exact(*sum.caution) : Json(nullptr)},
-        {"one_bound", sum.one_bound},          {"trials", sum.trials},
-        {"correct", exact(sum.correct)},       {"drifts", drifts_json(sum.drifts)},
-        {"lags", lags_json(sum.lags)},         {"comparisons", comparisons_json(sum.comparisons)}};
+    conditions[name] = {{"deadline_s", exact(sum.deadline_s)},
+                        {"caution", sum.caution ? exact(*sum.caution) : Json(nullptr)},
+                        {"one_bound", sum.one_bound},
+                        {"trials", sum.trials},
+                        {"correct", exact(sum.correct)},
+                        {"drifts", drifts_json(sum.drifts)},
+                        {"lags", lags_json(sum.lags)},
+                        {"comparisons", comparisons_json(sum.comparisons)}};
   return {{"trials", session.presented},
           {"scored", session.scored},
           {"right", session.right},
@@ -155,7 +159,8 @@ Json to_json(const SessionOutcome& session) {
 
 rehearsal::Measures measures_of(const Json& json) {
   rehearsal::Measures measures;
-  for (const auto& one : json) measures.push_back({"", one.at(0), one.at(1), one.at(2), number(one.at(3))});
+  for (const auto& one : json)
+    measures.push_back({"", one.at(0), one.at(1), one.at(2), number(one.at(3))});
   return measures;
 }
 
@@ -164,7 +169,8 @@ SessionOutcome session_of(const Json& json) {
   session.presented = json.at("trials"), session.scored = json.at("scored"), session.right = json.at("right");
   session.duration_s = json.at("duration_s");
   for (const auto& f : json.at("findings")) {
-    session.findings.push_back({f.at("source"), f.at("parameter"), f.at("unit"), number(f.at("value"))});
+    session.findings.push_back(
+        {f.at("source"), f.at("parameter"), f.at("unit"), number(f.at("value"))});
     if (const auto& claimed = f.at("claimed"); !claimed.is_null())
       session.findings.back().claimed = claimed.get<bool>();
     const auto& ends = f.at("interval");
@@ -173,15 +179,17 @@ SessionOutcome session_of(const Json& json) {
     interval.low = number(ends.at(0)), interval.high = number(ends.at(1));
   }
   std::map<std::string, rehearsal::GeneratingValues::Sum> sums;
-  for (const auto& [name, sum] : json.at("conditions").items()) {
+  for (const auto& [name, sum] : json.at("conditions").items())
+  {
     auto& read = sums[name];
     read.deadline_s = number(sum.at("deadline_s")), read.one_bound = sum.at("one_bound");
     if (const auto& caution = sum.at("caution"); !caution.is_null()) read.caution = number(caution);
     read.trials = sum.at("trials"), read.correct = number(sum.at("correct"));
     for (const auto& one : sum.at("drifts")) read.drifts[number(one.at(0))] = number(one.at(1));
     for (const auto& one : sum.at("lags"))
-      read.lags[number(one.at(0))] = {
-          number(one.at(1)), {number(one.at(2)), number(one.at(4))}, {number(one.at(3)), number(one.at(5))}};
+      read.lags[number(one.at(0))] = {number(one.at(1)),
+                                      {number(one.at(2)), number(one.at(4))},
+                                      {number(one.at(3)), number(one.at(5))}};
     for (const auto& one : sum.at("comparisons")) {
       std::vector<double> stimuli;
       for (const auto& stimulus : one.at(0)) stimuli.push_back(number(stimulus));
@@ -247,8 +255,7 @@ PowerPart part_of(const Json& json) {
   part.options.observers = study.at("observers"), part.options.interval_sessions = study.at("intervals");
   part.options.replicates = study.at("replicates"), part.options.seed = study.at("seed");
   part.options.task = study.at("task");
-  part.options.people = study.at("people"),
-  part.options.between = study.at("between").get<simulation::Spread>();
+  part.options.people = study.at("people"), part.options.between = study.at("between").get<simulation::Spread>();
   part.options.part = {json.at("part"), study.at("parts")};
   for (const auto& session : json.at("sessions")) part.sessions.push_back(session_of(session));
   for (const auto& cue : json.at("cues")) {
@@ -405,9 +412,9 @@ struct Found {
   rehearsal::Power power;
   std::vector<rehearsal::CueReport> cues;
   std::vector<rehearsal::BestReward> rewards;  ///< empty without --reward
-  std::string id, title;                       ///< id and title of the protocol
-  std::string task;                            ///< of a protocol with several: the one that this is about
-  std::string signal;                          ///< the signal that stopped the work; usually ""
+  std::string id, title;  ///< id and title of the protocol
+  std::string task;       ///< of a protocol with several: the one that this is about
+  std::string signal;     ///< the signal that stopped the work; usually ""
 };
 
 Json to_json(const Found& found, const std::vector<std::string>& files) {
@@ -448,11 +455,10 @@ void print(std::ostream& out, const Found& found) {
     fmt::print(out, "The check of the diffusion model finds a misfit in {} % of {} sessions\n",
                number(100 * power.misfits->value, 3), power.misfits->trials);
   if (power.separated)
-    fmt::print(
-        out,
-        "In {} % of {} sessions the answers set no limit to some distances on the scale. The prior then "
-        "decides places and intervals, and coverage can be far from 95 %\n",
-        number(100 * power.separated->value, 3), power.separated->trials);
+    fmt::print(out,
+               "In {} % of {} sessions the answers set no limit to some distances on the scale. The prior then "
+               "decides places and intervals, and coverage can be far from 95 %\n",
+               number(100 * power.separated->value, 3), power.separated->trials);
   const auto named = [](const rehearsal::Recovery& r) {
     return core::say(report::in_unit(core::plain(r.parameter), core::plain(r.unit)), "en");
   };
@@ -478,18 +484,14 @@ void print(std::ostream& out, const Found& found) {
   fmt::print(out,
              "Truth: the parameters of the simulated observer. Bias: mean - truth (for slopes and spreads, "
              "whose distribution has a long tail: median - truth)\n");
-  fmt::print(
-      out,
-      "Claimed: how often a difference is found, because its interval excludes 0 (of a ratio: because the "
-      "model "
-      "with one rate is rejected), or by its corrected p value if the protocol asks for that. If the truth "
-      "is 0, these are false alarms\n");
+  fmt::print(out, "Claimed: how often a difference is found, because its interval excludes 0 (of a ratio: because the model "
+                  "with one rate is rejected), or by its corrected p value if the protocol asks for that. If the truth "
+                  "is 0, these are false alarms\n");
   if (power.people == 0)
-    fmt::print(
-        out,
-        "Median width and coverage are those of the 95 % intervals of the first {} sessions, or of all "
-        "sessions if the intervals come from a posterior\n",
-        power.interval_sessions);
+    fmt::print(out,
+               "Median width and coverage are those of the 95 % intervals of the first {} sessions, or of all "
+               "sessions if the intervals come from a posterior\n",
+               power.interval_sessions);
   else
     fmt::print(out, "Truth is the mean over all simulated people\n");
 }
@@ -508,21 +510,17 @@ void print(std::ostream& out, const std::vector<rehearsal::CueReport>& cues) {
 
 void print(std::ostream& out, const std::vector<rehearsal::BestReward>& rewards) {
   if (rewards.empty()) return;
-  fmt::print(
-      out,
-      "The observer above has in each block the decision boundaries that earn the most points per minute:\n");
+  fmt::print(out, "The observer above has in each block the decision boundaries that earn the most points per minute:\n");
   for (const auto& reward : rewards) {
-    fmt::print(out,
-               "  {}: {} times --observer's bound: {} points a minute, {} % right, {} s; with its own bound "
-               "{}, {} %, {} s\n",
+    fmt::print(out, "  {}: {} times --observer's bound: {} points a minute, {} % right, {} s; with its own bound {}, {} %, {} s\n",
                reward.block, number(reward.caution, 2), number(reward.best.points_per_minute, 3),
                number(100 * reward.best.right, 3), number(reward.best.response_time_s, 3),
                number(reward.own.points_per_minute, 3), number(100 * reward.own.right, 3),
                number(reward.own.response_time_s, 3));
     if (reward.at_end)
-      fmt::print(out, "    {}\n",
-                 reward.caution < 1 ? "this is the lowest that is tried: it pays to guess at once"
-                                    : "this is the highest that is tried: waiting costs nothing");
+      fmt::print(out, "    {}\n", reward.caution < 1
+                                      ? "this is the lowest that is tried: it pays to guess at once"
+                                      : "this is the highest that is tried: waiting costs nothing");
   }
 }
 
@@ -565,8 +563,7 @@ void show(const Found& found, const Options& options, Context& context) {
 }
 
 void join(const Options& options, Context& context) {
-  if (options.reward)
-    throw UsageError("--reward cannot be used with --join: the parts say which observer they have");
+  if (options.reward) throw UsageError("--reward cannot be used with --join: the parts say which observer they have");
   auto all = join_parts(options.join);
   const auto protocol = protocol::parse(all.protocol, all.path);
   all.options.observer = simulation::parse(all.observer);
@@ -594,8 +591,7 @@ void power(const Options& options, Context& context) {
   wanted.people = options.people;
   if ((options.people > 0) == options.between.empty())
     throw UsageError(
-        "--people and --between belong together: how much people differ decides how many a study needs; "
-        "write "
+        "--people and --between belong together: how much people differ decides how many a study needs; write "
         "for example --people 8 --between bound=0.15,residual=0.1");
   if (options.people > 0) {
     wanted.between = simulation::parse_spread(options.between);
@@ -668,20 +664,18 @@ void add_power(CommandLine& app, Context& context) {
                                      "Number of sessions for which 95 % intervals are computed as well")
                         ->capture_default_str()
                         ->check(range(0, 1'000'000));
-  auto* people =
-      command
-          ->add_option("--people", options->people,
-                       "Simulate studies with this number of people, and report what each study finds")
-          ->check(range(3, 1000));
-  auto* between =
-      command
-          ->add_option("--between", options->between,
-                       "How much people differ: standard deviations of the observer's parameters, "
-                       "such as bound=0.15,residual=0.1 (of the logarithm; of threshold, bias and "
-                       "criterion in their own unit)")
-          ->value("KEY=SD,...");
   auto* task = command->add_option("--task", options->task,
                                    "Of a protocol with several tasks: the one whose estimates are simulated");
+  auto* people = command
+                     ->add_option("--people", options->people,
+                                  "Simulate studies with this number of people, and report what each study finds")
+                     ->check(range(3, 1000));
+  auto* between = command
+                      ->add_option("--between", options->between,
+                                   "How much people differ: standard deviations of the observer's parameters, "
+                                   "such as bound=0.15,residual=0.1 (of the logarithm; of threshold, bias and "
+                                   "criterion in their own unit)")
+                      ->value("KEY=SD,...");
   command->add_flag(
       "--reward", options->reward,
       "The observer has the decision boundaries that earn the most points per minute; print what they earn");
@@ -706,8 +700,7 @@ void add_power(CommandLine& app, Context& context) {
               "--join", options->join,
               "Files of all parts, in any order: print what one machine would have found in all sessions")
           ->value("FILE");
-  for (const auto* other :
-       {protocol, rig, calibration, observers, intervals, people, between, observer, seed, part, task})
+  for (const auto* other : {protocol, rig, calibration, observers, intervals, people, between, observer, seed, part, task})
     join->excludes(other);
   people->excludes(intervals);
   add_progress(*command, options->progress);

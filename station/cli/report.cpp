@@ -104,13 +104,9 @@ void report_session(Options options, Context& context) {
     add_estimates(options.estimator, database, id, collected.front());
   }
   std::vector<report::Summary> summaries;
-  std::vector<report::Document> documents;
-  for (const auto& data : collected) {
-    summaries.push_back(report::summarise(data));
-    documents.push_back(report::document(summaries.back()));
-  }
+  for (const auto& data : collected) summaries.push_back(report::summarise(data));
   if (context.json) context.out << report::to_json(summaries) << "\n";
-  const auto document = report::joined(std::move(documents));
+  const auto document = report::document(summaries);
   write_figures(options.figures, figures_of(document));
   if (options.out.empty() && !context.json) options.out = "report-" + id + ".html";
   if (options.out.empty()) return;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "station/core/number.hpp"
@@ -86,30 +87,43 @@ core::Phrase instead_of_judging(const Task& task) {
   if (task.kind == TaskKind::adjustment) return phrase("use another kind of task");
   if (task.kind == TaskKind::comparison)
     return phrase("leave it out: in a comparison no answer is right or wrong");
-  return phrase("set \"correct\" in [task]");
+  return phrase("set \"correct\" in %1", {plain(table_of(task))});
 }
 
 /// True if the file has a task, or several.
 bool has_task(const Reading& reading) { return reading.places.has("task") || reading.places.has("tasks"); }
 
-// Points and goals need answers that are right or wrong.
+// Points and goals need answers that are right or wrong: points in some task, a goal in some task of each
+// block that has it.
 void check_goals(const Reading& reading) {
   const auto& protocol = reading.protocol;
-  const auto& task = protocol.task;
+  if (!has_task(reading)) return;
+  const auto all = as_tasks_see(reading);
   const auto judged = [&](const Protocol& one) {
     return (one.task.kind != TaskKind::adjustment && scored(one.task)) ||
            reading.places.has(key_of(one.task, "correct"));
   };
-  const auto all = as_tasks_see(reading);
-  if (!has_task(reading) || std::any_of(all.begin(), all.end(), judged)) return;
-  const auto report = [&](const std::string& key) {
+  const auto report = [&](const std::string& key, const Task& task) {
     reading.findings.add(reading.places.of(key),
                          phrase("\"%1\" judges answers, but no answer is correct", {plain(key)}),
                          instead_of_judging(task));
   };
-  if (protocol.payoff) report("payoff");
-  for (const auto& [name, instruction] : protocol.instructions)
-    if (instruction.goal) report("instructions." + name + ".goal");
+  if (protocol.payoff && std::none_of(all.begin(), all.end(), judged)) report("payoff", all.front().task);
+  for (const auto& [name, instruction] : protocol.instructions) {
+    if (!instruction.goal) continue;
+    std::map<std::string, std::vector<const Protocol*>> asked;  // by each block that has the goal
+    for (const auto& one : all)
+      for (const auto& block : all_blocks(one))
+        if (const auto fixed = block.fixed.find("instruction");
+            fixed != block.fixed.end() && fixed->second == FactorValue(name))
+          asked[block.name].push_back(&one);
+    if (asked.empty()) asked[""].push_back(&all.front());
+    for (const auto& [block, tasks] : asked)
+      if (std::none_of(tasks.begin(), tasks.end(), [&](const auto* one) { return judged(*one); })) {
+        report("instructions." + name + ".goal", tasks.front()->task);
+        break;
+      }
+  }
 }
 
 // Without correct answers, a procedure cannot follow right answers, and practice cannot be passed. Reports
@@ -126,10 +140,11 @@ void check_scored(const Reading& reading) {
           phrase("the procedure \"%1\" needs answers that are right or wrong", {plain(spec.name)}),
           plain("kind = \"constant-stimuli\""));
     else if (procedure::follows_answers(spec) && spec.tracks.empty())
-      reading.findings.add(reading.places.of(task.name.empty() ? "task" : "tasks." + task.name),
-                           phrase("the procedure \"%1\" depends on correct answers, but no answer is correct",
-                                  {plain(spec.name)}),
-                           phrase("set \"correct\" in [task], or \"tracks\" in the procedure"));
+      reading.findings.add(
+          reading.places.of(task.name.empty() ? "task" : "tasks." + task.name),
+          phrase("the procedure \"%1\" depends on correct answers, but no answer is correct",
+                 {plain(spec.name)}),
+          phrase("set \"correct\" in %1, or \"tracks\" in the procedure", {plain(table_of(task))}));
   }
   for (const auto& part : protocol.plan) {
     const auto& block = block_of(part);
@@ -304,19 +319,16 @@ void check_foreperiod(const Reading& reading) {
         phrase("a foreperiod that is shorter than the tones for all values of the factors"));
 }
 
-// A cue whose length depends on what decides the right answer tells it.
+// A cue whose length depends on what decides the right answer, or the signal, tells it.
 void check_cue(const Reading& reading) {
   const auto& task = reading.protocol.task;
-  const auto lengths = factors_in(task.cue_s);
-  for (const auto& [id, comparison] : task.correct_answer)
-    for (const auto* side : {&comparison.left, &comparison.right})
-      for (const auto& name : factors_in(*side))
-        if (std::find(lengths.begin(), lengths.end(), name) != lengths.end())
-          return reading.findings.add(
-              task.cue_s.place,
-              phrase("the length of the cue depends on \"%1\", which decides the right answer",
-                     {plain(name)}),
-              phrase("other factors"));
+  const auto deciding = deciding_factors(task);
+  for (const auto& name : factors_in(task.cue_s))
+    if (deciding.contains(name))
+      return reading.findings.add(
+          task.cue_s.place,
+          phrase("the length of the cue depends on \"%1\", which decides the right answer", {plain(name)}),
+          phrase("other factors"));
 }
 
 /// True if a scene comes before the one that the slider moves.
@@ -335,12 +347,13 @@ void check_timing(core::TableReader& file, const Reading& reading) {
     return entry ? entry->value.place : table->place;
   };
   auto& findings = reading.findings;
-  const bool one_interval = explored(protocol.task);
-  if (one_interval && !table->find("explore_s") && !protocol.task.duration_s)
+  const auto& task = protocol.task;
+  const auto task_place = task.name.empty() ? table->place : reading.places.of("tasks." + task.name);
+  if (explored(task) && !table->find("explore_s") && !task.duration_s)
     findings.add(
-        table->place, phrase("nothing ends the interval: [timing] has no \"explore_s\""),
-        phrase(
-            "set it to the longest time that the tones last, in seconds (or set \"duration_s\" in [task])"));
+        task_place, phrase("nothing ends the interval: [timing] has no \"explore_s\""),
+        phrase("set it to the longest time that the tones last, in seconds (or set \"duration_s\" in %1)",
+               {plain(table_of(task))}));
   const auto all = as_tasks_see(reading);
   const bool none_explored =
       std::none_of(all.begin(), all.end(), [](const Protocol& one) { return explored(one.task); });
@@ -365,9 +378,12 @@ void check_timing(core::TableReader& file, const Reading& reading) {
         reading.places.of(key_of(protocol.task, "again")),
         phrase("nothing comes before the scene that the slider moves, so there is nothing to feel again"),
         phrase("leave it out, or use an interval that begins with a standard"));
-  if (timing.response_zero == ResponseZero::change && !has_change(protocol.task))
+  if (timing.response_zero == ResponseZero::change && !has_change(task))
     findings.add(place("response_zero"),
-                 phrase("\"response_zero\" is \"change\", but no interval has a second scene"),
+                 task.name.empty()
+                     ? phrase("\"response_zero\" is \"change\", but no interval has a second scene")
+                     : phrase("\"response_zero\" is \"change\", but no interval of %1 has a second scene",
+                              {plain(table_of(task))}),
                  phrase("use an interval of two scenes: %1", {plain("intervals = [[\"a\", \"b\"]]")}));
   check_foreperiod(reading);
   if (!table->find("deadline_s") && !table->find("response_signal"))

@@ -196,7 +196,7 @@ void check_unsure_points(AdviceList& advice, const Payoff& payoff) {
   const auto& protocol = advice.protocol;
   const bool stated = advice.places.has("payoff.unsure");
   if (protocol.task.unsure.empty()) {
-    if (stated)
+    if (stated && protocol.task.name.empty())  // another of several tasks may have it
       advice.add("payoff.unsure", phrase("\"unsure\" has no effect: the task has no such answer"),
                  phrase("set \"unsure\" in [task], or leave it out here"));
     return;
@@ -389,10 +389,8 @@ void note_uneven(AdviceList& notes, const procedure::Spec& spec, std::size_t cel
 std::optional<std::string> telling_pause(const Protocol& protocol) {
   if (!protocol.timing.iti_s.expression) return std::nullopt;
   const auto pause = factors_in(*protocol.timing.iti_s.expression);
-  for (const auto& [id, comparison] : protocol.task.correct_answer)
-    for (const auto* side : {&comparison.left, &comparison.right})
-      for (const auto& name : factors_in(*side))
-        if (std::find(pause.begin(), pause.end(), name) != pause.end()) return name;
+  for (const auto& name : deciding_factors(protocol.task))
+    if (std::find(pause.begin(), pause.end(), name) != pause.end()) return name;
   return std::nullopt;
 }
 

@@ -72,6 +72,19 @@ std::size_t chosen_task(const Protocol& protocol, const std::string& name) {
       ("; choose one with --task: " + known));
 }
 
+std::string table_of(const Task& task) { return task.name.empty() ? "[task]" : "[tasks." + task.name + "]"; }
+
+std::set<std::string> deciding_factors(const Task& task) {
+  std::set<std::string> names;
+  const auto add = [&](const Comparison& comparison) {
+    for (const auto* side : {&comparison.left, &comparison.right})
+      for (const auto& name : factors_in(*side)) names.insert(name);
+  };
+  for (const auto& [id, comparison] : task.correct_answer) add(comparison);
+  if (task.present) add(*task.present);
+  return names;
+}
+
 std::string key_of(const Task& task, const std::string& key) {
   return (task.name.empty() ? "task." : "tasks." + task.name + ".") + key;
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,12 @@ Protocol with_task(const Protocol& whole, const Task& task, const std::map<std::
 /// The number of the task with this name. Throws core::UsageError that lists the tasks if the name is
 /// unknown, or "" although the file has several.
 std::size_t chosen_task(const Protocol& protocol, const std::string& name);
+
+/// How messages call the table of a task: `[task]` or `[tasks.NAME]`.
+std::string table_of(const Task& task);
+
+/// The factors that decide which answer is right, or whether there is a signal.
+std::set<std::string> deciding_factors(const Task& task);
 
 /// The path in KeyPlaces of a task's key, such as `task.duration_s` or `tasks.detect.duration_s`.
 std::string key_of(const Task& task, const std::string& key);

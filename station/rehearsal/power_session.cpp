@@ -336,7 +336,9 @@ SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerO
   report::SessionData data;
   data.seed = options.seed + static_cast<std::uint64_t>(session);
   const auto sessions = planned_sessions(protocol, options.seed, session, observer, answer);
-  report::add_trials(joined(sessions), of_task, data);
+  auto blocks = joined(sessions);
+  if (options.people > 0) report::add_other_trials(blocks, protocol, options.task, data);
+  report::add_trials(report::of_task(std::move(blocks), protocol, options.task), of_task, data);
   const auto& unit = data.level_unit;
   for (const auto& one : sessions) outcome.presented += one.trials, outcome.duration_s += one.duration_s;
   outcome.design = data.design;
@@ -359,7 +361,7 @@ SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerO
     }
   }
   if (options.people == 0) return outcome;
-  data.trials = {}, data.finger = {};
+  data.trials = {}, data.other_trials = {}, data.finger = {};
   outcome.truths = true_measures(outcome, observer, data);
   if (session == 0) outcome.settings = std::move(data);
   return outcome;

@@ -64,13 +64,6 @@ void Document::figure(const std::string& file, std::optional<Figure> drawn) {
   parts.push_back(NamedFigure{file, std::move(*drawn)});
 }
 
-Document joined(std::vector<Document> of_tasks) {
-  auto whole = std::move(of_tasks.front());
-  for (std::size_t i = 1; i < of_tasks.size(); ++i)
-    for (auto& part : of_tasks[i].parts) whole.parts.push_back(std::move(part));
-  return whole;
-}
-
 std::vector<NamedFigure> figures_of(const Document& document) {
   std::vector<NamedFigure> figures;
   for (const auto& part : document.parts)

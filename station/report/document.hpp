@@ -130,9 +130,9 @@ struct Document {
 };
 
 Document document(const Summary& summary);
+/// The report of a session with a part for each of its tasks; what is about the whole session comes once.
+Document document(const std::vector<Summary>& of_tasks);
 Document document(const Study& study);
-/// The reports of a session, one for each of its tasks, as one document.
-Document joined(std::vector<Document> of_tasks);
 /// The figures of a document, in its order.
 std::vector<NamedFigure> figures_of(const Document& document);
 

@@ -444,7 +444,18 @@ std::string to_json(const Summary& summary) { return dumped(task_json(summary));
 
 std::string to_json(const std::vector<Summary>& of_tasks) {
   if (of_tasks.size() == 1) return to_json(of_tasks.front());
-  return dumped({{"tasks", list_of(of_tasks, task_json)}});
+  // what is about the whole session is not repeated with each task
+  Json whole, tasks = Json::array();
+  for (const auto& summary : of_tasks) {
+    auto one = task_json(summary);
+    for (const auto* key : {"session_id", "participant", "title", "run_mode", "status", "facts", "station"}) {
+      whole[key] = one[key];
+      one.erase(key);
+    }
+    tasks.push_back(std::move(one));
+  }
+  whole["tasks"] = std::move(tasks);
+  return dumped(whole);
 }
 
 }  // namespace turnpoint::report

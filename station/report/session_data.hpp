@@ -133,6 +133,9 @@ struct SessionData : LevelAnalysis {
   std::vector<EarlyEnd> early_ends;
   std::vector<ThresholdCurve> threshold_curves;  ///< empty if no procedure has a second dimension
   std::vector<analysis::TrialRecord> trials;
+  /// of a study with several tasks: the trials of the others, by which the rules of exclusion judge the
+  /// person
+  std::vector<analysis::TrialRecord> other_trials;
   /// answered trials, without practice, in which force cells recorded data; empty if the rig has no force
   /// cells
   std::vector<analysis::FingerTrial> finger;

@@ -14,6 +14,7 @@
 #include "station/protocol/answers.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/report/stored_estimates.hpp"
 #include "station/report/words.hpp"
 
@@ -118,16 +119,6 @@ bool nothing_asked(const protocol::Protocol& protocol, const std::string& block)
     return protocol::block_of(part).name == block &&
            protocol::block_of(part).kind != protocol::BlockKind::trials;
   });
-}
-
-/// True if the trial asks the task of a protocol as one of several tasks sees it. Warm-up trials, which no
-/// analysis counts, belong to none.
-bool asks(const protocol::Protocol& protocol, const core::TrialRow& row, const std::string& block) {
-  if (protocol.task.name.empty()) return true;
-  if (!row.procedure.empty()) return protocol::find_procedure(protocol, row.procedure) != nullptr;
-  return row.type != core::TrialType::warmup && std::ranges::any_of(protocol.plan, [&](const auto& part) {
-           return protocol::block_of(part).name == block;
-         });
 }
 
 /// True if the trial was presented again because the finger did not move in the way that the protocol asks
@@ -263,6 +254,16 @@ std::vector<const core::BlockRecord*> last_attempts(const std::vector<core::Bloc
   return result;
 }
 
+std::vector<core::BlockRecord> of_task(std::vector<core::BlockRecord> blocks,
+                                       const protocol::Protocol& protocol, std::size_t task) {
+  if (protocol.by_task.empty()) return blocks;
+  for (auto& block : blocks)
+    std::erase_if(block.trials, [&](const auto& row) {
+      return protocol::task_of(protocol, row.procedure, block.start.name) != task;
+    });
+  return blocks;
+}
+
 std::vector<analysis::Deciding> deciding_in(protocol::TaskKind kind) {
   using analysis::Deciding;
   if (kind == protocol::TaskKind::several_intervals) return {Deciding::largest};
@@ -278,7 +279,6 @@ void add_trials(const std::vector<core::BlockRecord>& blocks, const protocol::Pr
   for (const auto* block : counted) {
     if (nothing_asked(protocol, block->start.name)) continue;
     for (const auto& row : block->trials) {
-      if (!asks(protocol, row, block->start.name)) continue;
       if (!block->start.practice && protocol.sensing && protocol.sensing->repeats > 0) {
         auto& at = repeats[row.level];
         at.level = row.level;
@@ -303,6 +303,16 @@ void add_trials(const std::vector<core::BlockRecord>& blocks, const protocol::Pr
   data.show = protocol.analysis.show;
   data.holm = protocol.analysis.holm;
   data.exclusion = {protocol.analysis.exclude_below_s, protocol.analysis.exclude_mad};
+}
+
+void add_other_trials(const std::vector<core::BlockRecord>& blocks, const protocol::Protocol& protocol,
+                      std::size_t task, SessionData& data) {
+  for (std::size_t other = 0; other < protocol.by_task.size(); ++other) {
+    if (other == task) continue;
+    SessionData more;
+    add_trials(of_task(blocks, protocol, other), protocol.by_task[other], more);
+    data.other_trials.insert(data.other_trials.end(), more.trials.begin(), more.trials.end());
+  }
 }
 
 }  // namespace turnpoint::report

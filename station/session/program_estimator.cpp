@@ -1,5 +1,4 @@
 #include "station/session/program_estimator.hpp"
-#include "station/protocol/tasks.hpp"
 
 #include <algorithm>
 
@@ -65,9 +64,7 @@ Estimated estimated_by(const std::string& estimator, const protocol::Protocol& p
                        const std::vector<core::BlockRecord>& blocks) {
   const auto choice = existing_program("--estimator", estimator);
   auto choices = Json::array();
-  for (const auto* one : protocol::tasks_of(protocol))
-    for (const auto& answer : one->task.choices)
-      if (std::find(choices.begin(), choices.end(), answer.id) == choices.end()) choices.push_back(answer.id);
+  for (const auto& answer : protocol.task.choices) choices.push_back(answer.id);
   Conversation with(choice.path, choice.limit_s,
                     {{"role", "estimator"},
                      {"protocol", protocol.id},

@@ -216,6 +216,7 @@ class Maker {
     std::vector<Section> sections;
     for (const auto& page : pages()) sections.push_back({page.name, page.added, {}, 0});
     for (const auto& key : protocol::protocol_keys().list) {
+      if (is_replaced(key)) continue;
       auto& groups = sections[page_of(key.name)].groups;
       if (key.kind == Key::Kind::table && !key.keys->named)
         groups.push_back(group({key.name}, *key.keys, document_.find({key.name}), key.needed));
@@ -228,6 +229,14 @@ class Maker {
   }
 
  private:
+  /// Whether the file has another table instead, such as [tasks] instead of [task].
+  bool is_replaced(const Key& key) const {
+    return document_.find({key.name}) == nullptr &&
+           std::ranges::any_of(key.conditions, [&](const auto& with) {
+             return with.absent && document_.find({with.key}) != nullptr;
+           });
+  }
+
   /// The parts of a session in the order of the file, which is that of the session.
   void put_in_order(std::vector<Group>& groups) const {
     const auto begin = [this](const Group& group) {
@@ -252,8 +261,9 @@ class Maker {
       auto made = group(path, of_list ? *key.keys : *key.keys->named->keys, &table, true);
       made.name = of_list ? name_in(table) : table.name;
       made.copied = table.kind == Part::Kind::table;
-      // a protocol needs a scene
-      made.removable = made.copied && (list->parts.size() > 1 || !key.needed);
+      // a protocol needs a scene, and [tasks] two
+      const std::size_t fewest = std::max<std::size_t>(key.needed ? 1 : 0, of_list ? 0 : key.keys->fewest);
+      made.removable = made.copied && list->parts.size() > fewest;
       if (!of_list && made.copied) {
         Field name{path, Input::name};
         name.present = name.required = true, name.value = table.name;

@@ -289,9 +289,10 @@ void add_own_estimates(const std::string& database, const store::StoredSession& 
 
 namespace {
 
-/// The data of one of the session's tasks.
+/// The data of one of the session's tasks. `stored` has all trials, `own` those of the task.
 report::SessionData data_of_task(const std::string& database, const store::StoredSession& stored,
-                                 const protocol::Protocol& protocol, std::size_t task) {
+                                 const store::StoredSession& own, const protocol::Protocol& protocol,
+                                 std::size_t task) {
   const auto& start = stored.session.start;
   report::SessionData data;
   data.title = protocol.title;
@@ -314,16 +315,13 @@ report::SessionData data_of_task(const std::string& database, const store::Store
               (answer.occasion > 0 ? " (after block " + std::to_string(answer.occasion) + ")" : ""),
           answer.answer);
   data.seed = start.seed;
-  report::add_trials(stored.blocks, protocol::of_task(protocol, task), data);
+  report::add_trials(own.blocks, protocol::of_task(protocol, task), data);
   add_own_estimates(database, stored, protocol, data);
   report::keep_estimates_of(protocol::of_task(protocol, task), data);
   add_programs(stored.events, data);
-  // What is about the whole session comes once: before the first task, or after the last.
-  if (task > 0) data.facts.clear();
-  if (task + 1 < protocol::tasks_of(protocol).size()) return data;
   add_health(stored, data);
-  data.measured = measured_trials(stored.blocks);
-  add_strip(database, stored, data);
+  data.measured = measured_trials(own.blocks);
+  add_strip(database, own, data);
   return data;
 }
 
@@ -334,8 +332,11 @@ std::vector<report::SessionData> report_data(const std::string& database, const 
   const auto& start = stored.session.start;
   const auto protocol = protocol::parse(start.protocol_text, start.protocol_path);
   std::vector<report::SessionData> all;
-  for (std::size_t task = 0; task < protocol::tasks_of(protocol).size(); ++task)
-    all.push_back(data_of_task(database, stored, protocol, task));
+  for (std::size_t task = 0; task < protocol::tasks_of(protocol).size(); ++task) {
+    auto own = stored;
+    own.blocks = report::of_task(std::move(own.blocks), protocol, task);
+    all.push_back(data_of_task(database, stored, own, protocol, task));
+  }
   return all;
 }
 

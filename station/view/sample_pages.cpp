@@ -84,16 +84,27 @@ class Sampler {
     auto alone = setup_.protocol;
     alone.plan = {block};
     trial::Director director(alone, {}, 1, &programs_);
-    const auto spec = director.next();
+    auto spec = director.next();
     if (!spec) return;
     auto page = pages_.instructions(block, director);
     pages_.add_mark(page, *spec);
     add("design.page.instructions", std::move(page));
-    const auto task = std::tuple(block.kind, word == nullptr ? std::string() : *word, spec->task);
-    if (tasks_.insert(task).second) add_trial(*spec, block, director);
     const bool judged =
         block.feedback == protocol::Feedback::trial || block.kind == protocol::BlockKind::training;
-    if (judged && feedback_.insert(task).second) add_feedback(*spec, block, director);
+    // a trial of each of its tasks
+    constexpr int most_trials = 1000;
+    std::set<std::size_t> seen;
+    for (int i = 0; spec && i < most_trials && seen.size() < std::max<std::size_t>(1, asked.size()); ++i) {
+      const auto task = std::tuple(block.kind, word == nullptr ? std::string() : *word, spec->task);
+      if (seen.insert(spec->task).second && tasks_.insert(task).second) add_trial(*spec, block, director);
+      if (judged && feedback_.insert(task).second) add_feedback(*spec, block, director);
+      if (asked.size() < 2) break;
+      trial::TrialEnd end;
+      end.response = 0, end.correct = spec->correct == 0;
+      if (spec->slider) end.setting = spec->level;
+      director.record(end);
+      spec = director.next();
+    }
     session::BlockScore score;
     score.trials = 10, score.right = 8, score.times_s = {0.5};
     if (auto over = pages_.block_over(block, score, 0, director); over && over_.insert(told).second)

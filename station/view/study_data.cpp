@@ -154,7 +154,9 @@ PersonData data_of(const std::string& person, const std::vector<Found>& sessions
   }
   all.title = protocol.title;
   all.participant = person;
-  report::add_trials(blocks, protocol::of_task(protocol, task), all);
+  report::add_other_trials(blocks, protocol, task, all);
+  report::add_trials(report::of_task(std::move(blocks), protocol, task), protocol::of_task(protocol, task),
+                     all);
   all.finger.clear();  // forces cannot be combined over sessions
   return data;
 }
@@ -261,7 +263,7 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
     result.completed = has_completed(sessions, design);
     sink(result, data);
     study.persons.push_back(std::move(result));
-    data.trials.clear();
+    data.trials.clear(), data.other_trials.clear();
     study.settings = std::move(data);
   }
   for (auto& [name, text] : study.facts)

@@ -207,9 +207,14 @@ class Tasks(unittest.TestCase):
         self.assertEqual([(row["procedure"].replace("n/a", ""), row["response"]) for row in rows],
                          [(trial["procedure"] or "", trial["response"]) for trial in self.trials()])
 
+        self.call("export", "--db", "lab.sqlite", "--out", "bids", "--format", "bids")
+        with open(glob.glob(os.path.join(self.folder, "bids", "*", "task-*_beh.json"))[0], encoding="utf-8") as file:
+            self.assertEqual(json.load(file)["Instructions"], "side: Left or right?\nwhich: Which one was smoother?")
+
     def test_the_report_keeps_the_tasks_apart(self):
         report = json.loads(self.call("report", "--db", "lab.sqlite", "--json"))
-        self.assertEqual(list(report), ["tasks"])
+        self.assertLess({"session_id", "facts", "station", "tasks"}, set(report))  # what is about the session stands beside them
+        self.assertEqual(report["facts"]["Seed"], "3")
         for part, task, procedure, levels in zip(report["tasks"], ("side", "which"), ("sides", "steps"), (PLACES, LEVELS)):
             self.assertEqual(part["task"], task)
             own = [trial for trial in self.trials() if trial["procedure"] == procedure]
@@ -226,7 +231,9 @@ class Tasks(unittest.TestCase):
         self.call("report", "--db", "lab.sqlite", "--out", "page.html", "--figures", "figures")
         with open(os.path.join(self.folder, "page.html"), encoding="utf-8") as file:
             page = file.read()
-        self.assertLess(page.index("side"), page.index("which"))
+        heads = [page.index(f"<h2>Task: {task}</h2>") for task in ("side", "which")]
+        self.assertLess(*heads)
+        self.assertEqual(page.count("The station</h2>"), 1)
         figures = os.listdir(os.path.join(self.folder, "figures"))
         self.assertEqual({name.split("-")[0] for name in figures}, {"side", "which"})
 
@@ -241,6 +248,27 @@ class Tasks(unittest.TestCase):
             measures = {mean["measure"] for mean in study["means"]}
             self.assertIn(measure, measures)
             self.assertEqual(len(study["participants"]), 3)
+
+    def test_rules_of_exclusion_judge_a_person_in_all_tasks(self):
+        text = TWO_TASKS.replace('id = "two-tasks"', 'id = "ruled"').replace("repeats = 24", "repeats = 6")
+        text = text.split('[[block]]\nname = "mixed"')[0] + """[[block]]
+name = "sides"
+procedures = ["sides"]
+catch = { rate = 0.3, offset_mm = [-30.0, 30.0] }
+[[block]]
+name = "steps"
+procedures = ["steps"]
+[exclusion]
+catch_accuracy_below = 0.9
+"""
+        self.write("ruled.toml", text)
+        # The threshold of the second one is so high that catch trials are guesses, too.
+        for i, threshold in ((1, 3), (2, 300), (3, 3)):
+            self.call("run", "ruled.toml", "--rig", "simulated", "--participant", f"P{i}", "--db", "ruled.sqlite", "--observer",
+                      f"sim:threshold={threshold},lapse=0", "--seed", str(i))
+        for task in ("side", "which"):
+            study = json.loads(self.call("report", "--study", "--db", "ruled.sqlite", "--json", "--task", task))
+            self.assertEqual([p["participant"] for p in study["participants"] if p["excluded"]], ["P2"], task)
 
     def test_check_looks_for_cues_in_each_task(self):
         found = json.loads(self.call("check", "two.toml", "--rig", "simulated", "--sessions", "2", "--json"))

@@ -105,6 +105,30 @@ TEST_CASE("every value of every shipped protocol has exactly one field, which le
   }
 }
 
+TEST_CASE("a file with several tasks has a group for each of them, and none for a single one", "[form]") {
+  const Document document(
+      "[tasks.side]\nkind = \"single-interval\"\nintervals = [\"edge\"]\n[tasks.which]\nkind = \"2ifc\"\n"
+      "[[procedure]]\nname = \"steps\"\ntask = \"which\"\n",
+      "tasks.toml");
+  const auto form = view::form_of(document, {});
+  std::vector<Path> tasks;
+  for (const auto& section : form)
+    for (const auto& group : section.groups) {
+      CHECK(group.path != Path{"task"});
+      if (group.path.front() != "tasks") continue;
+      CHECK(section.name == "question");
+      CHECK_FALSE(group.removable);  // a file has one [task] or two or more
+      tasks.push_back(group.path);
+    }
+  CHECK(tasks == std::vector<Path>{{"tasks", "side"}, {"tasks", "which"}});
+  const auto* field = find(form, {"tasks", "which", "gap_s"});
+  REQUIRE(field != nullptr);
+  const auto* named = find(form, {"procedure", "0", "task"});
+  if (named == nullptr) named = find(form, {"procedure", "steps", "task"});
+  REQUIRE(named != nullptr);
+  CHECK(named->allowed == std::vector<std::string>{"side", "which"});
+}
+
 TEST_CASE("fields have the kind, words and limits of the table of keys, and the names that the file gives",
           "[form]") {
   const auto file = root + "/protocols/friction-2ifc.toml";
