@@ -408,7 +408,7 @@ TEST_CASE("protocols that follow the finger are checked with their cues, and wha
   for (const auto& problem : check.warnings) UNSCOPED_INFO(format(problem));
   CHECK(check.problems.empty());
   CHECK(check.warnings.empty());
-  CHECK(check.trials.median == 66);
+  CHECK(check.trials.median >= 66);  // 6 practice and 60, some of which nobody answers
   const auto accuracy = [](const rehearsal::Check& of, const std::string& cue) {
     for (const auto& report : of.cues.reports)
       if (report.cue == cue) return report.accuracy;
