@@ -24,7 +24,7 @@ constexpr double kLeast_s = 0.05;    // of judged time
 constexpr double kLeastGain = 0.01;  // rms
 constexpr double kMostLag_s = 0.003;
 constexpr std::size_t kLagBlocks = 500;  // about so many blocks are used to find the lag
-constexpr double kShowsLag = 1e-3;       // a lag must change the power that remains by this share
+constexpr double kShowsLag = 10;         // a lag must multiply the power that remains by this
 
 Proof by_size(double value, const Limits& limits) { return judged(std::fabs(value), limits); }
 
@@ -246,7 +246,7 @@ IntervalResult FollowProof::result(const CommandedEnvelope& commanded, std::opti
   for (int k = -most; k <= most; ++k) left.push_back(match(some, k * step).remains());
   const auto best = static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin());
   const double range = *std::max_element(left.begin(), left.end()) - left[best];
-  if (best > 0 && best + 1 < left.size() && range > kShowsLag * std::norm(scale) * match(some, 0).power) {
+  if (best > 0 && best + 1 < left.size() && range > kShowsLag * left[best]) {
     const double bend = left[best - 1] - 2 * left[best] + left[best + 1];
     const double part = bend > 0 ? 0.5 * (left[best - 1] - left[best + 1]) / bend : 0;
     result.envelope_lag_us = 1e6 * (static_cast<double>(best) - most + part) * step / plan_.rate_Hz;
