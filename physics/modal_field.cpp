@@ -269,4 +269,6 @@ std::unique_ptr<CentreLine> make_modal_line(const Surface& surface, double f, Lo
   return std::make_unique<ModalLine>(smooth_sides(surface), f, losses, resolution);
 }
 
+void require_modal_line(const Surface& surface, double f) { require_solvable(smooth_sides(surface), f, {}); }
+
 }  // namespace turnpoint::physics

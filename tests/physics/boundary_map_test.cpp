@@ -262,7 +262,7 @@ TEST_CASE("the reach of an edge is that of the map, in a band too, and an answer
           first = std::min(first, *x), last = std::max(last, *x);
         }
         CHECK(reach.first_m == Approx(first).margin(1e-3));
-        CHECK(reach.last_m == Approx(last).margin(1e-3));
+        CHECK(reach.last_m == Approx(last).margin(2e-3));  // the frequencies end before the apex
       }
       options.band.reset();
       const BoundaryMap map(s, options);
