@@ -300,6 +300,68 @@ catch_accuracy_below = 0.9
             self.write(f"part{k}.json", self.call(*words[:-1], "--task", "which", "--part", f"{k}/2"))
         self.assertEqual(json.loads(self.call("power", "--join", "part1.json", "part2.json", "--json"))["recoveries"], which["recoveries"])
 
+    def test_four_tasks_with_answers_of_different_kinds(self):
+        text = TWO_TASKS.split("[[block]]")[0].replace("repeats = 24", "repeats = 6").replace("[timing]", """[tasks.felt]
+kind = "single-interval"
+intervals = ["strong"]
+duration_s = 0.8
+device = "touch"
+cue = { en = "How strong?" }
+question = { en = "How strong is it?" }
+[tasks.felt.rating]
+points = 5
+labels = [{ at = 1, text = { en = "weak" } }, { at = 5, text = { en = "strong" } }]
+[tasks.set]
+kind = "adjustment"
+intervals = ["edge"]
+adjusts = "offset_mm"
+step = 1.0
+device = "touch"
+cue = { en = "Now set it" }
+question = { en = "Move the end to the middle" }
+choices = [{ id = "set", label = { en = "Done" } }]
+[timing]
+explore_s = 20.0""").replace("deadline_s = 8.0", "deadline_s = 20.0") + """[[procedure]]
+name = "ratings"
+task = "felt"
+kind = "constant-stimuli"
+level = "weber"
+values = [0.2, 0.8, 1.6]
+repeats = 6
+[[procedure]]
+name = "settings"
+task = "set"
+kind = "adjustment"
+level = "offset_mm"
+start_below = [-10.0]
+start_above = [10.0]
+repeats = 6
+[[block]]
+name = "mixed"
+procedures = ["sides", "steps", "ratings", "settings"]
+interleave = "passes"
+"""
+        self.write("four.toml", text)
+        self.call("run", "four.toml", "--rig", "simulated", "--participant", "P01", "--db", "four.sqlite", "--observer", "sim", "--seed", "4")
+        trials = self.trials("four.sqlite")
+        allowed = {"sides": SIDES, "steps": STEPS, "ratings": tuple("12345")}
+        for trial in trials:
+            if trial["outcome"] != "answered":
+                continue
+            if trial["procedure"] == "settings":
+                self.assertTrue(-30 <= float(trial["response"]) <= 30)
+                self.assertIsNone(trial["correct"])
+            else:
+                self.assertIn(trial["response"], allowed[trial["procedure"]])
+        # in each pass, each procedure that has trials left has one
+        self.assertEqual({trial["procedure"] for trial in trials[:4]}, {"sides", "steps", "ratings", "settings"})
+        parts = json.loads(self.call("report", "--db", "four.sqlite", "--json"))["tasks"]
+        self.assertEqual([part["task"] for part in parts], ["side", "which", "felt", "set"])
+        self.assertEqual([bool(part.get("judgements")) for part in parts], [False, False, True, False])
+        self.assertEqual([bool(part.get("settings")) for part in parts], [False, False, False, True])
+        self.assertEqual([len(part["fits"]) for part in parts], [1, 1, 0, 0])
+        self.call("verify", "--db", "four.sqlite")
+
     def hands(self, task=""):
         """The file with a sequence over both hands instead of its blocks; `task` is added to the procedure of the sides."""
         head = TWO_TASKS.split("[[block]]")[0].replace("repeats = 24", "repeats = 6").replace('name = "sides"\n', 'name = "sides"\n' + task)
