@@ -187,8 +187,15 @@ TEST_CASE("the peak of a burst that follows counts its largest gain", "[drive][s
   CHECK_THROWS_AS(prepare(burst, format), BurstRefused);
   burst.following.most_gain = 1;
   CHECK(prepare(burst, format).peak[0] == Approx(0.7));
+  burst.following.resting_gain = 0.2;
+  auto playing = prepare(burst, format);
+  Change change;
+  change.to = burst.tones;
+  CHECK_THROWS_AS(prepare_change(change, playing, format), BurstRefused);  // it keeps its tones
   burst.following = {};
   CHECK(prepare(burst, format).peak[0] == Approx(0.7));
+  playing = prepare(burst, format);
+  CHECK_NOTHROW(prepare_change(change, playing, format));
   for (const Following wrong : {Following{-1, 0, 1, 1, 1}, Following{1, 1.1, 1, 1, 1},
                                 Following{1, 0, 0, 1, 1}, Following{std::nan(""), 0, 1, 1, 1}}) {
     burst.following = wrong;
