@@ -115,8 +115,8 @@ Rectangle {
             readonly property real pauseRoom: pause.width + theme.unit
             readonly property real from: root.leftHanded ? pauseRoom : badgeRoom
             readonly property real room: parent.width - badgeRoom - pauseRoom
-            width: Math.min(implicitWidth, room)
-            x: from + Math.round((room - width) / 2)
+            width: Math.min(implicitWidth, Math.floor(room))
+            x: Math.round(from + (room - width) / 2)
             implicitHeight: Math.max(pause.implicitHeight, theme.targetLeast)
             theme: theme
             primary: false
