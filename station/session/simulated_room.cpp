@@ -70,6 +70,9 @@ simulation::Setup laboratory_of(const rig::Rig& rig) {
   simulation::Setup room;
   room.rate_Hz = rig.output.rate_Hz;
   room.playback_channels = rig::channels(rig);
+  // What the rig states of its converters and cells is true of the simulated ones.
+  if (rig.output.converter_delay_s > 0)
+    room.loop_delay_frames = rig.output.converter_delay_s * rig.output.rate_Hz;
   room.transducers.clear();
   room.band_low_Hz = 1e9, room.band_high_Hz = 0;
   for (const auto& t : rig.transducers) {
@@ -87,6 +90,10 @@ simulation::Setup laboratory_of(const rig::Rig& rig) {
     room.capture.bridge_a = bridges[0], room.capture.bridge_b = bridges[1], room.capture.lateral = bridges[2];
     room.cells.span_m = rig.surface.length_m;
     room.cells.height_m = kHeight_m;
+    if (const auto resonance_Hz = rig.capture->cells_resonance_Hz) {
+      room.cells.normal_Hz = room.cells.lateral_Hz = *resonance_Hz;
+      room.cells.damping = rig.capture->cells_damping;
+    }
     room.finger.from_m = kStrokeFrom * rig.surface.length_m;
     room.finger.to_m = kStrokeTo * rig.surface.length_m;
     room.finger.stroke_s = (room.finger.to_m - room.finger.from_m) / kStroke_m_s;
