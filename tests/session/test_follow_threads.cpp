@@ -31,7 +31,7 @@ TEST_CASE("session, capture and audio threads work on the loop at the same time"
   const auto plan = std::make_shared<const follow::Plan>(lab::plan_of({}));
   sensing::FingerSetup cells;
   cells.calibration = sensing::ForceCalibration({{{12, 0, 0}, {12, 0, 3600}, {0, 12, 0}}}, {});
-  std::size_t recorded = 0;
+  std::size_t happened = 0;
   for (int trial = 0; trial < 30; ++trial) {
     audio::Burst burst;
     burst.length_frames = 9600;
@@ -54,9 +54,10 @@ TEST_CASE("session, capture and audio threads work on the loop at the same time"
       }
       loop.gather();
     }
-    recorded += loop.take().periods.size();
+    const auto followed = loop.take();
+    happened += followed.periods.size() + followed.late.size();
   }
   over = true;
   capture.join();
-  CHECK(recorded > 1000);
+  CHECK(happened >= 20);  // at least one period or one late gain in nearly every trial
 }
