@@ -38,7 +38,7 @@ constexpr double points_per_radian = 3;
 // better than one at the default resolution; its phase at the drive edge is less exact than |v|.
 constexpr double membrane_accuracy = 2e-3, plate_accuracy = 2.5e-3, tense_plate_accuracy = 5e-3,
                  thick_plate_accuracy = 4e-3, plate_piston_accuracy = 0.15;
-constexpr double coarse_thick_accuracy = 5e-3, coarse_membrane_phase = 5e-3, coarse_plate_phase = 3e-2;
+constexpr double coarse_plate_accuracy = 5e-3, coarse_membrane_phase = 5e-3, coarse_plate_phase = 3e-2;
 // how much the square of the largest slope of the sides adds to that, relative to it
 constexpr double steep_share = 0.25;
 // What a resonance of a higher mode adds. That of a coarse solution shows in its difference from `mode`; this
@@ -93,7 +93,7 @@ AssumedError assumed_error(const Surface& surface, const ModeBound& first, Resol
                                                        : plate_accuracy;
   double phase = quiet;
   if (coarse) {
-    if (thick) quiet = std::max(quiet, coarse_thick_accuracy);
+    if (plate) quiet = std::max(quiet, coarse_plate_accuracy);
     phase = std::max(quiet, plate ? coarse_plate_phase : coarse_membrane_phase);
   }
   const double steep = plate && !coarse ? 1 : 1 + steep_share * first.steepest * first.steepest;
