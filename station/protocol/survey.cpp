@@ -192,8 +192,10 @@ void plan_range(const Protocol& protocol, const std::vector<Combination>& combin
     // Plan with the largest strength that rove_dB allows: the limits must hold for the strongest stimulus
     // that can be drawn.
     scene::Scene scene;
+    bool resolved = false;  // else the scene is empty
     try {
       scene = resolve(protocol, combination.scene, combination.factors, from.rove_dB);
+      resolved = true;
       answers[i].plan = planner.plan(scene);
       if (edge_moves_with_strength(from))
         answers[i].cues_roved_down =
@@ -205,7 +207,7 @@ void plan_range(const Protocol& protocol, const std::vector<Combination>& combin
       if (from.follow) {
         auto still = scene;
         still.follow.reset();
-        answers[i].follow_refused = can_plan(still, planner);
+        answers[i].follow_refused = !resolved || can_plan(still, planner);
       }
       if (answers[i].follow_refused)
         answers[i].place = from.follow->place;
@@ -278,6 +280,7 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   const auto combinations = planned(protocol, all);
   const auto answers = plan_all(protocol, rig, combinations, stop, progress);
   std::map<std::string, Trouble> unreachable, inexact, unmet;
+  std::map<std::string, core::Phrase> remarks;  // the first one on each scene
   Reaches reaches(rig);
   // the text of the first warning with each warning code, because each code is reported only once
   std::map<std::string, core::Phrase> told;
@@ -297,6 +300,9 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
     survey.models.emplace(physics::name(plan.model));
     if (!plan.inside_tolerance && inexact[combination.scene].cases++ == 0)
       inexact[combination.scene].first = in_case(combination, plan.beyond_tolerance);
+    if (plan.follow && !remarks.count(combination.scene))
+      if (const auto remark = scene::remark_on(rig, plan))
+        remarks.emplace(combination.scene, in_case(combination, *remark));
     if (plan.follow)
       for (const auto& stretch : scene::unmet_of(plan))
         if (unmet[combination.scene].cases++ == 0)
@@ -309,6 +315,8 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   for (const auto& [name, trouble] : inexact)
     survey.warnings.push_back({protocol.scenes.at(name).place, counted(trouble.first, trouble.cases),
                                phrase("no physical model is known to meet the scene's tolerance")});
+  for (const auto& [name, remark] : remarks)
+    survey.warnings.push_back({protocol.scenes.at(name).follow->place, remark, {}});
   for (const auto& [name, trouble] : unmet)
     survey.warnings.push_back(
         {protocol.scenes.at(name).follow->place, counted(trouble.first, trouble.cases),

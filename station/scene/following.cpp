@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -29,8 +30,18 @@ constexpr double kUsable_Hz = 100;
 constexpr double kUsableShare = 1.0 / 3;
 constexpr double kHighestSpeed_m_s = 1.0, kLowestSpeed_m_s = 1e-3;
 constexpr int kTexturePlaces = 5;
-constexpr double kMostResidual = 0.15;      // as in follow::Presented
+constexpr double kMostResidual = 0.15;   // as in follow::Presented
+constexpr double kPresentedShare = 0.9;  // of the amplitude, as in follow::Presented
+constexpr double kTablePower = 0.95;     // of a table's power, up to its highest cycle that counts
+constexpr double kStill_Hz = 1;          // what varies no faster is a matter of the place alone
+/// presented() takes no cycle of more than 12 s. A slower one is judged as if it were this fast, which is
+/// harder.
+constexpr double kSlowest_Hz = 0.1;
+/// Fingers change their speed with up to this frequency, so slower cells do not even show where they are.
+constexpr double kFinger_Hz = 10;
+constexpr double kUsableOverLoop = 3;  // cells that are usable up to so many cut-offs add little to its delay
 constexpr double kCurveStep_m = 0.0937e-3;  // no multiple of it is a usual period
+constexpr int kPhases = 16;                 // of textures that move, for cues
 
 core::Phrase mm(double value_m, int digits = 4) { return plain(number(1e3 * value_m, digits)); }
 core::Phrase Hz(double value, int digits = 4) { return plain(number(value, digits)); }
@@ -177,13 +188,64 @@ std::optional<Swing> swing_at(const Plan& plan, int index, double place_m) {
   return swing;
 }
 
-bool presentable(const Plan& plan, int index, double place_m, double speed_m_s) {
+/// A texture of a plan. `highest_cycle` is the frequency of the finest detail that counts, in multiples of
+/// one cycle: 1 but for a table, for which it is the harmonic up to which 95 % of its power lie. (Of a square
+/// only the fundamental is asked for: no plate has its jumps.)
+struct Texture {
+  int index = 0;
+  Part part;
+  double highest_cycle = 1;
+
+  double frequency_Hz(double speed_m_s) const { return part.cycles_per_m * speed_m_s + part.cycles_per_s; }
+};
+
+double highest_cycle(const Pattern& pattern, const Part& part) {
+  if (part.shape != Shape::table) return 1;
+  const auto* samples = pattern.table.data() + part.table_first;
+  const int count = part.table_count;
+  std::vector<double> power(static_cast<std::size_t>(count / 2 + 1), 0);
+  double total = 0;
+  for (int k = 1; k <= count / 2; ++k) {
+    const auto turn = std::polar(1.0, 2 * std::numbers::pi * k / count);
+    std::complex<double> sum, angle = 1;
+    for (int i = 0; i < count; ++i, angle *= turn) sum += static_cast<double>(samples[i]) * angle;
+    total += power[static_cast<std::size_t>(k)] = std::norm(sum);
+  }
+  double below = 0;
+  for (int k = 1; k <= count / 2; ++k)
+    if ((below += power[static_cast<std::size_t>(k)]) >= kTablePower * total) return k;
+  return 1;
+}
+
+std::vector<Texture> textures_of(const Plan& plan) {
+  std::vector<Texture> textures;
+  for (int i = 0; i < plan.pattern.part_count; ++i)
+    if (const auto& part = plan.pattern.parts[static_cast<std::size_t>(i)]; is_texture(part))
+      textures.push_back({i, part, highest_cycle(plan.pattern, part)});
+  return textures;
+}
+
+/// Whether the plate can present a texture at a place, if it passes there with this frequency (in cycles per
+/// second, below 0 backwards).
+bool presentable(const Plan& plan, const Texture& texture, double place_m, double frequency_Hz) {
+  if (texture.highest_cycle * std::abs(frequency_Hz) < kStill_Hz) return true;
   const double period_s = static_cast<double>(plan.timing.period_frames) / plan.timing.rate_Hz;
-  const auto& part = plan.pattern.parts[static_cast<std::size_t>(index)];
-  const auto shown = follow::presented(below(plan.pattern, index), part, plan.map, plan.envelope, period_s,
-                                       plan.resting_friction, place_m, speed_m_s);
-  // A table need not have a fundamental of its own: noise that repeats after a long way has none.
-  return part.shape == Shape::table ? shown.residual < kMostResidual : shown.presentable;
+  auto passing = texture.part;
+  passing.cycles_per_m = 0;
+  passing.cycles_per_s = std::copysign(std::max(std::abs(frequency_Hz), kSlowest_Hz), frequency_Hz);
+  const auto shown = follow::presented(below(plan.pattern, texture.index), passing, plan.map, plan.envelope,
+                                       period_s, plan.resting_friction, place_m, 0);
+  if (passing.shape != Shape::table) return shown.presentable;
+  // Only what is left counts for a table: noise has no power in its first cycle, so the amplitude and the
+  // phase of that say nothing. As for other shapes, the finest detail needs 8 gains in a cycle.
+  return shown.residual < kMostResidual &&
+         8 * texture.highest_cycle * std::abs(frequency_Hz) * period_s / follow::kGains <= 1;
+}
+
+/// The same for a finger of this speed, in both directions.
+bool presentable_at(const Plan& plan, const Texture& texture, double place_m, double speed_m_s) {
+  return presentable(plan, texture, place_m, texture.frequency_Hz(speed_m_s)) &&
+         presentable(plan, texture, place_m, texture.frequency_Hz(-speed_m_s));
 }
 
 /// Places at which a texture can be met at all.
@@ -198,71 +260,113 @@ std::vector<double> places_of(const Plan& plan, int index) {
 }
 
 /// The highest speed at which a texture is presentable at a place, up to kHighestSpeed_m_s; 0 if at none.
-double most_speed_m_s(const Plan& plan, int index, double place_m) {
-  if (presentable(plan, index, place_m, kHighestSpeed_m_s)) return kHighestSpeed_m_s;
-  // A very slow finger needs more steps than presented() allows, so the search begins at the slowest one.
+double most_speed_m_s(const Plan& plan, const Texture& texture, double place_m) {
+  if (presentable_at(plan, texture, place_m, kHighestSpeed_m_s)) return kHighestSpeed_m_s;
   double low = kLowestSpeed_m_s, high = kHighestSpeed_m_s;
-  const auto& part = plan.pattern.parts[static_cast<std::size_t>(index)];
-  low = std::max(low, 1 / std::abs(part.cycles_per_m));  // one cycle in a second
-  if (low >= high || !presentable(plan, index, place_m, low)) return 0;
+  if (!presentable_at(plan, texture, place_m, low)) return 0;
   while (high > 1.02 * low) {
     const double middle = std::sqrt(low * high);
-    (presentable(plan, index, place_m, middle) ? low : high) = middle;
+    (presentable_at(plan, texture, place_m, middle) ? low : high) = middle;
   }
   return low;
 }
 
-TextureFigures figures_of(const Plan& plan, int index, const std::vector<double>& places) {
-  const auto& part = plan.pattern.parts[static_cast<std::size_t>(index)];
-  TextureFigures least{index, places.front(), 0, std::numeric_limits<double>::infinity(), std::nullopt};
-  if (part.cycles_per_m != 0) least.period_m = 1 / std::abs(part.cycles_per_m);
+TextureFigures figures_of(const Plan& plan, const Texture& texture, const std::vector<double>& places) {
+  TextureFigures least{texture.index, places.front(), 0, std::numeric_limits<double>::infinity(),
+                       std::nullopt};
+  const double per_m = std::abs(texture.part.cycles_per_m);
+  if (per_m != 0) least.period_m = 1 / per_m;
+  double speed_m_s = kHighestSpeed_m_s;
   for (const double place_m : places) {
-    const auto swing = *swing_at(plan, index, place_m);
-    const double bandwidth_Hz =
-        follow::bandwidth_Hz(plan.envelope, 0.5 * (swing.low + swing.high), 0.5 * (swing.high - swing.low));
+    const auto swing = *swing_at(plan, texture.index, place_m);
+    const double bandwidth_Hz = follow::bandwidth_Hz(plan.envelope, 0.5 * (swing.low + swing.high),
+                                                     0.5 * kPresentedShare * (swing.high - swing.low));
     if (bandwidth_Hz < least.bandwidth_Hz) least.bandwidth_Hz = bandwidth_Hz, least.place_m = place_m;
+    if (per_m != 0) speed_m_s = std::min(speed_m_s, most_speed_m_s(plan, texture, place_m));
   }
-  if (part.cycles_per_m != 0) {
-    const double speed_m_s = most_speed_m_s(plan, index, least.place_m);
-    if (speed_m_s > 0) least.most_speed_m_s = speed_m_s;
-  }
+  if (per_m != 0 && speed_m_s > 0) least.most_speed_m_s = speed_m_s;
   return least;
 }
 
-void check_texture_speed(const Plan& plan, int index, const std::vector<double>& places,
+/// Speeds are from the slowest to the fastest finger; a texture that varies only in time needs none.
+void check_texture_speed(const Plan& plan, const Texture& texture, const std::vector<double>& places,
                          const std::pair<double, double>& speeds_m_s) {
-  const auto& part = plan.pattern.parts[static_cast<std::size_t>(index)];
-  for (const double speed_m_s : {speeds_m_s.second, speeds_m_s.first})
+  for (const double speed_m_s : {speeds_m_s.second, -speeds_m_s.second, speeds_m_s.first, -speeds_m_s.first})
     for (const double place_m : places) {
-      const double frequency_Hz = std::abs(part.cycles_per_m * speed_m_s + part.cycles_per_s);
-      if (frequency_Hz < 1 || presentable(plan, index, place_m, speed_m_s)) continue;
-      const auto figures = figures_of(plan, index, places);
+      const double frequency_Hz = texture.frequency_Hz(speed_m_s);
+      if (presentable(plan, texture, place_m, frequency_Hz)) continue;
+      const auto figures = figures_of(plan, texture, places);
+      const auto varies = Hz(texture.highest_cycle * std::abs(frequency_Hz), 3);
+      const auto bandwidth = std::isfinite(figures.bandwidth_Hz) ? Hz(figures.bandwidth_Hz, 3) : plain("inf");
+      if (texture.part.cycles_per_m == 0)
+        throw Unreachable(
+            phrase("part %1 varies with %2 Hz, and the plate cannot follow that at %3 mm (its bandwidth for "
+                   "this change of friction is %4 Hz)",
+                   {plain(texture.index + 1), varies, mm(place_m, 3), bandwidth}));
       const auto most = figures.most_speed_m_s
                             ? phrase("up to %1 mm/s it can", {mm(*figures.most_speed_m_s, 3)})
                             : phrase("at no speed it can");
       throw Unreachable(phrase(
           "part %1 varies with %2 Hz under a finger of %3 mm/s, and the plate cannot follow that at %4 mm "
           "(its bandwidth for this change of friction is %5 Hz): %6",
-          {plain(index + 1), Hz(frequency_Hz, 3), mm(speed_m_s, 3), mm(place_m, 3),
-           std::isfinite(figures.bandwidth_Hz) ? Hz(figures.bandwidth_Hz, 3) : plain("inf"), most}));
+          {plain(texture.index + 1), varies, mm(std::abs(speed_m_s), 3), mm(place_m, 3), bandwidth, most}));
     }
 }
 
+/// The shortest length over which a part varies (m); infinite if it is the same everywhere.
+double shortest_m(const Pattern& pattern, const Part& part) {
+  if (is_texture(part))
+    return part.cycles_per_m == 0 ? std::numeric_limits<double>::infinity()
+                                  : 1 / (highest_cycle(pattern, part) * std::abs(part.cycles_per_m));
+  if (part.shape == Shape::edge || part.shape == Shape::bump) return part.width_m;
+  if (part.shape == Shape::gradient) return part.end_m - part.begin_m;
+  return std::numeric_limits<double>::infinity();
+}
+
 /// Cells that are usable up to 100 Hz and more show the place well enough for everything that the plate can
-/// present. With slower ones, only textures that vary no faster than the cells can follow remain.
-void check_cells(const Plan& plan, double resonance_Hz, int index, const std::pair<double, double>& speeds) {
+/// present. With slower ones, only what varies no faster under the finger than the cells can follow remains,
+/// and a loop that is slower still.
+void check_cells(const Plan& plan, double resonance_Hz,
+                 const std::optional<std::pair<double, double>>& speeds_m_s) {
   const double usable_Hz = kUsableShare * resonance_Hz;
-  const auto& part = plan.pattern.parts[static_cast<std::size_t>(index)];
   if (usable_Hz >= kUsable_Hz) return;
-  const double frequency_Hz = std::abs(part.cycles_per_m * speeds.second + part.cycles_per_s);
-  if (frequency_Hz <= usable_Hz) return;
-  throw Unreachable(phrase(
-      "the force cells resonate at %1 Hz and are usable up to %2 Hz, but part %3 varies with %4 Hz under a "
-      "finger of %5 mm/s; the cells lag by %6 ms (%7 mm at this speed), and periods of %8 mm and more "
-      "remain",
-      {Hz(resonance_Hz, 3), Hz(usable_Hz, 3), plain(index + 1), Hz(frequency_Hz, 3), mm(speeds.second, 3),
-       mm(plan.timing.cells_s, 2), mm(plan.timing.cells_s * speeds.second, 2),
-       mm(speeds.second / usable_Hz, 3)}));
+  if (usable_Hz < kFinger_Hz)
+    throw Unreachable(phrase(
+        "the force cells resonate at %1 Hz and are usable up to %2 Hz, but fingers change their movement "
+        "with up to %3 Hz: following needs cells that resonate at %4 Hz or more",
+        {Hz(resonance_Hz, 3), Hz(usable_Hz, 3), Hz(kFinger_Hz), Hz(kFinger_Hz / kUsableShare)}));
+  if (plan.control == follow::Control::closed && usable_Hz < kUsableOverLoop * plan.loop.cutoff_Hz)
+    throw Unreachable(phrase(
+        "the force cells are usable up to %1 Hz, but friction is held with up to %2 Hz: that needs cells "
+        "that resonate at %3 Hz or more",
+        {Hz(usable_Hz, 3), Hz(plan.loop.cutoff_Hz, 3),
+         Hz(kUsableOverLoop * plan.loop.cutoff_Hz / kUsableShare, 3)}));
+  for (int i = 0; i < plan.pattern.part_count; ++i) {
+    const auto& part = plan.pattern.parts[static_cast<std::size_t>(i)];
+    const double length_m = shortest_m(plan.pattern, part);
+    if (std::isinf(length_m)) continue;
+    if (!speeds_m_s)
+      throw Unreachable(phrase(
+          "the force cells are usable up to %1 Hz only, so how fast part %2 may vary depends on the finger's "
+          "speed: give \"speed_mm_s\" in [sensing]",
+          {Hz(usable_Hz, 3), plain(i + 1)}));
+    const double speed_m_s = speeds_m_s->second;
+    if (speed_m_s <= usable_Hz * length_m) continue;
+    if (!is_texture(part))
+      throw Unreachable(phrase(
+          "the force cells resonate at %1 Hz and are usable up to %2 Hz, but part %3 changes within %4 mm "
+          "under a finger of %5 mm/s; the cells lag by %6 ms (%7 mm at this speed), and changes over %8 mm "
+          "and more remain",
+          {Hz(resonance_Hz, 3), Hz(usable_Hz, 3), plain(i + 1), mm(length_m, 3), mm(speed_m_s, 3),
+           mm(plan.timing.cells_s, 2), mm(plan.timing.cells_s * speed_m_s, 2),
+           mm(speed_m_s / usable_Hz, 3)}));
+    throw Unreachable(phrase(
+        "the force cells resonate at %1 Hz and are usable up to %2 Hz, but part %3 varies with %4 Hz under a "
+        "finger of %5 mm/s; the cells lag by %6 ms (%7 mm at this speed), and periods of %8 mm and more "
+        "remain",
+        {Hz(resonance_Hz, 3), Hz(usable_Hz, 3), plain(i + 1), Hz(speed_m_s / length_m, 3), mm(speed_m_s, 3),
+         mm(plan.timing.cells_s, 2), mm(plan.timing.cells_s * speed_m_s, 2), mm(speed_m_s / usable_Hz, 3)}));
+  }
 }
 
 /// A part with begin and end promises its stretch.
@@ -326,16 +430,17 @@ std::shared_ptr<const Plan> follow_plan(const rig::Rig& rig, const physics::Fric
     throw Unreachable(plain(error.what()));
   }
   check_promises(plan, *made);
-  for (int i = 0; i < made->pattern.part_count; ++i) {
-    if (!is_texture(made->pattern.parts[static_cast<std::size_t>(i)])) continue;
-    const auto places = places_of(*made, i);
+  check_cells(*made, resonance_Hz, target.speeds_m_s);
+  for (const auto& texture : textures_of(*made)) {
+    const auto places = places_of(*made, texture.index);
     if (places.empty())
       throw Unreachable(
           phrase("part %1 is beyond reach at all places that were tried: give it less, or a stronger scene",
-                 {plain(i + 1)}));
-    if (!target.speeds_m_s) continue;
-    check_cells(*made, resonance_Hz, i, *target.speeds_m_s);
-    check_texture_speed(*made, i, places, *target.speeds_m_s);
+                 {plain(texture.index + 1)}));
+    if (texture.part.cycles_per_m == 0)
+      check_texture_speed(*made, texture, places, {0, 0});
+    else if (target.speeds_m_s)
+      check_texture_speed(*made, texture, places, *target.speeds_m_s);
   }
   return made;
 }
@@ -344,6 +449,26 @@ std::vector<follow::Unmet> unmet_of(const DrivePlan& plan) {
   const auto& follow = *plan.follow;
   return follow::unmet(follow.pattern, follow.map, follow.resting_friction, follow.map.first_m(),
                        follow.map.last_m(), tolerance_of(follow));
+}
+
+std::optional<core::Phrase> remark_on(const rig::Rig& rig, const DrivePlan& plan) {
+  const auto& speeds_m_s = plan.scene.follow->speeds_m_s;
+  const double usable_Hz = kUsableShare * cells_resonance_Hz(rig), lag_s = plan.follow->timing.cells_s;
+  if (usable_Hz < kUsable_Hz)
+    return speeds_m_s ? phrase(
+                            "the force cells are usable up to %1 Hz only: they lag by %2 ms, %3 mm under a "
+                            "finger of %4 mm/s, and periods of %5 mm and more remain",
+                            {Hz(usable_Hz, 3), mm(lag_s, 2), mm(lag_s * speeds_m_s->second, 2),
+                             mm(speeds_m_s->second, 3), mm(speeds_m_s->second / usable_Hz, 3)})
+                      : phrase("the force cells are usable up to %1 Hz only: they lag by %2 ms",
+                               {Hz(usable_Hz, 3), mm(lag_s, 2)});
+  const auto textures = textures_of(*plan.follow);
+  if (!speeds_m_s && std::any_of(textures.begin(), textures.end(),
+                                 [](const auto& texture) { return texture.part.cycles_per_m != 0; }))
+    return phrase(
+        "whether the plate can present the texture depends on the finger's speed, which is not known: "
+        "give \"speed_mm_s\" in [sensing]");
+  return std::nullopt;
 }
 
 core::Phrase in_words(const DrivePlan& plan, const follow::Unmet& unmet) {
@@ -369,10 +494,9 @@ FollowFigures follow_figures(const DrivePlan& plan) {
   figures.time_constant_s = follow.envelope.time_constant_s;
   if (follow.control == follow::Control::closed) figures.loop_cutoff_Hz = follow.loop.cutoff_Hz;
   figures.unmet = unmet_of(plan);
-  for (int i = 0; i < follow.pattern.part_count; ++i) {
-    if (!is_texture(follow.pattern.parts[static_cast<std::size_t>(i)])) continue;
-    const auto places = places_of(follow, i);
-    if (!places.empty()) figures.textures.push_back(figures_of(follow, i, places));
+  for (const auto& texture : textures_of(follow)) {
+    const auto places = places_of(follow, texture.index);
+    if (!places.empty()) figures.textures.push_back(figures_of(follow, texture, places));
   }
   return figures;
 }
@@ -401,20 +525,43 @@ FollowCurve follow_curve(const DrivePlan& plan, int points, Events events) {
 
 FollowedGains followed_gains(const Plan& plan) {
   FollowedGains gains;
+  gains.most = plan.resting_gain;
   const bool friction = plan.pattern.asked == follow::Asked::friction;
   const auto steps =
       std::max(1, static_cast<int>(std::lround((plan.map.last_m() - plan.map.first_m()) / kCurveStep_m)));
-  double squares = 0;
-  for (int i = 0; i <= steps; ++i) {
-    const double x_m = plan.map.first_m() + (plan.map.last_m() - plan.map.first_m()) * i / steps;
-    const double asked = follow::asked_at(plan.pattern, {}, x_m, 0);
-    const double gain = friction ? plan.map.gain(x_m, asked / plan.resting_friction)
-                                 : plan.map.gain_for_displacement(x_m, asked);
-    squares += gain * gain / (steps + 1);
-    gains.most = std::max(gains.most, gain);
-    gains.lowest_friction = std::min(gains.lowest_friction, plan.map.relative_friction(x_m, gain));
+  follow::PatternState none, all;
+  all.active.fill(true);
+  bool moves = false, has_events = false;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(plan.pattern.part_count); ++i) {
+    const auto& part = plan.pattern.parts[i];
+    all.since_s[i] = -part.trigger.delay_s;
+    moves |= is_texture(part) && part.cycles_per_s != 0;
+    has_events |= part.trigger.event != follow::Event::none;
   }
-  gains.rms = std::sqrt(squares);
+  const int phases = moves ? kPhases : 1;
+  std::vector<const follow::PatternState*> states{&none};
+  if (has_events) states.push_back(&all);
+  auto pattern = plan.pattern;
+  double squares = 0;
+  for (int phase = 0; phase < phases; ++phase) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(pattern.part_count); ++i)
+      if (pattern.parts[i].cycles_per_s != 0)  // different steps, so that two of them do not stay together
+        pattern.parts[i].phase_cycles =
+            plan.pattern.parts[i].phase_cycles +
+            static_cast<double>((2 * i + 1) * static_cast<std::size_t>(phase)) / phases;
+    for (const auto* state : states)
+      for (int i = 0; i <= steps; ++i) {
+        const double x_m = plan.map.first_m() + (plan.map.last_m() - plan.map.first_m()) * i / steps;
+        const double asked = follow::asked_at(pattern, *state, x_m, 0);
+        const double gain = friction ? plan.map.gain(x_m, asked / plan.resting_friction)
+                                     : plan.map.gain_for_displacement(x_m, asked);
+        squares += gain * gain / (steps + 1);
+        gains.most = std::max(gains.most, gain);
+        gains.lowest_friction = std::min(gains.lowest_friction, plan.map.relative_friction(x_m, gain));
+      }
+  }
+  squares /= static_cast<double>(phases) * static_cast<double>(states.size());
+  gains.rms = std::hypot(std::sqrt(squares), plan.resting_gain);
   return gains;
 }
 

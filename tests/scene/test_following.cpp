@@ -236,3 +236,81 @@ TEST_CASE(
   CHECK(held.follow->loop.cutoff_Hz >= 7);
   CHECK(follow_figures(held).loop_cutoff_Hz == held.follow->loop.cutoff_Hz);
 }
+
+TEST_CASE("noise is judged by what is in it, not by the length after which it comes again",
+          "[scene][follow]") {
+  const auto rig = following();
+  const auto noise = [](double low_per_m, double high_per_m, int samples) {
+    FollowTarget target;
+    const std::vector<follow::SpectrumPoint> spectrum{{low_per_m, 1}, {high_per_m, 0.2}};
+    const auto section = follow::add_noise(target.pattern, spectrum, 60e-3, samples, {});
+    auto part = texture(follow::Shape::table, 0.45, 0.55, 60e-3);
+    part.table_first = section.first, part.table_count = section.count;
+    follow::add(target.pattern, part);
+    target.speeds_m_s = std::pair{0.03, 0.3};
+    auto scene = vibrating();
+    scene.follow = std::make_shared<const FollowTarget>(target);
+    return scene;
+  };
+  CHECK(refusal(rig, noise(50, 300, 144)) == "");  // up to 90 Hz
+  CHECK_THAT(refusal(rig, noise(7500, 8500, 2048)), ContainsSubstring("the plate cannot follow that"));
+  auto slow = rig;
+  slow.capture->cells_resonance_Hz = 90, slow.capture->cells_damping = 0.05;  // usable up to 30 Hz
+  CHECK_THAT(refusal(slow, noise(240, 300, 144)), ContainsSubstring("periods of 10 mm and more remain"));
+}
+
+TEST_CASE("a texture that moves is checked in both directions, and its figures never stop the program",
+          "[scene][follow]") {
+  const auto rig = following();
+  const auto moving = [](double frequency_Hz, std::optional<std::pair<double, double>> speeds_m_s) {
+    auto part = texture(follow::Shape::sine, 0.4, 0.8, 0.1e-3);
+    part.cycles_per_s = frequency_Hz;
+    return that_follows(vibrating(), {part}, 1, speeds_m_s);
+  };
+  // 0 Hz in one direction, 3000 Hz in the other
+  CHECK_THAT(refusal(rig, moving(-1500, std::pair{0.15, 0.15})), ContainsSubstring("varies with 3000 Hz"));
+  for (const double frequency_Hz : {-1.0, 100.0, -10.0})
+    CHECK_NOTHROW(follow_figures(Planner(rig).plan(moving(frequency_Hz, {}))));
+}
+
+TEST_CASE("a promised stretch is proved at all times", "[scene][follow]") {
+  auto part = texture(follow::Shape::sine, 0, 1, 4e-3);
+  part.cycles_per_m = 0, part.cycles_per_s = 5;  // 0.5 at time 0
+  CHECK_THAT(refusal(following(), that_follows(vibrating(), {part})), ContainsSubstring("is reached (at"));
+}
+
+TEST_CASE("cues see events, phases in time, and what sounds before touch", "[scene][follow]") {
+  Planner planner(following());
+  follow::Part part;
+  part.to = 0.4, part.begin_m = 0.03, part.end_m = 0.12;
+  part.trigger.event = follow::Event::force, part.trigger.threshold = 1;
+  const auto gains = followed_gains(*planner.plan(that_follows(vibrating(), {part})).follow);
+  CHECK(gains.rms > 0);
+  CHECK(gains.lowest_friction < 0.45);
+  auto in_time = texture(follow::Shape::sine, 0.4, 0.8, 4e-3);
+  in_time.cycles_per_m = 0, in_time.cycles_per_s = 5;
+  CHECK(followed_gains(*planner.plan(that_follows(vibrating(), {in_time})).follow).lowest_friction < 0.45);
+  auto resting = that_follows(vibrating(), {});
+  auto target = *resting.follow;
+  target.resting_gain = 0.5;
+  resting.follow = std::make_shared<const FollowTarget>(target);
+  CHECK(followed_gains(*planner.plan(resting).follow).rms == 0.5);
+}
+
+TEST_CASE("slow cells are refused also without a texture, and without a speed", "[scene][follow]") {
+  auto rig = following();
+  rig.capture->cells_resonance_Hz = 90, rig.capture->cells_damping = 0.05;
+  follow::Part edge;
+  edge.shape = follow::Shape::edge, edge.from = 0.4, edge.to = 0.8, edge.place_m = 0.07;
+  edge.begin_m = 0.03, edge.end_m = 0.12;
+  CHECK_THAT(refusal(rig, that_follows(vibrating(), {edge})), ContainsSubstring("give \"speed_mm_s\""));
+  CHECK_THAT(refusal(rig, that_follows(vibrating(), {edge}, 1, std::pair{0.05, 0.1})),
+             ContainsSubstring("changes over 3.33 mm and more remain"));
+  edge.width_m = 5e-3;
+  const auto scene = that_follows(vibrating(), {edge}, 1, std::pair{0.05, 0.1});
+  CHECK(refusal(rig, scene) == "");
+  CHECK(remark_on(rig, Planner(rig).plan(scene)));
+  CHECK_FALSE(remark_on(following(), Planner(following()).plan(scene)));
+  rig.capture->cells_resonance_Hz = 20;
+  CHECK_THAT(refusal(rig, scene), ContainsSubstring("fingers change their movement"));
+}
