@@ -1,6 +1,7 @@
 #include "station/sensing/follow_proof.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <complex>
@@ -24,7 +25,8 @@ constexpr double kLeast_s = 0.05;    // of judged time
 constexpr double kLeastGain = 0.01;  // rms
 constexpr double kMostLag_s = 0.003;
 constexpr std::size_t kLagBlocks = 500;  // about so many blocks are used to find the lag
-constexpr double kShowsLag = 10;         // a lag must multiply the power that remains by this
+constexpr int kSmoothBins = 4;           // to both sides, when the residual's spectrum is smoothed
+constexpr double kErrors = 3;            // a lag is beyond a limit if it is by so many standard errors
 
 Proof by_size(double value, const Limits& limits) { return judged(std::fabs(value), limits); }
 
@@ -39,6 +41,26 @@ std::vector<int> channels_of(const std::vector<PickUp>& pick_ups) {
 
 Complex turned(std::uint64_t phase) noexcept {
   return {audio::sine_of_phase(phase + audio::quarter_cycle), audio::sine_of_phase(phase)};
+}
+
+/// Variance of the sum of the products of a regressor with a stationary residual: the power of the regressor
+/// at each frequency times that of the residual around it. The mean of a residual says nothing, because the
+/// level is fitted.
+double variance_of_products(const std::vector<double>& regressor, const std::vector<double>& residual) {
+  Eigen::FFT<double> transform;
+  std::vector<Complex> of_regressor, of_residual;
+  transform.fwd(of_regressor, regressor);
+  transform.fwd(of_residual, residual);
+  const auto n = static_cast<std::int64_t>(regressor.size());
+  double sum = 0;
+  for (std::int64_t k = 0; k < n; ++k) {
+    double power = 0;
+    int bins = 0;
+    for (std::int64_t near = k - kSmoothBins; near <= k + kSmoothBins; ++near)
+      if (near % n != 0) power += std::norm(of_residual[static_cast<std::size_t>((near + n) % n)]), ++bins;
+    sum += std::norm(of_regressor[static_cast<std::size_t>(k)]) * power / bins;
+  }
+  return sum / static_cast<double>(n * n);
 }
 
 /// Sum of e^(i (phase + n increment)) over n from 0 to before `frames`, with integers of 2^-64 cycles.
@@ -237,19 +259,59 @@ IntervalResult FollowProof::result(const CommandedEnvelope& commanded, std::opti
   result.residual_dB = in_dB(std::sqrt(here.remains() / std::max(std::norm(scale) * here.power, 1e-300)));
   result.envelope_error_dB = result.residual_dB;
 
-  // The lag, if the envelope varies enough to show it. A part of the blocks is enough.
+  // The lag, if it is known well enough. A part of the blocks is enough.
   std::vector<const Block*> some;
   for (std::size_t k = 0; k < used.size(); k += 1 + used.size() / kLagBlocks) some.push_back(used[k]);
   const double step = 2 * expected.step;
   const auto most = static_cast<int>(std::lround(kMostLag_s * plan_.rate_Hz / step));
+  // The lag is fitted by least squares together with level and phase. This is its standard error. All values
+  // are relative to the phase that is expected of a block.
+  const auto lag_error_frames = [&](double lag_frames) {
+    const Match all = match(some, lag_frames);
+    const Complex level = all.product / all.power;
+    std::vector<double> expects;
+    std::vector<Complex> slopes, residuals;
+    Complex common;
+    for (const Block* block : some) {
+      const Match one = match({block}, lag_frames);
+      const double at = expected.place(static_cast<double>(block->first_frame) + middle - lag_frames);
+      Complex change;
+      double size = 0;
+      for (std::size_t l = 0; l < lines_.size(); ++l) {
+        const Complex x = expected.at(l, at);
+        change += (expected.at(l, at - 1) - expected.at(l, at + 1)) * std::conj(x);
+        size += std::norm(x);
+      }
+      if (!(one.power * static_cast<double>(some.size()) > kLeastGain * kLeastGain * all.power)) continue;
+      expects.push_back(std::sqrt(one.power));
+      slopes.push_back(expects.back() * change / (2 * expected.step * size));
+      residuals.push_back(std::conj(level) / std::abs(level) * (one.product - level * one.power) /
+                          expects.back());
+      common += slopes.back() * expects.back() / all.power;
+    }
+    std::array<std::vector<double>, 2> slope, residual;  // real and imaginary parts
+    double squares = 0;
+    for (std::size_t j = 0; j < slopes.size(); ++j) {
+      const Complex own = std::abs(level) * (slopes[j] - common * expects[j]);
+      squares += std::norm(own);
+      slope[0].push_back(own.real()), slope[1].push_back(own.imag());
+      residual[0].push_back(residuals[j].real()), residual[1].push_back(residuals[j].imag());
+    }
+    const double variance =
+        variance_of_products(slope[0], residual[0]) + variance_of_products(slope[1], residual[1]);
+    return squares > 0 ? std::sqrt(variance) / squares : std::numeric_limits<double>::infinity();
+  };
   std::vector<double> left;
   for (int k = -most; k <= most; ++k) left.push_back(match(some, k * step).remains());
   const auto best = static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin());
-  const double range = *std::max_element(left.begin(), left.end()) - left[best];
-  if (best > 0 && best + 1 < left.size() && range > kShowsLag * left[best]) {
+  double lag_error_us = 0;
+  if (best > 0 && best + 1 < left.size()) {
     const double bend = left[best - 1] - 2 * left[best] + left[best + 1];
     const double part = bend > 0 ? 0.5 * (left[best - 1] - left[best + 1]) / bend : 0;
-    result.envelope_lag_us = 1e6 * (static_cast<double>(best) - most + part) * step / plan_.rate_Hz;
+    const double lag_frames = (static_cast<double>(best) - most + part) * step;
+    lag_error_us = 1e6 * lag_error_frames(lag_frames) / plan_.rate_Hz;
+    if (kErrors * lag_error_us <= limits.envelope_lag_us.flag)
+      result.envelope_lag_us = 1e6 * lag_frames / plan_.rate_Hz;
   }
 
   for (const auto& line : lines_)
@@ -276,7 +338,9 @@ IntervalResult FollowProof::result(const CommandedEnvelope& commanded, std::opti
     findings.push_back({ProofCause::phase, by_size(phase_deg, limits.phase_deg)});
     findings.push_back({ProofCause::residual, judged(*result.envelope_error_dB, limits.envelope_error_dB)});
     if (result.envelope_lag_us)
-      findings.push_back({ProofCause::late, by_size(*result.envelope_lag_us, limits.envelope_lag_us)});
+      findings.push_back(
+          {ProofCause::late,
+           judged(std::fabs(*result.envelope_lag_us) - kErrors * lag_error_us, limits.envelope_lag_us)});
   }
   const Finding all = concluded(findings);
   result.verdict = all.verdict;

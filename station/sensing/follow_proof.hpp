@@ -27,8 +27,10 @@ struct CommandedEnvelope {
 /// All tones together have one level and one phase relative to the plan, by least squares over the interval.
 /// What remains, relative to what was commanded, is the error of the envelope: everything that is not the
 /// commanded vibration, with noise and products of distortion. The lag is the shift of the commanded envelope
-/// that leaves least. Not measured: the ramps and the 5 ms after them, and times at which the played gain is
-/// not known. For an ordinary thread; not thread-safe.
+/// that leaves least. Its standard error follows from the spectra of what remains and of the commanded
+/// change; it is stated only if three standard errors are within the limit at which it flags a trial, and
+/// counts as beyond a limit only if it is by three of them. Not measured: the ramps and the 5 ms after them,
+/// and times at which the played gain is not known. For an ordinary thread; not thread-safe.
 class FollowProof {
  public:
   /// Throws std::logic_error like IntervalProof. `plan` must have a single set of tones.

@@ -105,7 +105,7 @@ struct IntervalResult {
   /// the same on the ramp at the end; empty if the burst was stopped or the last tones are too short
   std::optional<double> offset_error_us;
   /// Of a burst that follows gains (FollowProof): what the commanded envelope does not explain, relative to
-  /// it; and its lag, empty if the envelope varied too little.
+  /// it; and its lag, empty if it is not known well enough.
   std::optional<double> envelope_error_dB, envelope_lag_us;
   std::optional<double> found_Hz;        ///< if the cause is `frequency`: the frequency of the vibration
   double largest_sample = 0;             ///< largest sample of the pick-ups, as a fraction of full scale

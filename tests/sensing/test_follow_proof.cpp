@@ -1,8 +1,10 @@
+#include <array>
 #include <cmath>
 #include <complex>
 #include <cstdint>
 #include <functional>
 #include <numbers>
+#include <random>
 #include <vector>
 
 #include "station/audio/synth.hpp"
@@ -17,7 +19,7 @@ using core::ProofCause;
 namespace {
 
 constexpr int kRate = 192000;
-constexpr std::int64_t kPeriod = 96, kLength = 96000, kStart = 4800;
+constexpr std::int64_t kPeriod = 96, kStart = 4800;
 constexpr double pi = std::numbers::pi;
 
 /// A plate with one resonance: y = x + 2 r cos(w) y1 - r^2 y2, whose response is known exactly.
@@ -47,7 +49,8 @@ struct Room {
   std::int64_t played_late = 0;  // the gains act so many frames later than they say
   double scale = 1;
   double cubic = 0;  // distortion of the amplifier
-  std::int64_t lost_at = -1;
+  std::int64_t lost_at = -1, length = 96000;
+  Gain finger = [](auto) { return 1.0; };  // what it does to the level
 
   Plate plate() const { return {resonance_Hz, quality}; }
   double unit() const {
@@ -57,7 +60,7 @@ struct Room {
   audio::PreparedBurst burst() const {
     audio::Burst made;
     made.start_frame = kStart;
-    made.length_frames = kLength;
+    made.length_frames = length;
     made.ramp.frames = 4800;
     for (const double f : tones)
       made.tones.tones[static_cast<std::size_t>(made.tones.count++)] = {
@@ -81,7 +84,7 @@ struct Room {
     REQUIRE(synth.start(burst()));
     Plate world = plate();
     std::vector<double> drive, block(kPeriod);
-    const std::int64_t frames = kStart + kLength + 9600;
+    const std::int64_t frames = kStart + length + 9600;
     for (std::int64_t frame = 0; frame < frames; frame += kPeriod) {
       audio::GainPeriod gains{1, kPeriod, frame, {}};
       for (std::size_t k = 0; k < 8; ++k)
@@ -100,7 +103,7 @@ struct Room {
       state ^= state << 13, state ^= state >> 7, state ^= state << 17;
       const double dice = static_cast<double>(static_cast<std::int64_t>(state)) * 0x1p-63;
       captured.push_back(
-          static_cast<std::int32_t>(std::lround((scale * unit() * y + noise * dice) * 0x1p31)));
+          static_cast<std::int32_t>(std::lround((scale * finger(n) * unit() * y + noise * dice) * 0x1p31)));
     }
     for (std::int64_t n = 0; n < frames; n += 480)
       if (lost_at < 0 || n + 480 <= lost_at || n > lost_at)
@@ -113,6 +116,22 @@ struct Room {
 };
 
 double texture(std::int64_t n) { return 0.5 + 0.3 * std::sin(2 * pi * 50 * static_cast<double>(n) / kRate); }
+/// A sum of sines around 1, of this share (rms) and of random frequencies and phases in this range.
+Gain waves(std::mt19937_64& random, double rms, double lowest_Hz, double highest_Hz) {
+  constexpr std::size_t count = 6;
+  std::array<double, count> frequency_Hz{}, phase{};
+  for (std::size_t i = 0; i < count; ++i) {
+    frequency_Hz[i] = std::uniform_real_distribution(lowest_Hz, highest_Hz)(random);
+    phase[i] = std::uniform_real_distribution(0.0, 2 * pi)(random);
+  }
+  return [=](std::int64_t n) {
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i)
+      sum += std::sin(2 * pi * frequency_Hz[i] * static_cast<double>(n) / kRate + phase[i]);
+    return 1 + rms * std::sqrt(2.0 / count) * sum;
+  };
+}
+
 double edge(std::int64_t n) {
   return n < 50000 ? 0.2 : n > 50960 ? 0.8 : 0.2 + 0.6 * static_cast<double>(n - 50000) / 960;
 }
@@ -192,6 +211,44 @@ TEST_CASE("an envelope that is not the commanded one is refused or flagged, with
     CHECK(result.cause == ProofCause::gap);
     CHECK(result.lost_frames > 0);
   }
+}
+
+TEST_CASE("of 240 faultless bursts of weak to strong modulation, under a finger, none is flagged as late",
+          "[sensing][follow]") {
+  std::mt19937_64 random(5);
+  int beyond = 0, stated = 0, late = 0;
+  for (int k = 0; k < 240; ++k) {
+    Room room;
+    room.length = 38400;
+    // The finger's damping varies with its force: slowly, by 3 %.
+    room.finger = waves(random, 0.03, 1, 15);
+    const double depth = std::exp(std::uniform_real_distribution(std::log(0.003), std::log(0.3))(random));
+    const double fastest_Hz =
+        std::exp(std::uniform_real_distribution(std::log(5.0), std::log(200.0))(random));
+    const auto wave = waves(random, depth, 1, fastest_Hz);
+    const auto result = room.judged([&](std::int64_t n) { return 0.5 * wave(n); });
+    stated += result.envelope_lag_us ? 1 : 0;
+    beyond += result.envelope_lag_us && std::abs(*result.envelope_lag_us) >= 300 ? 1 : 0;
+    late += result.cause == ProofCause::late ? 1 : 0;
+  }
+  CAPTURE(beyond, stated);
+  CHECK(late == 0);
+  CHECK(stated > 20);
+}
+
+TEST_CASE("under the same finger, a strong modulation that is 500 us late is always flagged",
+          "[sensing][follow]") {
+  std::mt19937_64 random(6);
+  int late = 0;
+  for (int k = 0; k < 20; ++k) {
+    Room room;
+    room.finger = waves(random, 0.03, 1, 15);
+    room.played_late = 96;
+    const auto wave = waves(random, 0.3, 20, 80);
+    const auto result = room.judged([&](std::int64_t n) { return 0.5 * wave(n); });
+    late += result.envelope_lag_us && *result.envelope_lag_us > 400 && result.verdict != Proof::ok ? 1 : 0;
+  }
+  CHECK(late == 20);
 }
 
 TEST_CASE(
