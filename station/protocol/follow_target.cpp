@@ -54,17 +54,27 @@ void add_part(const FollowPart& from, const Factors& factors, double unit, follo
   follow::add(pattern, part);
 }
 
+bool has_power(const Noise& noise, double cycles_per_m) {
+  for (std::size_t i = 1; i < noise.spectrum.size(); ++i) {
+    const auto &a = noise.spectrum[i - 1], &b = noise.spectrum[i];
+    if (cycles_per_m < a.cycles_per_m || cycles_per_m > b.cycles_per_m) continue;
+    return (a.density > 0 && cycles_per_m < b.cycles_per_m) ||
+           (b.density > 0 && cycles_per_m > a.cycles_per_m);
+  }
+  return false;
+}
+
 }  // namespace
 
 int noise_samples(const Noise& noise, double length_m) {
   double highest = 0;
   for (const auto& point : noise.spectrum) highest = std::max(highest, point.cycles_per_m);
   const double wanted = std::ceil(kSamplesPerCycle * length_m * highest);
-  const bool power = std::any_of(noise.spectrum.begin(), noise.spectrum.end(), [&](const auto& point) {
-    return point.density > 0 && point.cycles_per_m * length_m >= 1;
-  });
-  if (!power || wanted > follow::kTableSamples) return 0;
-  return std::max(kFewestSamples, static_cast<int>(wanted));
+  if (!(wanted <= follow::kTableSamples)) return 0;
+  const int samples = std::max(kFewestSamples, static_cast<int>(wanted));
+  for (int k = 1; k <= samples / 4; ++k)  // the cycles of which add_noise() makes the noise
+    if (has_power(noise, k / length_m)) return samples;
+  return 0;
 }
 
 scene::FollowTarget follow_target(const Follow& follow, const Factors& factors,

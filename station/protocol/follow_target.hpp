@@ -14,7 +14,7 @@ scene::FollowTarget follow_target(const Follow& follow, const Factors& factors,
                                   const std::optional<std::pair<double, double>>& speed_mm_s);
 
 /// Number of samples of a noise that comes again after this length: 8 for each of its shortest cycles. 0 if
-/// they are too many for a pattern, or if it has no power.
+/// they are too many for a pattern, or if no whole number of cycles in this length has power.
 int noise_samples(const Noise& noise, double length_m);
 
 /// All expressions of what a scene follows. The pointers point into it.

@@ -93,8 +93,8 @@ Noise read_noise(TableReader& reader, const Reading& reading, const std::optiona
       reader, "spectrum", {&period_mm}, reading,
       [&](const Factors& factors) { return noise_samples(noise, 1e-3 * evaluate(*period_mm, factors)) > 0; },
       phrase(
-          "the noise has more than %1 samples (8 for each of its shortest cycles), or no power between one "
-          "cycle in period_mm and its end",
+          "the noise has more than %1 samples (8 for each of its shortest cycles), or no power at any whole "
+          "number of cycles in period_mm",
           {plain(follow::kTableSamples)}),
       phrase("a shorter \"period_mm\", or a spectrum that ends below %1 cycles per mm",
              {plain(core::number(highest))}));
@@ -231,6 +231,24 @@ Follow read_follow(const Value& table, const std::string& path, Findings& findin
   if (follow.parts.size() > static_cast<std::size_t>(follow::kMostParts))
     reader.problem("parts", phrase("\"parts\" has %1 parts", {plain(follow.parts.size())}),
                    phrase("allowed: at most %1", {plain(follow::kMostParts)}));
+  std::vector<const std::optional<Linear>*> periods_mm;
+  for (const auto& part : follow.parts)
+    if (part.noise) periods_mm.push_back(&part.period_mm);
+  if (!periods_mm.empty())
+    check_corners(
+        reader, "parts", periods_mm, reading,
+        [&](const Factors& factors) {
+          auto all = samples;
+          for (const auto& part : follow.parts)
+            if (part.noise)
+              all += static_cast<std::size_t>(
+                  noise_samples(*part.noise, 1e-3 * evaluate(*part.period_mm, factors)));
+          return samples > static_cast<std::size_t>(follow::kTableSamples) ||  // said below
+                 all <= static_cast<std::size_t>(follow::kTableSamples);
+        },
+        phrase("the tables and noises of all parts together have more than %1 samples",
+               {plain(follow::kTableSamples)}),
+        phrase("shorter periods of the noises, or spectra that end lower"));
   if (samples > static_cast<std::size_t>(follow::kTableSamples))
     reader.problem("parts", phrase("the tables of all parts together have %1 samples", {plain(samples)}),
                    phrase("allowed: at most %1", {plain(follow::kTableSamples)}));

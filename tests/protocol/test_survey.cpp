@@ -95,6 +95,42 @@ TEST_CASE("a scene that follows the finger is refused at its line on a rig that 
   CHECK(contains(problems(text, slow), "10.87 ms from the finger's place to the amplitude"));
 }
 
+TEST_CASE("values of a factor that no pattern can have are a problem at the line of follow",
+          "[protocol][follow]") {
+  // the ends of the range are possible, the middle is not: a texture in time with 0 Hz
+  auto text = replaced(source("grating-periods.toml"), "range = [0.0, 4.0]", "range = [-4.0, 4.0]");
+  text = replaced(text, "period_mm = \"6 + wider_mm\"", "frequency_Hz = \"wider_mm\"");
+  text = replaced(text, "levels = [4.0]", "levels = [0.0]");
+  const auto refused = problems(text, following());
+  CAPTURE(refused);
+  CHECK(contains(refused, "a texture needs cycles_per_m or cycles_per_s"));
+  const auto line =
+      std::count(text.begin(), text.begin() + static_cast<long>(text.rfind("follow = {")), '\n') + 1;
+  CHECK(contains(refused, "p.toml:" + std::to_string(line) + ":"));
+}
+
+TEST_CASE("noises are refused if they need too many samples together, or have power at no whole cycle",
+          "[protocol][follow]") {
+  const auto with = [](const std::string& one, const std::string& other) -> std::string {
+    try {
+      return problems(replaced(source("grating-periods.toml"), "follow = { friction = 1.0, parts = [",
+                               "follow = { friction = 1.0, parts = [" + one + other),
+                      following());
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+  };
+  const auto noise = [](const std::string& period, const std::string& low, const std::string& high) {
+    return "{ shape = \"noise\", from = 0.5, to = 0.6, period_mm = " + period +
+           ", spectrum = [{ cycles_per_mm = " + low + ", density = 1.0 }, { cycles_per_mm = " + high +
+           ", density = 1.0 }], begin_mm = 35.0, end_mm = 115.0 },";
+  };
+  const auto long_one = noise("80.0", "0.5", "2.0");  // 1280 samples
+  CHECK(with(long_one, "") == "");
+  CHECK(contains(with(long_one, long_one), "have more than 2048 samples"));
+  CHECK(contains(with(noise("10.0", "0.11", "0.19"), ""), "no power at any whole number of cycles"));
+}
+
 TEST_CASE("where a scene cannot reach what it asks for everywhere, the check says so and lets it be",
           "[protocol][follow]") {
   const auto text =
