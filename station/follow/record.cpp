@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace turnpoint::follow {
@@ -94,7 +95,8 @@ Summary summarise(std::span<const Recorded> periods, const Plan& plan, std::int6
   const Course course(periods, plan.timing.period_frames);
   const bool friction = plan.pattern.asked == Asked::friction;
   std::vector<Felt> felt;
-  double sum_asked = 0, sum_modelled = 0, sum_felt = 0, inside = 0;
+  double sum_asked = 0, sum_modelled = 0, sum_felt = 0;
+  std::vector<std::pair<double, double>> pairs;  // asked and felt
   const Recorded* before = nullptr;
   std::int64_t followed = 0;  // periods within the interval
   for (const Recorded& one : periods) {
@@ -112,16 +114,23 @@ Summary summarise(std::span<const Recorded> periods, const Plan& plan, std::int6
     if (!at) continue;
     felt.push_back({frame, one.update.felt});
     sum_asked += asked(*at), sum_modelled += modelled(*at), sum_felt += one.update.felt;
-    inside += std::abs(one.update.felt - asked(*at)) < kTolerance * asked(*at) ? 1 : 0;
+    pairs.emplace_back(asked(*at), one.update.felt);
   }
   Summary summary;
   const auto length = static_cast<double>(end_frame - first_frame);
   if (length > 0) summary.share = static_cast<double>(followed * plan.timing.period_frames) / length;
   if (felt.empty()) return summary;
   const auto n = static_cast<double>(felt.size());
-  summary.commanded = sum_modelled / n, summary.felt = sum_felt / n;
+  summary.felt = sum_felt / n;
+  if (plan.resting_known || friction) summary.commanded = sum_modelled / n;
   if (!friction) return summary;
-  summary.asked = sum_asked / n, summary.inside = inside / n;
+  const double scale = plan.resting_known || sum_modelled <= 0 ? 1 : sum_felt / sum_modelled;
+  *summary.commanded *= scale;
+  summary.asked = scale * sum_asked / n;
+  const auto is_inside = [scale](const auto& pair) {
+    return std::abs(pair.second - scale * pair.first) < kTolerance * scale * pair.first;
+  };
+  summary.inside = static_cast<double>(std::ranges::count_if(pairs, is_inside)) / n;
   if (const auto lag = lag_frames(felt, course, plan.timing)) summary.lag_s = *lag / plan.timing.rate_Hz;
   return summary;
 }

@@ -81,8 +81,8 @@ scene::FollowTarget follow_target(const Follow& follow, const Factors& factors,
                                   const std::optional<std::pair<double, double>>& speed_mm_s) {
   scene::FollowTarget target;
   target.unit = follow.unit, target.control = follow.control, target.resting_gain = follow.resting_gain;
-  target.resting_friction = value_of(follow.resting_friction, factors, 1);
-  const double unit = follow.unit == scene::FollowUnit::relative       ? target.resting_friction
+  if (follow.resting_friction) target.resting_friction = value_of(follow.resting_friction, factors, 1);
+  const double unit = follow.unit == scene::FollowUnit::relative       ? target.resting_friction.value_or(1)
                       : follow.unit == scene::FollowUnit::displacement ? 1e-6
                                                                        : 1;
   auto& pattern = target.pattern;

@@ -388,7 +388,7 @@ void check_promises(const DrivePlan& plan, const Plan& follow) {
 }
 
 double unit_of(const FollowTarget& target) {
-  return target.unit == FollowUnit::relative      ? target.resting_friction
+  return target.unit == FollowUnit::relative      ? target.resting_friction.value_or(1)
          : target.unit == FollowUnit::coefficient ? 1
                                                   : 1e-6;
 }
@@ -413,7 +413,8 @@ std::shared_ptr<const Plan> follow_plan(const rig::Rig& rig, const physics::Fric
       static_cast<double>(made->timing.period_frames) / made->timing.rate_Hz / follow::kGains;
   made->pattern = target.pattern;
   made->control = target.control;
-  made->resting_friction = target.resting_friction;
+  made->resting_friction = target.resting_friction.value_or(1);
+  made->resting_known = target.resting_friction.has_value() || target.unit == FollowUnit::coefficient;
   made->resting_gain = target.resting_gain;
   made->estimator.skin_m_per_N = rig.finger.skin_m_per_N;
   try {

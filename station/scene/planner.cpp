@@ -45,7 +45,7 @@ constexpr double kLevelStep = 0.005;    // ratio of frequencies for which levels
 std::string key_of(const FollowTarget& target) {
   auto key =
       fmt::format(" follow {} {} {} {} {}", static_cast<int>(target.unit), static_cast<int>(target.control),
-                  target.resting_friction, target.resting_gain, target.pattern.base);
+                  target.resting_friction.value_or(0), target.resting_gain, target.pattern.base);
   if (target.speeds_m_s) key += fmt::format(" at {} {}", target.speeds_m_s->first, target.speeds_m_s->second);
   for (int i = 0; i < target.pattern.part_count; ++i) {
     const auto& part = target.pattern.parts[static_cast<std::size_t>(i)];

@@ -52,7 +52,9 @@ struct FollowTarget {
   follow::Pattern pattern;
   FollowUnit unit = FollowUnit::relative;
   follow::Control control = follow::Control::open;
-  double resting_friction = 1;  ///< coefficient of friction of the surface at rest
+  /// coefficient of friction of the surface at rest; empty if the protocol does not state it, and then all
+  /// values of friction are relative to it
+  std::optional<double> resting_friction;
   double resting_gain = 0;      ///< without a finger, and after a fault
   /// the range of speeds that the protocol asks for; empty if it asks for none
   std::optional<std::pair<double, double>> speeds_m_s;

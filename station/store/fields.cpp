@@ -605,8 +605,9 @@ const Table<TrialRow>& trial_table() {
        field<&T::follow, &FollowRow::mu_asked>(
            {"mu_asked", "mu_asked",
             "Mean coefficient of friction that the scene presented last asks for at the finger, over the "
-            "times "
-            "at which the surface followed it and it slid; n/a if the scene asks for a displacement"}),
+            "times at which the surface followed it and it slid; n/a if the scene asks for a displacement. "
+            "Without resting_friction in the protocol, friction at rest is the one with which mu_commanded "
+            "equals mu_felt"}),
        field<&T::follow, &FollowRow::mu_commanded>(
            {"mu_commanded", "mu_commanded",
             "Mean coefficient of friction at these times by the friction table and the commanded envelope"}),

@@ -191,6 +191,27 @@ TEST_CASE(
   CHECK(std::abs(result.envelope_lag_us.value()) < 100);
 }
 
+TEST_CASE("if nobody states the friction at rest, it is the one that agrees with what was felt",
+          "[session][follow]") {
+  Lab lab;
+  const double resting = lab.plan.resting_friction;
+  REQUIRE(resting != Approx(1).margin(0.1));
+  lab.plan.resting_friction = 1, lab.plan.resting_known = false;
+  add_sine(lab.plan, 0.35 / resting, 0.65 / resting, 50);
+  lab.run(1.5);
+  core::TrialRow row;
+  add_followed(row, lab.followed, lab.follows, lab.ranges, 192000, lab.onset);
+  CHECK(row.follow.mu_asked.value() == Approx(0.5).margin(0.05));
+  CHECK(row.follow.mu_commanded.value() == Approx(row.follow.mu_felt.value()));
+  CHECK(row.follow.inside.value() > 0.8);
+  // the same trial, if 1 is taken for the truth
+  lab.plan.resting_known = true;
+  const std::vector taken{std::make_shared<const follow::Plan>(lab.plan)};
+  core::TrialRow wrong;
+  add_followed(wrong, lab.followed, taken, lab.ranges, 192000, lab.onset);
+  CHECK(wrong.follow.inside.value() < 0.2);
+}
+
 TEST_CASE("what interrupts following is named in the trial", "[session][follow]") {
   Lab lab;
   add_sine(lab.plan, 0.35, 0.65, 50);
