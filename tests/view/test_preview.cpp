@@ -70,9 +70,12 @@ TEST_CASE("the preview of a scene that follows the finger draws what is asked fo
     return -1.0;
   };
   for (const auto* line : {&asked, &reached}) {
-    CHECK(at(*line, 20) == Approx(1).margin(1e-6));
-    CHECK(at(*line, 50) == Approx(0.3).margin(1e-6));
-    CHECK(at(*line, 100) == Approx(0.7).margin(1e-6));
+    CHECK(at(*line, 10) == Approx(1).margin(1e-6));
+    CHECK(at(*line, 30) == Approx(0.75).margin(0.01));
+    CHECK(at(*line, 50) == Approx(0.5).margin(1e-6));
+    CHECK(at(*line, 67.5) == Approx(0.4).margin(0.01));  // half-way down to 0.3 at the edge
+    CHECK(at(*line, 82.5) == Approx(0.6).margin(0.01));  // half-way back from 0.7
+    CHECK(at(*line, 100) == Approx(0.5).margin(1e-6));
     CHECK(at(*line, 200) == Approx(1).margin(1e-6));
   }
   bool delay = false;
