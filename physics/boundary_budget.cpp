@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 
 #include "physics/centre_line.hpp"
@@ -432,17 +433,23 @@ LevelBudget spread(const Surface& surface, double f, double at_m, const std::vec
   return budget;
 }
 
+// A normal deviate away from its mean in both directions, and the probability of each.
+struct Deviate {
+  double away, weight;
+};
+// Gauss and Hermite's rules of three and of five points, without the mean.
+constexpr std::array three_points{Deviate{1.7320508075688772, 1.0 / 6}};
+constexpr std::array five_points{Deviate{1.355626179974266, 0.222075922005613},
+                                 Deviate{2.856970013872806, 0.011257411327721}};
+
 // Standard deviation of the level if only this parameter is uncertain; `here_dB` is the surface's own.
 double alone_dB(const Surface& surface, double f, double at_m, Parameter parameter, SolveLevel solve,
-                double here_dB) {
-  // Gauss and Hermite's five points of a normal deviate.
-  constexpr std::array points{1.355626179974266, 2.856970013872806},
-      weights{0.222075922005613, 0.011257411327721};
+                double here_dB, std::span<const Deviate> points) {
   double mean = 0, square = 0;
-  for (std::size_t i = 0; i < points.size(); ++i)
+  for (const Deviate& point : points)
     for (const double side : {-1.0, 1.0}) {
-      const double moved = solve(away(surface, parameter, side * points[i]), f, at_m) - here_dB;
-      mean += weights[i] * moved, square += weights[i] * moved * moved;
+      const double moved = solve(away(surface, parameter, side * point.away), f, at_m) - here_dB;
+      mean += point.weight * moved, square += point.weight * moved * moved;
     }
   return std::sqrt(std::max(0.0, square - mean * mean));
 }
@@ -478,8 +485,15 @@ LevelBudget level_budget(const Surface& surface, double f, double at_m) {
   for (const Parameter parameter : parameters(surface)) {
     const double sd = standard_deviation(surface, parameter);
     if (!(sd > 0)) continue;
-    double part_dB = by_thin ? alone_dB(surface, f, at_m, parameter, thin_level_dB, thin_here_dB) : 0;
-    if (part_dB <= little_dB) part_dB = alone_dB(surface, f, at_m, parameter, level_dB, here_dB);
+    const auto alone = [&](SolveLevel solve, double own_dB, std::span<const Deviate> points) {
+      return alone_dB(surface, f, at_m, parameter, solve, own_dB, points);
+    };
+    double part_dB = by_thin ? alone(thin_level_dB, thin_here_dB, five_points) : 0;
+    if (part_dB <= little_dB) {
+      // a part that is small by both rules is nearly linear in the deviate, for which three points are enough
+      if (by_thin) part_dB = alone(level_dB, here_dB, three_points);
+      if (!by_thin || part_dB > little_dB) part_dB = alone(level_dB, here_dB, five_points);
+    }
     budget.parts.push_back({parameter, sd, part_dB});
   }
   std::stable_sort(budget.parts.begin(), budget.parts.end(),

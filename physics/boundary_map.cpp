@@ -170,6 +170,21 @@ std::optional<double> solve_frequency_Hz(const Surface& surface, const MapOption
   return f && by_field ? field_frequency_Hz(smooth, options, x, *f) : f;
 }
 
+namespace {
+
+MapAnswer no_boundary(const MapOptions& options, double x, const Reach& reach) {
+  MapAnswer answer;
+  answer.edge = options.edge;
+  answer.model = options.model.value_or(Model::edge);
+  std::ostringstream text;
+  text << "no frequency puts this edge at " << x * 1e3 << " mm; it can lie from " << reach.first_m * 1e3
+       << " to " << reach.last_m * 1e3 << " mm";
+  answer.reason = text.str();
+  return answer;
+}
+
+}  // namespace
+
 BoundaryMap::BoundaryMap(const Surface& surface, const MapOptions& options) {
   check(surface, options);
   const Model model = options.model.value_or(Model::edge);
@@ -185,13 +200,6 @@ BoundaryMap& BoundaryMap::operator=(BoundaryMap&&) noexcept = default;
 std::optional<double> BoundaryMap::boundary_m(double f) const noexcept { return state_->position(f); }
 std::optional<double> BoundaryMap::frequency_Hz(double x) const noexcept { return state_->frequency(x); }
 Model BoundaryMap::model() const noexcept { return state_->model; }
-
-BoundaryMap::Reach BoundaryMap::reach_m() const noexcept {
-  const auto first = state_->position(state_->table.low_Hz);
-  const auto last =
-      std::isfinite(state_->table.high_Hz) ? state_->position(state_->table.high_Hz) : std::nullopt;
-  return {first.value_or(0), last.value_or(state_->surface.length_m)};
-}
 
 MapAnswer BoundaryMap::at_frequency(double f) const {
   const State& s = *state_;
@@ -229,20 +237,45 @@ MapAnswer BoundaryMap::at_frequency(double f) const {
 
 MapAnswer BoundaryMap::at_boundary(double x) const {
   const auto f = state_->frequency(x);
-  if (f) {
-    MapAnswer answer = at_frequency(*f);
-    answer.boundary_m = x;
-    return answer;
-  }
-  MapAnswer answer;
-  answer.edge = state_->options.edge;
-  answer.model = state_->model;
-  const auto [first, last] = reach_m();
-  std::ostringstream text;
-  text << "no frequency puts this edge at " << x * 1e3 << " mm; it can lie from " << first * 1e3 << " to "
-       << last * 1e3 << " mm";
-  answer.reason = text.str();
+  if (!f) return no_boundary(state_->options, x, boundary_reach_m(state_->surface, state_->options));
+  MapAnswer answer = at_frequency(*f);
+  answer.boundary_m = x;
   return answer;
+}
+
+Reach boundary_reach_m(const Surface& surface, const MapOptions& options) {
+  check(surface, options);
+  const Model model = options.model.value_or(Model::edge);
+  const Surface smooth = smooth_sides(surface);
+  const EdgeTable table = edge_limits(smooth, options, model);
+  // a closed form holds for all frequencies
+  const MapOptions::Band band = options.band.value_or(MapOptions::Band{0, table.high_Hz});
+  const double low_Hz = std::max(table.low_Hz, band.low_Hz), high_Hz = std::min(table.high_Hz, band.high_Hz);
+  if (!(low_Hz <= high_Hz)) throw no_such_edge(options.edge);
+  const auto at = [&](double f, double otherwise) {
+    std::optional<double> x;
+    if (table.closed && std::isfinite(f))
+      x = Taper(smooth).position_continued_m(table.constant * Dispersion(surface).cut_off_half_width_m(f));
+    else if (std::isfinite(f))
+      x = edge_at(smooth, options, f, model);
+    return std::clamp(x.value_or(otherwise), 0.0, surface.length_m);
+  };
+  return {at(low_Hz, 0), at(high_Hz, surface.length_m)};
+}
+
+MapAnswer answer_at_boundary(const Surface& surface, const MapOptions& options, double x) {
+  try {
+    if (const auto f = solve_frequency_Hz(surface, options, x)) {
+      MapOptions near = options;
+      near.band = MapOptions::Band{0.99 * *f, 1.01 * *f};
+      const MapAnswer answer = BoundaryMap(surface, near).at_boundary(x);
+      if (answer.frequency_Hz) return answer;
+    }
+  } catch (const std::logic_error&) {  // no boundary in this band, or no frequency with a cut-off at x
+  }
+  const Reach reach = boundary_reach_m(surface, options);
+  if (!reach.contains(x)) return no_boundary(options, x, reach);
+  return BoundaryMap(surface, options).at_boundary(x);
 }
 
 }  // namespace turnpoint::physics

@@ -74,12 +74,6 @@ class BoundaryMap {
 
   Model model() const noexcept;
 
-  // The positions between which the edge can lie.
-  struct Reach {
-    double first_m, last_m;
-  };
-  Reach reach_m() const noexcept;
-
  private:
   struct State;
   std::unique_ptr<const State> state_;
@@ -92,5 +86,16 @@ class BoundaryMap {
 // a map may find a frequency nevertheless.
 std::optional<double> solve_frequency_Hz(const Surface& surface, const MapOptions& options, double boundary_m,
                                          std::optional<double> near_Hz = {});
+
+// The positions between which an edge can lie. Takes a tenth of the time that a map takes. Throws Refused if
+// there is no such edge at the frequencies of `options`.
+struct Reach {
+  double first_m, last_m;
+  bool contains(double x_m) const { return first_m <= x_m && x_m <= last_m; }
+};
+Reach boundary_reach_m(const Surface& surface, const MapOptions& options);
+
+// The answer of a map to one boundary, by a map of the frequencies around it only.
+MapAnswer answer_at_boundary(const Surface& surface, const MapOptions& options, double boundary_m);
 
 }  // namespace turnpoint::physics

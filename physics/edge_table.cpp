@@ -18,10 +18,6 @@ namespace {
 using Piece = EdgeTable::Piece;
 constexpr std::size_t most_terms = EdgeTable::degree + 1;
 
-Refused no_such_edge(const Edge& edge) {
-  return Refused(make_statement("no-such-edge", "edge %1 does not exist on this surface", {format(edge)}));
-}
-
 // Returns how often a range of frequencies may be halved. The number is lower where one position takes long
 // to compute: for friction edges, and on a taper with many points, where the solution needs a step for every
 // point. On smoothed sides, which still wiggle, the ratio does not follow a polynomial closely in any case.
@@ -191,6 +187,10 @@ bool scale_free(const Surface& surface, const MapOptions& options) {
 
 }  // namespace
 
+Refused no_such_edge(const Edge& edge) {
+  return Refused(make_statement("no-such-edge", "edge %1 does not exist on this surface", {format(edge)}));
+}
+
 std::optional<double> EdgeTable::ratio(double f) const noexcept {
   if (closed) return constant;
   const double ln_f = std::log(f);
@@ -203,7 +203,7 @@ std::optional<double> EdgeTable::ratio(double f) const noexcept {
   return clenshaw(*piece, ln_f);
 }
 
-EdgeTable make_edge_table(const Surface& surface, const MapOptions& options, Model model) {
+EdgeTable edge_limits(const Surface& surface, const MapOptions& options, Model model) {
   const Builder builder(surface, options, model);
   const Taper taper(surface);
   const Dispersion dispersion(surface);
@@ -230,7 +230,13 @@ EdgeTable make_edge_table(const Surface& surface, const MapOptions& options, Mod
   if (lowest == survey.end()) throw no_such_edge(options.edge);
   table.low_Hz = lowest == survey.begin() ? *lowest : builder.limit(*lowest, *(lowest - 1));
   table.high_Hz = highest == survey.rbegin() ? *highest : builder.limit(*highest, *(highest - 1));
-  builder.fill(table, std::log(table.low_Hz), std::log(table.high_Hz), 0);
+  return table;
+}
+
+EdgeTable make_edge_table(const Surface& surface, const MapOptions& options, Model model) {
+  EdgeTable table = edge_limits(surface, options, model);
+  if (table.closed) return table;
+  Builder(surface, options, model).fill(table, std::log(table.low_Hz), std::log(table.high_Hz), 0);
   if (table.pieces.empty()) {
     throw Refused(make_statement("edge-not-tabulated", "edge %1 could not be tabulated on this surface",
                                  {format(options.edge)}));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "physics/boundary_map.hpp"
+#include "physics/statement.hpp"
 
 namespace turnpoint::physics {
 
@@ -27,6 +28,12 @@ struct EdgeTable {
 
   std::optional<double> ratio(double frequency_Hz) const noexcept;
 };
+
+Refused no_such_edge(const Edge& edge);
+
+// The table without its pieces: between which frequencies the edge exists takes a fraction of the time.
+// Throws Refused if it exists at no frequency.
+EdgeTable edge_limits(const Surface& surface, const MapOptions& options, Model model);
 
 // Builds and validates the table. Throws Refused if the edge exists at no frequency.
 EdgeTable make_edge_table(const Surface& surface, const MapOptions& options, Model model);

@@ -52,23 +52,31 @@ std::vector<FingerLoad> finger_load(const Surface& surface, double f, const std:
     load.x_m = x_m[all.size()];
     load.unloaded = disc.unloaded;
     load.mobility_m_per_Ns = i_omega * disc.receptance_m_per_N;
-    load.loaded = load.unloaded / (1.0 + finger.impedance_Ns_per_m * load.mobility_m_per_Ns);
+    load.loaded = load.under(finger);
     all.push_back(load);
   }
   return all;
 }
 
-std::optional<double> finger_edge_shift_m(const Surface& surface, double f, const Edge& edge,
+std::vector<double> finger_sweep_m(const Surface& surface) {
+  constexpr int points = 600;
+  std::vector<double> x;
+  for (int i = 0; i <= points; ++i) x.push_back(surface.length_m * 0.999 * i / points);
+  return x;
+}
+
+std::optional<double> finger_edge_shift_m(std::span<const FingerLoad> sweep, const Edge& edge,
                                           const Finger& finger) {
   if (edge.kind != Edge::Kind::peak && edge.kind != Edge::Kind::percent) {
     throw std::invalid_argument("finger edge shift: edge " + format(edge) + "; allowed: peak, percent edges");
   }
-  constexpr int points = 600;
+  if (sweep.size() < 3)
+    throw std::invalid_argument("finger edge shift: the loads at finger_sweep_m() are needed");
   std::vector<double> x, free, loaded;
-  for (int i = 0; i <= points; ++i) x.push_back(surface.length_m * 0.999 * i / points);
-  for (const FingerLoad& load : finger_load(surface, f, x, finger)) {
+  for (const FingerLoad& load : sweep) {
+    x.push_back(load.x_m);
     free.push_back(std::abs(load.unloaded));
-    loaded.push_back(std::abs(load.loaded));
+    loaded.push_back(std::abs(load.under(finger)));
   }
   const auto from = feature(x, free, edge), to = feature(x, loaded, edge);
   return from && to ? std::optional(*to - *from) : std::nullopt;

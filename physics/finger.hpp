@@ -2,6 +2,7 @@
 // The effect of a finger on the surface's vibration.
 #include <complex>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "physics/edge.hpp"
@@ -27,6 +28,10 @@ struct FingerLoad {
   std::complex<double> loaded;    // displacement under the finger of impedance Z: unloaded / (1 + Z mobility)
   std::complex<double> mobility_m_per_Ns;  // velocity of the free surface per unit of force on the disc
 
+  // Displacement under a finger of another impedance but with the same contact.
+  std::complex<double> under(const Finger& finger) const {
+    return unloaded / (1.0 + finger.impedance_Ns_per_m * mobility_m_per_Ns);
+  }
   // Fraction of the amplitude that remains under the finger.
   double share(const Finger& finger) const {
     return 1 / std::abs(1.0 + finger.impedance_Ns_per_m * mobility_m_per_Ns);
@@ -43,9 +48,11 @@ std::vector<FingerLoad> finger_load(const Surface& surface, double frequency_Hz,
 inline constexpr double finger_share_bound = 0.02;
 
 // Distance (m, positive towards the tip) from the free surface's edge to the edge that a moving finger feels.
-// The felt edge is the same feature, but of |loaded| as a function of the finger's position. Empty if either
-// edge does not exist. Only for percent and peak edges.
-std::optional<double> finger_edge_shift_m(const Surface& surface, double frequency_Hz, const Edge& edge,
+// The felt edge is the same feature, but of the displacement under the finger as a function of its position.
+// `sweep` are the loads at finger_sweep_m(), which are the same for fingers that differ only in impedance.
+// Empty if either edge does not exist. Only for percent and peak edges.
+std::vector<double> finger_sweep_m(const Surface& surface);
+std::optional<double> finger_edge_shift_m(std::span<const FingerLoad> sweep, const Edge& edge,
                                           const Finger& finger);
 
 }  // namespace turnpoint::physics

@@ -134,8 +134,11 @@ Eigen::VectorXcd lift_load(const ModalSetup& s, const PistonLift& lift, const Mo
   const Quadrature along = gauss_legendre(lift_nodes), across = gauss_legendre(lift_nodes + e.left);
   const int bubbles_end = s.along.count() - s.along.per_vertex;
   Eigen::MatrixXd shapes(e.left, static_cast<Eigen::Index>(across.x.size()));
-  for (std::size_t j = 0; j < across.x.size(); ++j)
-    shapes.col(static_cast<Eigen::Index>(j)) = across.w[j] * bubbles_at(e.left, 1, Parity::even, across.x[j]);
+  for (std::size_t j = 0; j < across.x.size(); ++j) {
+    Eigen::VectorXd shape = Eigen::VectorXd::Zero(e.left);
+    add_bubbles(shape, 1, Parity::even, across.x[j], across.w[j]);
+    shapes.col(static_cast<Eigen::Index>(j)) = shape;
+  }
   Eigen::VectorXcd load = Eigen::VectorXcd::Zero(bubbles_end * e.left + e.right);
   Eigen::VectorXcd source(shapes.cols());
   // the closed form of the lift has an arc tangent and its derivatives at each point
@@ -265,5 +268,7 @@ std::unique_ptr<CentreLine> make_modal_line(const Surface& surface, double f, Lo
     throw std::invalid_argument("degree is " + std::to_string(*resolution.degree) + "; allowed: 4 to 12");
   return std::make_unique<ModalLine>(smooth_sides(surface), f, losses, resolution);
 }
+
+void require_modal_line(const Surface& surface, double f) { require_solvable(smooth_sides(surface), f, {}); }
 
 }  // namespace turnpoint::physics

@@ -34,4 +34,8 @@ struct ModalResolution {
 std::unique_ptr<CentreLine> make_modal_line(const Surface& surface, double frequency_Hz, Losses losses,
                                             const ModalResolution& resolution);
 
+// Throws std::domain_error if make_modal_line() at the default resolution would, because the field has too
+// many waves across the surface.
+void require_modal_line(const Surface& surface, double frequency_Hz);
+
 }  // namespace turnpoint::physics

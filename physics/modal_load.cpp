@@ -28,7 +28,7 @@ struct Strip {
   Eigen::VectorXd drive;  // unknowns of the drive edge
   // number of functions that are ordered before those of the deflection (rotations of a thick plate)
   int other_functions;
-  int power;  // exponent of (1 - eta^2) in the deflection's functions, see bubbles_at()
+  int power;  // exponent of (1 - eta^2) in the deflection's functions, see add_bubbles()
   Parity parity;
   std::complex<double> compliance;  // factor that turns 1 / matrix into metres per newton
 };
@@ -57,6 +57,9 @@ class Chain {
     Condensed element;
     Eigen::PartialPivLU<Matrix> right_stiffness;  // stiffness of the right vertex and everything beyond it
     Matrix pull;  // unknowns of the right vertex are -pull times those of the left one
+    // A load on the right vertex, after elimination of everything beyond it, adds right^T compliance right to
+    // load^T matrix^-1 load.
+    Matrix compliance;
   };
   std::vector<Link> links_;
 };
@@ -78,31 +81,34 @@ Chain::Chain(const Strip& strip) {
     }
     tail = left;
   }
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    Link& link = links_[i];
+    if (link.right == 0) continue;
+    link.compliance = link.right_stiffness.inverse();
+    if (i > 0) link.compliance += link.pull * links_[i - 1].compliance * link.pull.transpose();
+  }
 }
 
 std::complex<double> Chain::quadratic(std::size_t first, const std::vector<Vector>& loads) const {
   std::complex<double> sum = 0;
   // the load that elimination has left on the vertex shared with the next element farther out
   Vector vertex;
-  for (std::size_t i = first + loads.size(); i-- > 0;) {
+  for (std::size_t i = first + loads.size(); i-- > first;) {
     const Link& link = links_[i];
-    Vector left = Vector::Zero(link.left), right = Vector::Zero(link.right);
-    if (vertex.size() > 0) right = vertex;
-    if (i >= first) {
-      const Vector& load = loads[i - first];
-      const Vector bubbles =
-          link.element.reduce(load.segment(link.left, load.size() - link.left - link.right));
-      sum += link.element.quadratic(bubbles);
-      const Vector ends = link.element.load_on_ends(bubbles);
-      left = load.head(link.left) + ends.head(link.left);
-      right += load.tail(link.right) + ends.tail(link.right);
-    }
+    const Vector& load = loads[i - first];
+    const Vector bubbles = link.element.reduce(load.segment(link.left, load.size() - link.left - link.right));
+    sum += link.element.quadratic(bubbles);
+    const Vector ends = link.element.load_on_ends(bubbles);
+    Vector left = load.head(link.left) + ends.head(link.left);
     if (link.right > 0) {
+      Vector right = load.tail(link.right) + ends.tail(link.right);
+      if (vertex.size() > 0) right += vertex;
       sum += (right.transpose() * link.right_stiffness.solve(right))(0, 0);
       left -= link.pull.transpose() * right;
     }
     vertex = left;
   }
+  if (first > 0) sum += (vertex.transpose() * links_[first - 1].compliance * vertex)(0, 0);
   return sum;
 }
 
@@ -131,11 +137,12 @@ Strip thick_strip(const Surface& surface, double f, Parity parity) {
   const SectionBasis section = mindlin_polynomials(plate, each, parity);
   const std::complex<double> loss = std::pow(Dispersion(plate).loss(f, plate.quality_factor), 4);
   const std::complex<double> omega2 = std::pow(2 * std::numbers::pi * f, 2) * loss;
+  const SectionAssembler assembler(section, setup, omega2);
   std::vector<Matrix> matrices;
   for (ModalElement& e : elements) {
     e.left = e.right = static_cast<int>(section.count());
-    const SectionElement one = section_element(section, setup, e);
-    matrices.push_back(one.stiffness - omega2 * one.mass);
+    const SectionElement one = assembler.element(e);
+    matrices.push_back(one.real + std::complex<double>(0, 1) * one.imaginary);
   }
   elements.back().right = 0;
   const Eigen::Index kept = matrices.back().rows() - section.count();
@@ -202,9 +209,11 @@ Eigen::VectorXd across_disc(const Strip& strip, int functions, double half_width
   const Quadrature rule = gauss_legendre(14);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(functions);
   if (!(from < to)) return sum;
-  for (std::size_t i = 0; i < rule.x.size(); ++i)
-    sum += (to - from) * rule.w[i] *
-           bubbles_at(functions, strip.power, strip.parity, (from + (to - from) * rule.x[i]) / half_width);
+  // of functions that are symmetric about the middle of the disc, one half of the points is enough
+  const bool half = from == -to && strip.parity == Parity::even;
+  for (std::size_t i = half ? rule.x.size() / 2 : 0; i < rule.x.size(); ++i)
+    add_bubbles(sum, strip.power, strip.parity, (from + (to - from) * rule.x[i]) / half_width,
+                (half ? 2 : 1) * (to - from) * rule.w[i]);
   return sum;
 }
 

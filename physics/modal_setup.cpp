@@ -41,6 +41,14 @@ int spare_functions(const Dispersion& dispersion, double f, const ModalResolutio
   return resolution.spare_functions + static_cast<int>(std::min(8.0, std::ceil(layers / 10)));
 }
 
+// The number of transverse functions at the drive edge.
+int functions_across(const Dispersion& dispersion, const Surface& surface, double f,
+                     const ModalResolution& resolution) {
+  return spare_functions(dispersion, f, resolution) + 2 +
+         functions_for(dispersion.wavenumber_per_m(f) * Taper(surface).half_width_m(0),
+                       dispersion.clamped_bending());
+}
+
 TransverseBasis make_across(const Surface& surface, double f, const ModalResolution& resolution) {
   const Dispersion dispersion(surface);
   const double k = dispersion.wavenumber_per_m(f);
@@ -50,11 +58,7 @@ TransverseBasis make_across(const Surface& surface, double f, const ModalResolut
     return TransverseBasis::clamped_shape(
         k * w, w * std::sqrt(k * k + dispersion.tension_N_per_m / dispersion.stiffness_N_m));
   }
-  const int functions = spare_functions(dispersion, f, resolution) + 2 +
-                        functions_for(k * Taper(surface).half_width_m(0), plate);
-  if (functions > most_functions)
-    throw std::domain_error("the two-dimensional field would need more than 60 functions across the strip");
-  return TransverseBasis::polynomials(functions, plate ? 2 : 1);
+  return TransverseBasis::polynomials(functions_across(dispersion, surface, f, resolution), plate ? 2 : 1);
 }
 
 // Shortens an element in which a membrane narrows by a large factor, as at a step in a tabulated taper.
@@ -105,11 +109,17 @@ void require_work(const Surface& surface, double f) {
 
 }  // namespace
 
+void require_solvable(const Surface& surface, double f, const ModalResolution& resolution) {
+  require_work(surface, f);
+  if (functions_across(Dispersion(surface), surface, f, resolution) > most_functions)
+    throw std::domain_error("the two-dimensional field would need more than 60 functions across the strip");
+}
+
 ModalSetup make_modal_setup(const Surface& surface, double f, Losses losses,
                             const ModalResolution& resolution) {
   const Dispersion dispersion(surface);
   const double k = dispersion.wavenumber_per_m(f);
-  if (resolution.across == ModalResolution::Across::polynomials) require_work(surface, f);
+  if (resolution.across == ModalResolution::Across::polynomials) require_solvable(surface, f, resolution);
   const std::complex<double> lossy =
       losses == Losses::kept ? k * dispersion.loss(f, surface.quality_factor) : k;
   const bool plate = dispersion.clamped_bending();

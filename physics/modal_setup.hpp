@@ -19,6 +19,10 @@ struct ModalSetup {
   int spare;         // number of transverse functions beyond those that follow waves across the strip
 };
 
+// Throws std::domain_error if the two-dimensional field is too large to be solved on these sides: too many
+// functions across the strip, or too much work.
+void require_solvable(const Surface& smooth, double frequency_Hz, const ModalResolution& resolution);
+
 ModalSetup make_modal_setup(const Surface& surface, double frequency_Hz, Losses losses,
                             const ModalResolution& resolution);
 

@@ -318,12 +318,11 @@ ModeBound mode_bound(const Surface& given, double f, double conditioning, std::o
   const double even = std::max(taper_is.reach_m, edge - x0) / (2 * cut);
   bound.equation_m = cut * (curvature_shift * bend * even * even +
                             slope_shift * (edge_m.value_or(x0) < x0 ? 2 : 1) * std::pow(steepest, 3));
-  if (!membrane) {
-    const double away = (edge_m.value_or(x0) - x0) / airy_length;
-    bound.equation_m +=
-        cut * (plate_shift_of(surface, dispersion, cut) * (1 + away * away + 0.5 * std::pow(away, 4)) +
-               plate_slope_shift * steepest * steepest);
-  }
+  bound.away = (edge_m.value_or(x0) - x0) / airy_length;
+  if (!membrane)
+    bound.equation_m += cut * (plate_shift_of(surface, dispersion, cut) *
+                                   (1 + std::pow(bound.away, 2) + 0.5 * std::pow(bound.away, 4)) +
+                               plate_slope_shift * steepest * steepest);
   // Strong loss moves the last maximum towards the drive edge. The edges beyond it are then less steep, and
   // the same error of the field moves them farther.
   const double stretched = (x0 - last_peak_m.value_or(x0)) / (1.5 * airy_length);

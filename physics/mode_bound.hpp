@@ -38,7 +38,10 @@ struct ModeBound {
   // factor by which resonance makes the higher modes on the surface larger than the drive edge alone would
   double resonance = 1;
   double steepest = 0;  // largest |W'| between the drive edge and the turning point
-  SideError sides;      // what the above include because of the sides
+  // distance of the edge from the turning point towards the tip, divided by the Airy length of the decay
+  // there
+  double away = 0;
+  SideError sides;  // what the above include because of the sides
 };
 
 // Computes the bounds. `conditioning` is CentreLine::drive_conditioning of the first mode. `last_peak_m` is

@@ -32,6 +32,20 @@ constexpr double floor = 1e-8;
 
 constexpr double points_per_radian = 3;
 
+// The errors that are assumed if no higher mode resonates. The values are above the largest errors found on
+// random surfaces. Plates under tension have thin boundary layers along their clamped sides. The field of a
+// clamped plate's piston jumps at the corners of the drive edge. A coarse solution is never assumed to be
+// better than one at the default resolution; its phase at the drive edge is less exact than |v|.
+constexpr double membrane_accuracy = 2e-3, plate_accuracy = 2.5e-3, tense_plate_accuracy = 5e-3,
+                 thick_plate_accuracy = 4e-3, plate_piston_accuracy = 0.15;
+constexpr double coarse_plate_accuracy = 5e-3, coarse_membrane_phase = 5e-3, coarse_plate_phase = 3e-2;
+// how much the square of the largest slope of the sides adds to that, relative to it
+constexpr double steep_share = 0.25;
+// What a resonance of a higher mode adds. That of a coarse solution shows in its difference from `mode`; this
+// is twice what the margins of that difference did not hold.
+constexpr double membrane_resonance = 5e-4, plate_resonance = 6e-3, thick_plate_resonance = 6e-4,
+                 coarse_resonance = 1e-4;
+
 // A solution, scaled to a drive edge whose centre moves by 1.
 struct Line {
   const CentreLine* line;
@@ -67,6 +81,27 @@ std::optional<double> edge_m(const Line& one, const Edge& edge) {
 bool modes_bound_applies(const Surface& surface) {
   if (surface.theory == PlateTheory::elastic) return false;
   return surface.drive != DriveShape::piston || !Dispersion(surface).clamped_bending();
+}
+
+AssumedError assumed_error(const Surface& surface, const ModeBound& first, Resolution resolution) {
+  const bool plate = Dispersion(surface).clamped_bending(), thick = surface.theory != PlateTheory::kirchhoff,
+             coarse = resolution == Resolution::coarsest;
+  double quiet = !plate                                ? membrane_accuracy
+                 : surface.drive == DriveShape::piston ? plate_piston_accuracy
+                 : surface.tension_Pa > 0              ? tense_plate_accuracy
+                 : thick                               ? thick_plate_accuracy
+                                                       : plate_accuracy;
+  double phase = quiet;
+  if (coarse) {
+    if (plate) quiet = std::max(quiet, coarse_plate_accuracy);
+    phase = std::max(quiet, plate ? coarse_plate_phase : coarse_membrane_phase);
+  }
+  const double steep = plate && !coarse ? 1 : 1 + steep_share * first.steepest * first.steepest;
+  const double resonance = (coarse  ? coarse_resonance
+                            : plate ? thick ? thick_plate_resonance : plate_resonance
+                                    : membrane_resonance) *
+                           (first.resonance - 1);
+  return {quiet * steep + resonance, phase * steep + resonance};
 }
 
 std::unique_ptr<CentreLine> make_compared_line(const Surface& surface, double f, Comparison comparison) {
@@ -125,6 +160,8 @@ std::optional<LineDifference> line_difference(const Surface& surface, double f, 
   const auto other = edge_m(b, edge);
   if (apart.at_m.has_value() != other.has_value()) apart.edge_m = surface.length_m;
   if (apart.at_m && other) apart.edge_m = std::abs(*apart.at_m - *other);
+  const double far_m = 0.5 * cut_off_half_width_m(surface, f);
+  apart.jump = apart.edge_m > far_m || (a.peak_m && std::abs(*a.peak_m - *b.peak_m) > far_m);
   return apart;
 }
 
@@ -148,18 +185,23 @@ std::optional<ModesBound> modes_bound(const Surface& surface, double f, const Ed
     return {coarsest_profile_margin, thick ? thick_coarsest_share : coarsest_share};
   };
   const Factors shape = factors(apart->shape), drive = factors(apart->drive);
+  // Which of two different maxima is the last one decides a small error. Then the level and the edge may be
+  // those of either solution, however close the two are elsewhere.
+  const auto share = [&](const Factors& of) { return apart->jump ? std::max(1.0, of.share) : of.share; };
   ModesBound bound;
-  bound.shape = shape.profile * apart->shape + shape.share * floor;
-  bound.drive = drive.profile * apart->drive + drive.share * floor;
-  bound.level_dB = drive.share * 8.686 *
-                   (peak_margin * apart->ln_gain +
-                    level_share * steepness(apart->peak_m.value_or(0)) * apart->near_drive + floor);
+  bound.jump = apart->jump;
+  bound.shape = shape.profile * apart->shape + floor;
+  bound.drive = drive.profile * apart->drive + floor;
+  bound.level_dB =
+      8.686 * (share(drive) * (peak_margin * apart->ln_gain +
+                               level_share * steepness(apart->peak_m.value_or(0)) * apart->near_drive) +
+               floor);
   if (edge.kind == Edge::Kind::turning) return bound;
   const double cut = cut_off_half_width_m(surface, f);
+  const double near_m =
+      cut * position_share * (apart->at_m ? steepness(*apart->at_m) : 1) * apart->near_shape;
   bound.position_m =
-      shape.share *
-      (cut * (position_share * (apart->at_m ? steepness(*apart->at_m) : 1) * apart->near_shape + floor) +
-       std::min(edge_margin * apart->edge_m, surface.length_m));
+      cut * floor + std::min(share(shape) * (near_m + edge_margin * apart->edge_m), surface.length_m);
   return bound;
 }
 

@@ -4,6 +4,7 @@
 
 #include "physics/centre_line.hpp"
 #include "physics/edge.hpp"
+#include "physics/mode_bound.hpp"
 #include "physics/surface.hpp"
 
 namespace turnpoint::physics {
@@ -13,7 +14,19 @@ struct ModesBound {
   double drive = 0;       // error of |v| if v(0) is set to one, relative to the largest value
   double level_dB = 0;    // error of the ratio of |v| at the last maximum to |v(0)|
   double position_m = 0;  // error of the edge's position
+  bool jump = false;      // true if the two solutions have different last maxima, see LineDifference
 };
+
+// The error that is assumed of a solution of `modes` before it is compared with another, for the default
+// resolution and for the coarsest one: of |v| relative to the last maximum, and of the wave at the drive
+// edge, relative to the envelope of the standing wave there. `first` is the bound of the first mode on the
+// same surface, which says how steep the sides are and how much a higher mode may resonate. Where the
+// coarsest solution differs from `mode`, a quarter of the difference may add to its error.
+struct AssumedError {
+  double shape, drive;
+};
+enum class Resolution { usual, coarsest };
+AssumedError assumed_error(const Surface& surface, const ModeBound& first, Resolution resolution);
 
 // True if the error of `modes` can be bounded by comparing two solutions. It cannot for a clamped plate that
 // is driven by a piston, because both solutions have much the same error at the corners.
@@ -38,6 +51,9 @@ struct LineDifference {
   double ln_gain = 0;                     // of the logarithm of |v| at the last maximum over |v(0)|
   double edge_m = 0;  // of the edge's position; the surface's length if only one of them has the edge
   std::optional<double> peak_m, at_m;  // last maximum and edge of the first
+  // True if the last maxima or the edges are farther apart than half of the cut-off half-width, or only one
+  // of the two has the edge. They are then not the same, and the difference is no measure of a small error.
+  bool jump = false;
   // how far |v| of `modes` falls from its last maximum towards the drive edge before it rises again, relative
   // to that maximum
   double fall = 0;

@@ -12,6 +12,7 @@
 #include "physics/edge_feature.hpp"
 #include "physics/gate.hpp"
 #include "physics/map_bounds.hpp"
+#include "physics/modal_field.hpp"
 #include "physics/mode_bound.hpp"
 #include "physics/modes_bound.hpp"
 
@@ -37,24 +38,14 @@ constexpr double hopeless = 8;
 constexpr double unknown = 2, unknown_dB = 120;
 // An edge that friction defines lies between the last maximum and this fraction of it.
 constexpr double faint = 0.02;
-// Error of `modes` that is assumed before it is solved, if no higher mode resonates. The values are above the
-// largest errors found on random surfaces. Plates under tension have thin boundary layers along their clamped
-// sides. The field of a clamped plate's piston jumps at the corners of the drive edge.
-constexpr double membrane_accuracy = 2e-3, plate_accuracy = 2.5e-3, tense_plate_accuracy = 5e-3,
-                 thick_plate_accuracy = 4e-3, plate_piston_accuracy = 0.15;
-// how much the square of the largest slope of the sides adds to that on a membrane, relative to it
-constexpr double steep_share = 0.25;
-// Error that is assumed of the coarser solution with which `mode` is compared, if no higher mode resonates;
-// of its wave at the drive edge, whose phase is less exact; and what a resonance adds. The largest
-// differences between coarse solutions and `modes` that the margins above do not hold were half of these.
-constexpr double coarse_accuracy = 2e-3, coarse_thick_accuracy = 5e-3, coarse_membrane_phase = 5e-3,
-                 coarse_plate_phase = 3e-2, coarse_resonance = 1e-4;
-// how much a resonance of a higher mode adds to the assumed error of `modes`
-constexpr double membrane_resonance = 5e-4, plate_resonance = 6e-3, thick_plate_resonance = 6e-4;
 // shift of an edge relative to the cut-off half-width, divided by the error of `modes`; larger with a quality
 // factor of the wave below 30, because the field is then less steep at its edges. On clamped thin plates the
 // largest shift found was 0.28 of the error that is assumed.
 constexpr double edge_share = 0.8, plate_edge_share = 0.32, lossy_edge_share = 1.2, lossy_below = 30;
+// These shares were found for edges at half of the last maximum, which are mostly nearer to the turning point
+// than this many Airy lengths. In a coarse solution, edges farther out move farther, as those of `mode` do
+// (mode_bound.cpp), and so do the maximum and edges that are higher than this level.
+constexpr double usual_away = 0.5, high_edge = 0.7, high_edge_growth = 2.5;
 
 // Time of an evaluation on one 3 GHz core. The formulas are fitted to measurements by `turnpoint-bench
 // physics`.
@@ -142,18 +133,13 @@ bool is_thin_clamped(const Surface& surface) {
          surface.tension_Pa <= 0 && surface.theory == PlateTheory::kirchhoff;
 }
 
-// The error of |v| that is assumed of `modes` before it is solved, if the drive edge moves by one.
-double modes_accuracy(const Surface& surface, const ModeBound& bound) {
-  const double resonance = bound.resonance - 1;
-  if (!Dispersion(surface).clamped_bending())
-    return membrane_accuracy * (1 + steep_share * bound.steepest * bound.steepest) +
-           membrane_resonance * resonance;
-  const bool thick = surface.theory != PlateTheory::kirchhoff;
-  const double quiet = surface.drive == DriveShape::piston ? plate_piston_accuracy
-                       : surface.tension_Pa > 0            ? tense_plate_accuracy
-                       : thick                             ? thick_plate_accuracy
-                                                           : plate_accuracy;
-  return quiet + (thick ? thick_plate_resonance : plate_resonance) * resonance;
+// How much farther than an edge at half of the last maximum a coarse solution may move this one.
+double edge_growth(const Reference& reference) {
+  const Edge& edge = reference.edge;
+  if (edge.kind == Edge::Kind::peak || (edge.kind == Edge::Kind::percent && edge.level > high_edge))
+    return high_edge_growth;
+  const auto grown = [](double away) { return 1 + away * away + 0.5 * std::pow(away, 4); };
+  return grown(std::max(usual_away, reference.bound.away)) / grown(usual_away);
 }
 
 // Adds the error that comes from the sides, which the two-dimensional field has too.
@@ -165,20 +151,21 @@ void add_sides(RungEstimate& e, const PlanRequest& request, const Reference& ref
   if (reference.edge.kind != Edge::Kind::turning) e.boundary_bound_m += sides.position_m;
 }
 
-// The error bounds of a solution of the two-dimensional field whose |v| is wrong by `accuracy` if the drive
-// edge moves by one, and whose wave at the drive edge by `phase`. `conditioning` says how much the field is
-// larger than the motion of the drive edge.
+// The error bounds of a solution of the two-dimensional field whose error is assumed, see assumed_error().
+// `conditioning` says how much the field is larger than the motion of the drive edge.
 RungEstimate assumed_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference,
-                              double accuracy, double phase, double conditioning) {
+                              const ModeBound& first, Resolution resolution, double conditioning) {
+  const AssumedError assumed = assumed_error(surface, first, resolution);
   RungEstimate e;
   e.cost_s = cost_s(surface, reference.f, Model::modes, request.points);
   const bool drive = request.normalise != Normalise::peak;
-  e.amplitude_bound = drive ? phase * conditioning : accuracy;
-  e.level_bound_dB = 20 * std::log10(1 + phase * conditioning);
+  e.amplitude_bound = drive ? assumed.drive * conditioning : assumed.shape;
+  e.level_bound_dB = 20 * std::log10(1 + assumed.drive * conditioning);
   const bool lossy = Dispersion(surface).wave_quality(reference.f, surface.quality_factor) < lossy_below;
   const double share = lossy ? lossy_edge_share : is_thin_clamped(surface) ? plate_edge_share : edge_share;
-  e.boundary_bound_m =
-      accuracy * share * cut_off_half_width_m(surface, reference.f) + placed_elsewhere_m(request, reference);
+  const double growth = resolution == Resolution::coarsest ? edge_growth(reference) : 1;
+  e.boundary_bound_m = assumed.shape * share * growth * cut_off_half_width_m(surface, reference.f) +
+                       placed_elsewhere_m(request, reference);
   e.reason = "two-dimensional field at its default resolution";
   add_sides(e, request, reference);
   return e;
@@ -187,8 +174,8 @@ RungEstimate assumed_estimate(const Surface& surface, const PlanRequest& request
 // Estimates the error bounds of the model `modes` without solving it. How high the field is, the first mode
 // tells, but not on a clamped plate on which its error exceeds the field; there nothing can be assumed.
 RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference) {
-  const double accuracy = modes_accuracy(surface, reference.bound);
-  RungEstimate e = assumed_estimate(surface, request, reference, accuracy, accuracy, reference.conditioning);
+  RungEstimate e = assumed_estimate(surface, request, reference, reference.bound, Resolution::usual,
+                                    reference.conditioning);
   if (reference.bound.shape > 1 && Dispersion(surface).clamped_bending() && modes_bound_applies(surface)) {
     if (request.normalise != Normalise::peak) e.amplitude_bound += unknown;
     e.level_bound_dB += unknown_dB;
@@ -216,12 +203,13 @@ RungEstimate compared_modes_estimate(const Surface& surface, const PlanRequest& 
   if (comparison != Comparison::coarsest || !bound) return found;
   ModeBound without = reference.bound;
   without.resonance = 1;
-  const double quiet = modes_accuracy(surface, without);
   const double conditioning =
       std::max(reference.conditioning, modes.drive_conditioning(wavenumber_per_m(surface, reference.f)));
-  const RungEstimate assumed = assumed_estimate(surface, request, reference, quiet, quiet, conditioning);
+  const RungEstimate assumed =
+      assumed_estimate(surface, request, reference, without, Resolution::usual, conditioning);
   const auto better = [](double& one, double other) { one = std::min(one, resonant_share * one + other); };
   better(found.amplitude_bound, assumed.amplitude_bound);
+  if (bound->jump) return found;
   better(found.level_bound_dB, assumed.level_bound_dB);
   better(found.boundary_bound_m, assumed.boundary_bound_m);
   return found;
@@ -238,7 +226,10 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
   if (model == Model::modes && surface.theory != PlateTheory::kirchhoff &&
       surface.drive == DriveShape::piston)
     throw std::domain_error("model modes of a thick plate is not available for drive piston");
-  if (model == Model::modes) return modes_estimate(surface, request, reference);
+  if (model == Model::modes) {
+    require_modal_line(surface, reference.f);
+    return modes_estimate(surface, request, reference);
+  }
   const ModeBound& bound = reference.bound;
   e.amplitude_bound = (drive ? bound.drive : bound.shape) +
                       rounding_error(surface, reference.f) * (drive ? reference.conditioning : 1);
@@ -326,21 +317,16 @@ RungEstimate compared_modes(const Surface& surface, const PlanRequest& request,
 // The error bounds of `mode` by comparison with coarse solutions of `modes`.
 RungEstimate coarsely_compared_mode(const Surface& surface, const PlanRequest& request,
                                     const std::vector<Reference>& references, const SolvedLines& coarse) {
-  const double phase = Dispersion(surface).clamped_bending() ? coarse_plate_phase : coarse_membrane_phase;
-  const double quiet = surface.theory == PlateTheory::mindlin ? coarse_thick_accuracy : coarse_accuracy;
   RungEstimate all;
   all.model = Model::mode;
   for (std::size_t i = 0; i < references.size(); ++i) {
     const Reference& one = references[i];
     const double conditioning =
         std::max(one.conditioning, coarse[i]->drive_conditioning(wavenumber_per_m(surface, one.f)));
-    const double resonance = coarse_resonance * (one.bound.resonance - 1);
-    const double steep = 1 + steep_share * one.bound.steepest * one.bound.steepest;
-    const double accuracy = steep * quiet + resonance;
     const RungEstimate own =
-        assumed_estimate(surface, request, one, accuracy, steep * phase + resonance, conditioning);
-    const Margins margins{field_margin, point_margin, std::max(certain_fall, 4 * accuracy),
-                          largest_difference};
+        assumed_estimate(surface, request, one, one.bound, Resolution::coarsest, conditioning);
+    const double shape = assumed_error(surface, one.bound, Resolution::coarsest).shape;
+    const Margins margins{field_margin, point_margin, std::max(certain_fall, 4 * shape), largest_difference};
     merge(all, compared_mode_estimate(surface, request, one, *coarse[i], own, margins));
   }
   all.reason = "first transverse mode with loss, compared with a coarse two-dimensional field";
@@ -400,18 +386,12 @@ bool hopeful(const Surface& surface, const PlanRequest& request, const std::vect
 }
 
 // Solves for `modes`, and compares it with coarser solutions, which may be known already, and then with finer
-// ones, until its bounds are inside the tolerance. If a comparison is impossible, the bounds found before it
-// stay.
+// ones, until its bounds are inside the tolerance. A finer solution may be too large to be solved; then the
+// bounds found before it stay.
 void compare_modes(const Surface& surface, const PlanRequest& request,
                    const std::vector<Reference>& references, SolvedLines coarse, SolvedLines& solved,
                    RungEstimate& modes) {
-  try {
-    solved = solve_modes(surface, references);
-  } catch (const std::domain_error& error) {
-    modes.usable = false;
-    modes.reason = error.what();
-    return;
-  }
+  solved = solve_modes(surface, references);
   try {
     for (const auto comparison : {Comparison::coarsest, Comparison::coarser, Comparison::finer}) {
       if (comparison != Comparison::coarsest || coarse.empty())
@@ -462,24 +442,22 @@ PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {
     return std::ranges::find_if(rungs, [&](const auto& e) { return inside(e, request.tolerance); });
   };
   auto chosen = first_inside();
-  const bool comparable = modes_bound_applies(surface);
+  const auto modes = rung(Model::modes);
+  const bool comparable = modes_bound_applies(surface) && modes->usable;
   SolvedLines coarse, by_modes;
   if (const auto mode = rung(Model::mode);
       comparable && mode < chosen && hopeful(surface, request, references, *mode)) {
-    try {
-      coarse = solve_compared(surface, references, Comparison::coarsest);
-      *mode = coarsely_compared_mode(surface, request, references, coarse);
-    } catch (const std::domain_error&) {  // `modes` does not apply, so nothing more is known of `mode`
-    }
+    coarse = solve_compared(surface, references, Comparison::coarsest);
+    *mode = coarsely_compared_mode(surface, request, references, coarse);
     chosen = first_inside();
   }
-  if (const auto modes = rung(Model::modes); comparable && chosen == rungs.end()) {
+  if (comparable && chosen == rungs.end()) {
     compare_modes(surface, request, references, std::move(coarse), by_modes, *modes);
     if (inside(*modes, request.tolerance)) chosen = modes;
   }
   choice.inside = chosen != rungs.end();
   if (!choice.inside) {
-    chosen = rung(Model::modes);
+    chosen = modes;
     if (const auto mode = rung(Model::mode); !chosen->usable && mode != rungs.end()) chosen = mode;
   }
   choice.model = chosen->model;

@@ -15,33 +15,42 @@ namespace {
 
 using SectionMatrix = SectionBasis::Matrix;
 
-// Strain or motion at the quadrature points, for several functions: one matrix per component, with one row
-// per function.
-using Components = std::vector<SectionMatrix>;
+// One component of the strain or of the motion at the quadrature points: a row per function, of which the
+// first is function number `first`. For all other functions it is 0; without rows, for all.
+struct Component {
+  SectionMatrix values;
+  Eigen::Index first = 0;
+};
+using Components = std::vector<Component>;
 
-SectionMatrix weighted_gram(const Components& a, const SectionMatrix& law, const Components& b,
-                            const Eigen::VectorXd& weight) {
-  SectionMatrix sum = SectionMatrix::Zero(a.front().rows(), b.front().rows());
+SectionMatrix weighted_gram(Eigen::Index count, const Components& a, const SectionMatrix& law,
+                            const Components& b, const Eigen::VectorXd& weight) {
+  SectionMatrix sum = SectionMatrix::Zero(count, count);
   for (std::size_t i = 0; i < a.size(); ++i) {
-    if (a[i].isZero(0)) continue;
+    if (a[i].values.size() == 0) continue;
+    const SectionMatrix weighted = a[i].values * weight.asDiagonal();
     for (std::size_t j = 0; j < b.size(); ++j) {
       const double part = law(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-      if (part == 0 || b[j].isZero(0)) continue;
-      count_operations(2 * static_cast<double>(a[i].size() * b[j].rows()));
-      sum += part * a[i] * weight.asDiagonal() * b[j].transpose();
+      if (part == 0 || b[j].values.size() == 0) continue;
+      count_operations(2 * static_cast<double>(weighted.size() * b[j].values.rows()));
+      sum.block(a[i].first, b[j].first, weighted.rows(), b[j].values.rows()).noalias() +=
+          part * weighted * b[j].values.transpose();
     }
   }
   return sum;
 }
 
-SectionBasis integrate_section(const std::array<Components, 4>& strain, const SectionMatrix& law,
-                               const Components& motion, const SectionMatrix& inertia,
-                               const Eigen::VectorXd& weight) {
+SectionBasis integrate_section(Eigen::Index count, const std::array<Components, 4>& strain,
+                               const SectionMatrix& law, const Components& motion,
+                               const SectionMatrix& inertia, const Eigen::VectorXd& weight) {
   SectionBasis basis;
   for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = 0; j < 4; ++j) basis.stiff[i][j] = weighted_gram(strain[i], law, strain[j], weight);
+    for (std::size_t j = 0; j <= i; ++j) {
+      basis.stiff[i][j] = weighted_gram(count, strain[i], law, strain[j], weight);
+      if (j < i) basis.stiff[j][i] = basis.stiff[i][j].transpose();
+    }
   }
-  basis.mass = weighted_gram(motion, inertia, motion, weight);
+  basis.mass = weighted_gram(count, motion, inertia, motion, weight);
   return basis;
 }
 
@@ -75,12 +84,6 @@ void bubbles(int count, int first, const Quadrature& rule, SectionMatrix& value,
   }
 }
 
-SectionMatrix stacked(const SectionMatrix& a, const SectionMatrix& b, const SectionMatrix& c) {
-  SectionMatrix all(a.rows() + b.rows() + c.rows(), a.cols());
-  all << a, b, c;
-  return all;
-}
-
 // The functions for a Mindlin plate: first those of the rotations beta_x and beta_y, then those of the
 // deflection w, which has the given parity.
 SectionBasis mindlin_section(const MindlinPlate& plate, int each, Parity parity = Parity::even) {
@@ -93,12 +96,11 @@ SectionBasis mindlin_section(const MindlinPlate& plate, int each, Parity parity 
   Eigen::VectorXd same_start, other_start;
   bubbles(each, first, rule, same, same1, same_start);
   bubbles(each, 1 - first, rule, other, other1, other_start);
-  const SectionMatrix none = SectionMatrix::Zero(each, nodes);
-  const Components motion{stacked(same, none, none), stacked(none, other, none), stacked(none, none, same)};
-  const Components slope{stacked(same1, none, none), stacked(none, other1, none), stacked(none, none, same1)};
-  Components stretched;
-  for (const SectionMatrix& one : slope) stretched.push_back(one * eta.asDiagonal());
-  const SectionMatrix zero = SectionMatrix::Zero(3 * each, nodes);
+  const Components motion{{same, 0}, {other, each}, {same, 2 * each}};
+  const Components slope{{same1, 0}, {other1, each}, {same1, 2 * each}};
+  Components stretched = slope;
+  for (Component& one : stretched) one.values = one.values * eta.asDiagonal();
+  const Component zero{};
   // components of the strain: curvatures kappa_xx, kappa_yy, kappa_xy and shears gamma_x, gamma_y
   const auto by_x = [&](const Components& u) -> Components { return {u[0], zero, u[1], u[2], zero}; };
   const Components by_y{zero, slope[1], slope[0], zero, slope[2]};
@@ -112,7 +114,7 @@ SectionBasis mindlin_section(const MindlinPlate& plate, int each, Parity parity 
   SectionMatrix inertia = SectionMatrix::Zero(3, 3);
   inertia.diagonal() << plate.rotary_inertia_kg, plate.rotary_inertia_kg, plate.mass_kg_per_m2;
   SectionBasis basis =
-      integrate_section({by_x(motion), by_x(stretched), by_y, local}, law, motion, inertia, weight);
+      integrate_section(3 * each, {by_x(motion), by_x(stretched), by_y, local}, law, motion, inertia, weight);
   basis.centre = Eigen::VectorXd::Zero(3 * each);
   if (parity == Parity::even) basis.centre.tail(each) = same_start;
   return basis;
@@ -195,7 +197,10 @@ SectionBasis mindlin_shapes(const Surface& surface, double f) {
       columns(wave, wave.cross.dot(full.centre.tail(full.count() - each)));
   SectionBasis basis;
   for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = 0; j < 4; ++j) basis.stiff[i][j] = shapes.transpose() * full.stiff[i][j] * shapes;
+    for (std::size_t j = 0; j <= i; ++j) {
+      basis.stiff[i][j] = shapes.transpose() * full.stiff[i][j] * shapes;
+      if (j < i) basis.stiff[j][i] = basis.stiff[i][j].transpose();
+    }
   }
   basis.mass = shapes.transpose() * full.mass * shapes;
   basis.centre = shapes.transpose() * full.centre;
@@ -292,11 +297,12 @@ SectionBasis elastic_shapes(const Surface& surface, double f) {
       eta.segment(j * z.at.size(), z.at.size()).setConstant(y.at[j]);
     }
   }
-  std::array<SectionMatrix, 9> u;
-  for (std::size_t i = 0; i < u.size(); ++i) u[i] = stacked_rows(parts[i]);
-  const SectionMatrix zero = SectionMatrix::Zero(u[0].rows(), u[0].cols());
-  const auto stretched = [&](const SectionMatrix& slope) -> SectionMatrix {
-    return slope * eta.asDiagonal();
+  std::array<Component, 9> u;
+  for (std::size_t i = 0; i < u.size(); ++i) u[i].values = stacked_rows(parts[i]);
+  const Component zero{};
+  const auto stretched = [&](Component slope) {
+    slope.values = slope.values * eta.asDiagonal();
+    return slope;
   };
   // components of the strain in the order xx, yy, zz, yz, xz, xy; the stiffness is divided by the shear
   // modulus
@@ -307,8 +313,8 @@ SectionBasis elastic_shapes(const Surface& surface, double f) {
   SectionMatrix law = SectionMatrix::Identity(6, 6);
   law.topLeftCorner(3, 3).setConstant(lame);
   law.topLeftCorner(3, 3).diagonal().setConstant(lame + 2);
-  SectionBasis basis = integrate_section({by_x, stretch, by_y, local}, law, {u[0], u[1], u[2]},
-                                         SectionMatrix::Identity(3, 3) / speed2, weight);
+  SectionBasis basis = integrate_section(centres.size(), {by_x, stretch, by_y, local}, law,
+                                         {u[0], u[1], u[2]}, SectionMatrix::Identity(3, 3) / speed2, weight);
   basis.centre = centres;
   basis.drive = Eigen::VectorXd::Unit(centres.size(), 0);
   return basis;

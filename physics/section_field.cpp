@@ -22,62 +22,68 @@ SectionBasis make_section(const Surface& surface, double f, const ModalResolutio
 
 }  // namespace
 
-SectionElement section_element(const SectionBasis& section, const ModalSetup& setup, const ModalElement& e) {
+SectionAssembler::SectionAssembler(const SectionBasis& section, const ModalSetup& setup,
+                                   std::complex<double> omega2)
+    : setup_(setup), omega2_(omega2), n_(section.count()), terms_(n_ * n_, 14) {
   using S = SectionBasis;
+  const auto& k = section.stiff;
+  Eigen::Index term = 0;
+  const auto add = [&](const Eigen::MatrixXd& one) {
+    terms_.col(term++) = Eigen::Map<const Eigen::VectorXd>(one.data(), one.size());
+  };
+  const auto both = [&](S::Part i, S::Part j) { add(k[i][j] + k[j][i]); };
+  add(k[S::along][S::along]);
+  for (const auto part : {S::stretch, S::across, S::local}) add(k[S::along][part]), add(k[part][S::along]);
+  for (const auto part : {S::stretch, S::across, S::local}) add(k[part][part]);
+  both(S::stretch, S::across), both(S::stretch, S::local), both(S::across, S::local);
+  add(section.mass);
+}
+
+SectionElement SectionAssembler::element(const ModalElement& e) const {
   using Matrix = Eigen::MatrixXd;
-  const Eigen::Index n = section.count(), count = setup.along.count();
-  const Quadrature rule = gauss_legendre(setup.along.degree + 3);
+  const Eigen::Index count = setup_.along.count();
+  const Quadrature rule = gauss_legendre(setup_.along.degree + 3);
   const auto points = static_cast<Eigen::Index>(rule.x.size());
-  // basis functions along x and their derivatives, one row per quadrature point; s = 1/W and r = -W'/W
-  Matrix value(points, count), first(points, count);
-  Eigen::VectorXd weight(points), r(points), s(points);
-  for (Eigen::Index q = 0; q < points; ++q) {
-    const auto node = static_cast<std::size_t>(q);
-    const double x = e.x0 + e.h * rule.x[node], w = setup.taper.half_width_m(x);
-    r[q] = -setup.taper.slope(x) / w, s[q] = 1 / w;
-    weight[q] = e.h * rule.w[node] * w;
-    const BasisValues basis = setup.along.at(2 * rule.x[node] - 1);
-    for (Eigen::Index a = 0; a < count; ++a) {
-      value(q, a) = basis.value[static_cast<std::size_t>(a)];
-      first(q, a) = basis.first[static_cast<std::size_t>(a)] * 2 / e.h;
+  // The strain is f' X + f (r R + s Y + Z), with X, R, Y and Z as in SectionBasis, r = -W'/W and s = 1/W.
+  // Each term of the element's stiffness is an integral over x times a matrix over the section; `factors` has
+  // the integrals in the order of `terms_`, a column for each pair of functions along x.
+  Matrix factors = Matrix::Zero(terms_.cols(), count * (count + 1) / 2);
+  for (std::size_t q = 0; q < rule.x.size(); ++q) {
+    const double x = e.x0 + e.h * rule.x[q], w = setup_.taper.half_width_m(x);
+    const double r = -setup_.taper.slope(x) / w, s = 1 / w, weight = e.h * rule.w[q] * w;
+    const BasisValues basis = setup_.along.at(2 * rule.x[q] - 1);
+    Eigen::Index pair = 0;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(count); ++a) {
+      const double value = weight * basis.value[a], first = weight * basis.first[a] * 2 / e.h;
+      for (std::size_t b = 0; b <= a; ++b, ++pair) {
+        const double other = basis.value[b], other1 = basis.first[b] * 2 / e.h;
+        const double vv = value * other, fv = first * other, vf = value * other1;
+        double* const sum = factors.col(pair).data();
+        sum[0] += first * other1;
+        sum[1] += r * fv, sum[2] += r * vf;
+        sum[3] += s * fv, sum[4] += s * vf;
+        sum[5] += fv, sum[6] += vf;
+        sum[7] += r * r * vv, sum[8] += s * s * vv, sum[9] += vv;
+        sum[10] += r * s * vv, sum[11] += r * vv, sum[12] += s * vv;
+      }
     }
   }
-  const auto gram = [&weight](const Matrix& a, const Eigen::VectorXd& by, const Matrix& b) -> Matrix {
-    return a.transpose() * weight.cwiseProduct(by).asDiagonal() * b;
-  };
-  const Eigen::VectorXd one = Eigen::VectorXd::Ones(points);
-  // The strain is f' X + f (r R + s Y + Z), with X, R, Y and Z as in SectionBasis. Each term of the element's
-  // stiffness is a matrix over x times a matrix over the section.
-  const Matrix xx = gram(first, one, first), xr = gram(first, r, value), xs = gram(first, s, value),
-               xz = gram(first, one, value), rr = gram(value, r.cwiseProduct(r), value),
-               ss = gram(value, s.cwiseProduct(s), value), zz = gram(value, one, value),
-               rs = gram(value, r.cwiseProduct(s), value), rz = gram(value, r, value),
-               sz = gram(value, s, value);
-  const auto& k = section.stiff;
-  const auto both = [&k](S::Part i, S::Part j) -> Matrix { return k[i][j] + k[i][j].transpose(); };
-  const Matrix stretch_across = both(S::stretch, S::across), stretch_local = both(S::stretch, S::local),
-               across_local = both(S::across, S::local);
-  // ten products over the quadrature points, and ten matrices of the section for each pair of functions along
-  // x
+  const Eigen::RowVectorXd inertia = factors.row(9);
+  factors.row(13) = -omega2_.real() * inertia;
   count_operations(20 * static_cast<double>(points * count * count) +
-                   14 * static_cast<double>(n * n * count * (count + 1)));
-  SectionElement all{Matrix(n * count, n * count), Matrix(n * count, n * count)};
-  for (Eigen::Index a = 0; a < count; ++a) {
-    for (Eigen::Index b = 0; b <= a; ++b) {
-      auto stiffness = all.stiffness.block(a * n, b * n, n, n);
-      auto mass = all.mass.block(a * n, b * n, n, n);
-      stiffness = xx(a, b) * k[S::along][S::along] + xr(a, b) * k[S::along][S::stretch] +
-                  xs(a, b) * k[S::along][S::across] + xz(a, b) * k[S::along][S::local] +
-                  rr(a, b) * k[S::stretch][S::stretch] + ss(a, b) * k[S::across][S::across] +
-                  zz(a, b) * k[S::local][S::local] + rs(a, b) * stretch_across + rz(a, b) * stretch_local +
-                  sz(a, b) * across_local;
-      stiffness += (xr(b, a) * k[S::along][S::stretch] + xs(b, a) * k[S::along][S::across] +
-                    xz(b, a) * k[S::along][S::local])
-                       .transpose();
-      mass = zz(a, b) * section.mass;
+                   2 * static_cast<double>(terms_.size() * factors.cols()));
+  const Matrix blocks = terms_ * factors;
+  SectionElement all{Matrix(n_ * count, n_ * count), Matrix(n_ * count, n_ * count)};
+  const Eigen::Map<const Matrix> mass(terms_.col(terms_.cols() - 1).data(), n_, n_);
+  for (Eigen::Index a = 0, pair = 0; a < count; ++a) {
+    for (Eigen::Index b = 0; b <= a; ++b, ++pair) {
+      const Eigen::Map<const Matrix> block(blocks.col(pair).data(), n_, n_);
+      const double lossy = -omega2_.imag() * inertia[pair];
+      all.real.block(a * n_, b * n_, n_, n_) = block;
+      all.imaginary.block(a * n_, b * n_, n_, n_) = lossy * mass;
       if (a == b) continue;
-      all.stiffness.block(b * n, a * n, n, n) = stiffness.transpose();
-      all.mass.block(b * n, a * n, n, n) = mass.transpose();
+      all.real.block(b * n_, a * n_, n_, n_) = block.transpose();
+      all.imaginary.block(b * n_, a * n_, n_, n_) = lossy * mass;
     }
   }
   return all;
@@ -93,6 +99,7 @@ void solve_section_elements(const Surface& surface, double f, Losses losses,
       losses == Losses::kept ? Dispersion(surface).loss(f, surface.quality_factor) : 1;
   const std::complex<double> omega2 = std::pow(2 * std::numbers::pi * f, 2) * lossy * lossy * lossy * lossy;
   const Eigen::Index n = section.count();
+  const SectionAssembler assembler(section, setup, omega2);
   struct Link {
     Condensed element;
     Eigen::MatrixXcd pull;  // unknowns of the right vertex are -pull times those of the left one
@@ -102,8 +109,8 @@ void solve_section_elements(const Surface& surface, double f, Losses losses,
   Eigen::MatrixXcd tail;
   for (std::size_t i = elements.size(); i-- > 0;) {
     Link& link = links[i];
-    const SectionElement e = section_element(section, setup, elements[i]);
-    link.element = Condensed(e.stiffness - omega2.real() * e.mass, -omega2.imag() * e.mass, n, n);
+    const SectionElement e = assembler.element(elements[i]);
+    link.element = Condensed(e.real, e.imaginary, n, n);
     const Eigen::MatrixXcd& ends = link.element.ends();
     if (tail.size() == 0) {
       link.pull = Eigen::MatrixXcd::Zero(n, n);

@@ -1,6 +1,7 @@
 #pragma once
 // Solves for the field of a thick plate, which is a sum of functions over the cross-section times finite
 // elements along x.
+#include <complex>
 #include <vector>
 
 #include "physics/modal_setup.hpp"
@@ -16,12 +17,24 @@ void solve_section_elements(const Surface& surface, double frequency_Hz, Losses 
                             const ModalResolution& resolution, const ModalSetup& setup,
                             std::vector<ModalElement>& elements);
 
-// The symmetric matrices of an element. The field obeys stiffness - omega^2 mass. Unknowns are ordered by
-// basis function along x, then by function of the section.
+// The symmetric matrix of an element, stiffness - omega^2 mass. Its unknowns are ordered by basis function
+// along x, then by function of the section.
 struct SectionElement {
-  Eigen::MatrixXd stiffness, mass;
+  Eigen::MatrixXd real, imaginary;
 };
-SectionElement section_element(const SectionBasis& section, const ModalSetup& setup,
-                               const ModalElement& element);
+
+class SectionAssembler {
+ public:
+  SectionAssembler(const SectionBasis& section, const ModalSetup& setup, std::complex<double> omega2);
+  SectionElement element(const ModalElement& element) const;
+
+ private:
+  const ModalSetup& setup_;
+  std::complex<double> omega2_;
+  Eigen::Index n_;  // number of functions of the section
+  // the matrices over the section of which each block of an element is a sum, one per column; the last is the
+  // mass
+  Eigen::MatrixXd terms_;
+};
 
 }  // namespace turnpoint::physics

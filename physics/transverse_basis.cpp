@@ -51,16 +51,15 @@ Quadrature gauss_legendre(int n) {
   return n >= 1 && n <= kept ? rules[static_cast<std::size_t>(n)] : make_gauss_legendre(n);
 }
 
-Eigen::VectorXd bubbles_at(int count, int power, Parity parity, double eta) {
-  Eigen::VectorXd all(count);
-  const double bubble = std::pow(1 - eta * eta, power);
+void add_bubbles(Eigen::VectorXd& sum, int power, Parity parity, double eta, double times) {
+  const double u = 1 - eta * eta, bubble = times * (power == 1 ? u : u * u);
+  const int last = 2 * static_cast<int>(sum.size());
   double p0 = 1, p1 = eta;
-  for (int k = 0; k < 2 * count; ++k) {
-    if (k % 2 == (parity == Parity::odd)) all[k / 2] = std::sqrt(2 * k + 1.0) * bubble * p0;
+  for (int k = 0; k < last; ++k) {
+    if (k % 2 == (parity == Parity::odd)) sum[k / 2] += std::sqrt(2 * k + 1.0) * bubble * p0;
     const double p2 = ((2 * k + 3) * eta * p1 - (k + 1) * p0) / (k + 2);
     p0 = p1, p1 = p2;
   }
-  return all;
 }
 
 TransverseBasis TransverseBasis::polynomials(int count, int power, Parity parity) {

@@ -17,8 +17,9 @@ Quadrature gauss_legendre(int n);
 // Whether functions are symmetric or antisymmetric about the centre line.
 enum class Parity { even, odd };
 
-// Returns (1 - eta^2)^power P_k(eta) sqrt(2k + 1) at one eta, for the first `count` even or odd k.
-Eigen::VectorXd bubbles_at(int count, int power, Parity parity, double eta);
+// Adds (1 - eta^2)^power P_k(eta) sqrt(2k + 1) at one eta, times `times`, for the first even or odd k. The
+// power is 1 or 2.
+void add_bubbles(Eigen::VectorXd& sum, int power, Parity parity, double eta, double times);
 
 // Even or odd functions Y_i of eta that vanish at eta = 1. They are (1 - eta^2)^m P_k(eta), with m = 1 for
 // membranes, and m = 2 if the slope must vanish at eta = 1 as well. A basis may instead consist of one given

@@ -103,6 +103,9 @@ void DeviceCapture::read(std::int64_t available) noexcept {
 }
 
 void DeviceCapture::push(std::int64_t frames) noexcept {
+  if (auto* listener = listener_.load())
+    listener->captured(frames_.load(), numbering_.load(),
+                       std::span(period_).first(static_cast<std::size_t>(frames * config_.channels)));
   const std::int64_t most = CapturedBlock::kSamples / config_.channels;
   for (std::int64_t at = 0; at < frames; at += most) {
     const std::int64_t some = std::min(most, frames - at);

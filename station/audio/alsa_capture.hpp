@@ -43,6 +43,16 @@ struct CaptureCounters {
   bool present = true;  ///< false while the device is lost
 };
 
+/// Takes captured frames on the capture's own thread as soon as they are there, before they wait in the ring.
+class CaptureListener {
+ public:
+  virtual ~CaptureListener() = default;
+  /// Interleaved frames, of which the first has the number `first_frame`; the arguments are those of a
+  /// CapturedBlock. It must not allocate, lock, log or wait.
+  virtual void captured(std::int64_t first_frame, std::uint32_t numbering,
+                        std::span<const std::int32_t> samples) noexcept = 0;
+};
+
 /// An open capture device. One thread takes the blocks; any thread may ask for the counters.
 class Capture {
  public:
@@ -50,6 +60,8 @@ class Capture {
   /// Takes the oldest block that has not been taken yet. Returns null if there is none. The block is valid
   /// until the next call. Wait-free.
   [[nodiscard]] virtual const CapturedBlock* take() noexcept = 0;
+  /// Calls `listener` with all frames that are captured from now on. It must outlive the capture.
+  virtual void listen(CaptureListener& listener) noexcept = 0;
   virtual CaptureCounters counters() const noexcept = 0;
   virtual system::Rights rights() const = 0;
 };
@@ -70,6 +82,7 @@ class DeviceCapture : public Capture {
   void step() noexcept;
 
   const CapturedBlock* take() noexcept override { return blocks_->take(); }
+  void listen(CaptureListener& listener) noexcept override { listener_.store(&listener); }
   CaptureCounters counters() const noexcept override;
   system::Rights rights() const override { return {}; }
 
@@ -93,6 +106,7 @@ class DeviceCapture : public Capture {
   std::atomic<std::int64_t> frames_{0}, overruns_{0}, lost_frames_{0}, unknown_gaps_{0};
   std::atomic<std::uint32_t> numbering_{0};
   std::atomic<bool> present_{true};
+  std::atomic<CaptureListener*> listener_{nullptr};
 };
 
 /// Opens the capture device and starts its thread, with FIFO priority 69 and locked memory.

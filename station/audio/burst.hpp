@@ -77,6 +77,17 @@ struct SignalTone {
   Ramp ramp{960};
 };
 
+/// How a burst follows gains that come while it plays, period by period (GainPeriod). They multiply its
+/// tones, in addition to its ramps. If gains are missing, the gain goes to the resting gain; see GainLine.
+struct Following {
+  double most_gain = 0;  ///< largest gain, which counts in the burst's peak; 0: the burst follows nothing
+  double resting_gain = 0;
+  std::int64_t leave_frames = 960;    ///< from the first missing gain to the resting gain, in a straight line
+  std::int64_t steady_frames = 960;   ///< so long gains must have come again before the burst follows them,
+  std::int64_t resume_frames = 1920;  ///< and so long it takes until it does
+  bool follows() const noexcept { return most_gain > 0; }
+};
+
 /// Describes one stimulus. `start_frame` counts from the opening of the stream. The length includes both
 /// ramps.
 struct Burst {
@@ -89,6 +100,7 @@ struct Burst {
   Marker marker;
   MaskingNoise noise;
   SignalTone signal;
+  Following following;
 };
 
 static_assert(std::is_trivially_copyable_v<Burst>);

@@ -41,6 +41,7 @@ class DeviceStream : public Stream {
   void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame) override {
     core_.stop(burst, ramp, frame);
   }
+  [[nodiscard]] bool follow(const GainPeriod& gains) noexcept override { return core_.follow(gains); }
   std::optional<Event> poll() override;
   /// Two periods after the last rendered frame, because one period is being rendered now.
   std::int64_t earliest_frame() const override {

@@ -10,6 +10,7 @@
 #include "station/audio/amplifier.hpp"
 #include "station/audio/burst.hpp"
 #include "station/audio/frame_clock.hpp"
+#include "station/audio/gain_line.hpp"
 #include "station/audio/output.hpp"
 #include "station/audio/prepared_burst.hpp"
 #include "station/audio/rate_check.hpp"
@@ -30,9 +31,12 @@ enum class EventKind : std::int32_t {
   burst_heard,
   /// the command arrived after the burst's first frame had been rendered: the burst is not played
   burst_missed,
-  underrun,     ///< frames [frame, frame + frames) were not played; sounding bursts continue with a ramp
-  device_lost,  ///< nothing is played from `frame` on, until the device is back and the operator re-arms
-  device_back,  ///< the device was reopened by name; frame numbers continue from `frame`
+  /// the gains that the burst follows were missing from `frame` on: it goes to its resting gain
+  burst_unfollowed,
+  burst_follows,  ///< from `frame` on the burst follows its gains again
+  underrun,       ///< frames [frame, frame + frames) were not played; sounding bursts continue with a ramp
+  device_lost,    ///< nothing is played from `frame` on, until the device is back and the operator re-arms
+  device_back,    ///< the device was reopened by name; frame numbers continue from `frame`
   /// the measured rate is more than 200 ppm off, so the session must stop; `frames`: the rate in mHz
   rate_wrong,
 };
@@ -112,6 +116,9 @@ class Stream {
   Scheduled schedule_soon(const Burst& burst);
   /// Changes a waiting or sounding burst; `at_frame` counts from the start of the burst. Throws BurstRefused.
   virtual void change(std::uint32_t burst, const Change& change) = 0;
+  /// Gives gains to a burst that follows them, before its frames are rendered. Any thread may call this, but
+  /// only one. Returns false if the audio thread has not taken the last 64. Wait-free.
+  [[nodiscard]] virtual bool follow(const GainPeriod& gains) noexcept = 0;
   /// Ramps down the burst with this number (0: all bursts), from the given frame of the stream or, without
   /// one, as soon as possible. Throws std::runtime_error if the audio thread does not accept commands.
   virtual void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame = {}) = 0;

@@ -161,6 +161,8 @@ void EngineCore::follow(Event& event) {
     case EventKind::device_back:
       event.burst = damage(0, forever);
       break;
+    case EventKind::burst_unfollowed:
+    case EventKind::burst_follows:
     case EventKind::burst_heard:
     case EventKind::rate_wrong:
       break;
@@ -220,6 +222,8 @@ void EngineCore::report(const Event& event) noexcept {
       atomics_.device_losses.fetch_add(1);
       break;
     case EventKind::burst_ended:
+    case EventKind::burst_unfollowed:
+    case EventKind::burst_follows:
     case EventKind::burst_heard:
     case EventKind::device_back:
     case EventKind::rate_wrong:
@@ -252,14 +256,18 @@ void EngineCore::take_commands() noexcept {
         break;
     }
   }
+  // After the commands, because gains belong to a burst that has been sent before them.
+  for (GainPeriod gains; gains_->pop(gains);) synth_.follow(gains);
 }
 
 // Sends the synthesiser's events up to `frame` to the control thread.
 void EngineCore::report_until(std::int64_t frame) noexcept {
   for (const SynthEvent& event : synth_.events()) {
-    const EventKind kind = event.kind == SynthEventKind::started ? EventKind::burst_started
-                           : event.kind == SynthEventKind::ended ? EventKind::burst_ended
-                                                                 : EventKind::burst_missed;
+    const EventKind kind = event.kind == SynthEventKind::started      ? EventKind::burst_started
+                           : event.kind == SynthEventKind::ended      ? EventKind::burst_ended
+                           : event.kind == SynthEventKind::missed     ? EventKind::burst_missed
+                           : event.kind == SynthEventKind::unfollowed ? EventKind::burst_unfollowed
+                                                                      : EventKind::burst_follows;
     report({kind, event.burst, event.frame});
   }
   synth_.clear_events();
@@ -269,7 +277,7 @@ void EngineCore::report_until(std::int64_t frame) noexcept {
 
 std::vector<system::MemoryRange> EngineCore::memory() const {
   return {system::range_of(*incoming_), system::range_of(*commands_), system::range_of(*events_),
-          synth_.memory()};
+          system::range_of(*gains_), synth_.memory()};
 }
 
 void EngineCore::process(std::int64_t frame, std::span<std::int32_t> samples) noexcept {

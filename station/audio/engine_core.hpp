@@ -26,6 +26,9 @@ class EngineCore {
                                            const Earliest& earliest_frame);
   void change(std::uint32_t burst, const Change& change);
   void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame);
+  /// For one thread, which need not be the control thread: gives gains to a burst that follows them. Returns
+  /// false if the audio side has not taken the last 64. Wait-free.
+  [[nodiscard]] bool follow(const GainPeriod& gains) noexcept { return gains_->push(gains); }
   std::optional<Event> poll();
   Counters counters() const noexcept;
   /// Memory that the audio side uses in addition to this object, so that it can be locked.
@@ -82,6 +85,7 @@ class EngineCore {
   std::unique_ptr<Command> incoming_ = std::make_unique<Command>();
   std::unique_ptr<Ring<Command, 32>> commands_ = std::make_unique<Ring<Command, 32>>();
   std::unique_ptr<Ring<Event, 256>> events_ = std::make_unique<Ring<Event, 256>>();
+  std::unique_ptr<Ring<GainPeriod, 64>> gains_ = std::make_unique<Ring<GainPeriod, 64>>();
   Atomics atomics_;
   Synth synth_;
 };

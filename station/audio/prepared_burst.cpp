@@ -48,8 +48,11 @@ Channels sum_of(const std::array<Partial, max_tones>& tones, int count) {
   return sum;
 }
 
-// Adds the marker, the noise and the signal to the tones.
+// Adds the marker, the noise and the signal to the tones. The gain that the tones follow does not act on
+// them.
 Channels with_extras(Channels tones, const PreparedBurst& burst) {
+  if (burst.following.follows())
+    for (double& sum : tones) sum *= burst.following.most_gain;
   if (burst.marker.kind != MarkerKind::none)
     tones[static_cast<std::size_t>(burst.marker.channel)] += std::abs(burst.marker.amplitude);
   if (burst.noise.gain > 0)
@@ -90,6 +93,13 @@ std::array<double, max_channels> rendered_peak(const PreparedBurst& burst, const
   Synth synth(format);
   PreparedBurst moved = burst;
   moved.start_frame = 0;
+  if (burst.following.follows()) {
+    const double gain = burst.following.most_gain;
+    for (Partial& tone : moved.tones) tone.amplitude *= gain;
+    for (PreparedChange& change : moved.changes)
+      for (Partial& tone : change.to) tone.amplitude *= gain;
+    moved.following = {};
+  }
   std::array<double, max_channels> peak{};
   if (!synth.start(moved)) return peak;
   const auto channels = static_cast<std::size_t>(format.channels);
@@ -285,6 +295,18 @@ PreparedSignal prepare(const SignalTone& signal, const Burst& burst, const Forma
           signal.at_frame, signal.frames,    signal.ramp};
 }
 
+Following checked(const Following& following) {
+  if (following.most_gain == 0) return following;
+  if (!(following.most_gain > 0 && following.most_gain < 1e6 && following.resting_gain >= 0 &&
+        following.resting_gain <= following.most_gain))
+    refuse("it follows gains up to {} and rests at {}; the resting gain must be from 0 to the largest gain",
+           following.most_gain, following.resting_gain);
+  if (following.leave_frames < 1 || following.steady_frames < 1 || following.resume_frames < 1)
+    refuse("it goes to rest in {} frames, waits for {} and follows again within {}; each must be 1 or more",
+           following.leave_frames, following.steady_frames, following.resume_frames);
+  return following;
+}
+
 void check_shape(const Burst& burst, const SynthLimits& limits) {
   if (burst.start_frame < 0) refuse("start frame {}; it must not be negative", burst.start_frame);
   if (burst.length_frames < 1 || burst.length_frames > limits.longest_frames)
@@ -307,6 +329,7 @@ PreparedBurst prepare(const Burst& burst, const Format& format, const SynthLimit
   out.start_frame = burst.start_frame;
   out.length_frames = burst.length_frames;
   out.ramp = burst.ramp;
+  out.following = checked(burst.following);
   out.tone_count = checked_count(burst.tones);
   for (std::size_t i = 0; i < static_cast<std::size_t>(out.tone_count); ++i)
     out.tones[i] = prepare(burst.tones.tones[i], format, limits);
@@ -328,6 +351,7 @@ PreparedBurst prepare(const Burst& burst, const Format& format, const SynthLimit
 PreparedChange prepare_change(const Change& change, PreparedBurst& burst, const Format& format,
                               const SynthLimits& limits) {
   const double largest = largest_peak(format, limits);
+  if (burst.following.follows()) refuse("a burst that follows gains keeps its tones");
   PreparedChange out = prepare(change, burst.tones, burst.tone_count, format, limits);
   out.live = true;
   PreparedBurst with = burst;

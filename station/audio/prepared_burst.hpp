@@ -98,6 +98,7 @@ struct PreparedBurst {
   PreparedMarker marker;
   PreparedNoise noise;
   PreparedSignal signal;
+  Following following;
   std::array<double, max_channels>
       /// largest sample of each channel (or an upper limit of it, if that is below the allowed peak)
       peak{};
@@ -109,7 +110,7 @@ static_assert(std::is_trivially_copyable_v<PreparedBurst>);
 /// the sum of its amplitudes if that keeps the limit; otherwise the whole burst is rendered to find its
 /// largest sample. Throws BurstRefused for a tone at or above 0.45 of the rate, a channel that does not
 /// exist, a peak above the limit, ramps longer than the burst, changes that are out of order or extend beyond
-/// the end, and values that are not finite.
+/// the end, and values that are not finite. A burst that follows gains is judged at its largest gain.
 PreparedBurst prepare(const Burst& burst, const Format& format, const SynthLimits& limits = {});
 
 /// Checks and converts a change for a burst that may already be sounding. `burst` is the control side's copy
@@ -128,7 +129,7 @@ std::array<double, max_channels> peak_bound(const PreparedBurst& burst);
 std::array<double, max_channels> peak_bound(const PreparedBurst& burst, const PreparedChange& change);
 
 /// For each channel, the largest sample of the whole burst, found by rendering it (about 1 ns per tone and
-/// frame).
+/// frame). A burst that follows gains is rendered at its largest gain.
 std::array<double, max_channels> rendered_peak(const PreparedBurst& burst, const Format& format);
 
 /// Root mean square of the filtered noise if its input is uniform in (-1, 1) and its gain is 1.

@@ -34,6 +34,7 @@ class Synchronous final : public SynchronousStream {
   void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame) override {
     core_.stop(burst, ramp, std::max(earliest_frame(), frame.value_or(0)));
   }
+  [[nodiscard]] bool follow(const GainPeriod& gains) noexcept override { return core_.follow(gains); }
   std::optional<Event> poll() override { return core_.poll(); }
   std::int64_t earliest_frame() const override { return frame_ + config_.virtual_lead_frames; }
   Counters counters() const override { return core_.counters(); }

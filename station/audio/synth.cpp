@@ -77,6 +77,9 @@ struct Synth::State {
         report(SynthEventKind::started, burst.id, burst.start_frame);
       }
       go(slot.voice, at);
+      const auto news = slot.voice.take_news();
+      if (news.back) report(SynthEventKind::follows, burst.id, burst.start_frame + *news.back);
+      if (news.lost) report(SynthEventKind::unfollowed, burst.id, burst.start_frame + *news.lost);
       if (at + frames >= slot.voice.end()) {
         if (slot.phase == Phase::sounding)
           report(SynthEventKind::ended, burst.id, burst.start_frame + slot.voice.end());
@@ -142,6 +145,11 @@ bool Synth::change(std::uint32_t burst, const PreparedChange& change) noexcept {
     return true;
   }
   return false;
+}
+
+void Synth::follow(const GainPeriod& gains) noexcept {
+  for (auto& slot : state_->slots)
+    if (slot.phase != State::Phase::unused && slot.voice.burst().id == gains.burst) slot.voice.follow(gains);
 }
 
 void Synth::stop(std::uint32_t burst, std::int64_t frame, const Ramp& ramp) noexcept {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include "station/audio/gain_line.hpp"
 #include "station/audio/oscillator.hpp"
 #include "station/audio/prepared_burst.hpp"
 #include "station/core/parts.hpp"
@@ -12,20 +13,21 @@
 namespace turnpoint::audio {
 
 /// An event of a burst. Its time is given as a frame of the stream.
-enum class SynthEventKind : std::int32_t { started, ended, missed };
+enum class SynthEventKind : std::int32_t { started, ended, missed, unfollowed, follows };
 struct SynthEvent {
   SynthEventKind kind = SynthEventKind::started;
   std::uint32_t burst = 0;
   /// started: first frame of the burst; ended: first silent frame after it; missed: the requested start,
-  /// which was already past
+  /// which was already past; unfollowed: the first frame for which the gains that the burst follows were
+  /// missing; follows: the first from which it follows them again
   std::int64_t frame = 0;
 };
 
 /// Renders bursts into blocks, in double precision: the same samples on every machine, with spurious products
 /// below -290 dB before quantisation. Everything is preallocated: after construction nothing allocates,
 /// locks, throws or logs. Use it from one thread at a time. Samples depend only on the absolute frame and the
-/// bursts, not on how the stream is divided into blocks. Masking noise is the exception: it has a filter
-/// state and is reproduced only by an unbroken stream.
+/// bursts (and the gains that they follow), not on how the stream is divided into blocks. Masking noise is
+/// the exception: it has a filter state and is reproduced only by an unbroken stream.
 class Synth {
  public:
   static constexpr int max_block = 512;
@@ -48,6 +50,8 @@ class Synth {
   /// an older one that is still waiting, and takes over from a glide in progress. Returns false if the burst
   /// has ended.
   [[nodiscard]] bool change(std::uint32_t burst, const PreparedChange& change) noexcept;
+  /// Gives gains to the burst that follows them. Ignored if the burst has ended.
+  void follow(const GainPeriod& gains) noexcept;
   /// Ramps a burst (0: all) down from `frame`, or from the next block if `frame` is already past. If a second
   /// stop ends sooner than the first, both ramps are multiplied, so that nothing jumps; if it ends later, it
   /// has no effect. A burst that has not begun by then never begins.

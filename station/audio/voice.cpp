@@ -26,6 +26,7 @@ void Voice::begin(const PreparedBurst& burst) noexcept {
   live_waits_ = false;
   stop_count_ = 0;
   resume_at_ = -never;
+  line_.begin(burst.following);
   high_[0] = high_[1] = low_[0] = low_[1] = 0;
 }
 
@@ -38,6 +39,12 @@ void Voice::stop(std::int64_t at, const Ramp& ramp) noexcept {
   const Stop stop{at, ramp};
   if (stop_count_ == stops_.size() || stop.end() >= end()) return;
   stops_[stop_count_++] = stop;
+}
+
+void Voice::follow(GainPeriod period) noexcept {
+  if (!burst_.following.follows()) return;
+  period.frame -= burst_.start_frame;
+  line_.push(period);
 }
 
 void Voice::resume(std::int64_t at) noexcept {
@@ -239,6 +246,12 @@ void Voice::add(std::int64_t at, Mix& mix, Scratch& scratch) noexcept {
     const int count = static_cast<int>(std::min<std::int64_t>(next_boundary(at + n) - (at + n), last - n));
     tones(at + n, n, count, scratch);
     n += count;
+  }
+  if (burst_.following.follows()) {
+    line_.fill(at + first, last - first, scratch.followed.data() + first);
+    for (std::size_t c = 0; c < max_channels; ++c)
+      for (int n = first; (channels >> c & 1) && n < last; ++n)
+        scratch.dry[c][static_cast<std::size_t>(n)] *= scratch.followed[static_cast<std::size_t>(n)];
   }
   const bool gated = gains(at + first, last - first, scratch);
   for (std::size_t c = 0; c < max_channels; ++c) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "station/audio/gain_line.hpp"
 #include "station/audio/oscillator.hpp"
 #include "station/audio/prepared_burst.hpp"
 
@@ -45,6 +46,7 @@ struct Scratch {
   alignas(64) std::array<std::array<double, Mix::block>, max_channels> dry;
   alignas(64) std::array<double, Mix::block> gain;
   alignas(64) std::array<double, Mix::block> shape;
+  alignas(64) std::array<double, Mix::block> followed;
 };
 
 /// A burst in the stream: its state, and the changes and stops requested so far. Frames are counted from the
@@ -60,12 +62,17 @@ class Voice {
   /// Call this if frames were lost: from `at` on the sound continues with a ramp.
   void resume(std::int64_t at) noexcept;
 
+  /// Takes gains that the tones follow, in order. Ignored if the burst follows nothing.
+  void follow(GainPeriod period) noexcept;
+
   /// Adds frames [at, at + mix.frames) to the mix. `at` may be negative (the burst has not begun) and must
   /// not decrease.
   void add(std::int64_t at, Mix& mix, Scratch& scratch) noexcept;
 
   /// Advances by this many frames without computing them. The noise filters keep their state.
   void pass(std::int64_t at, int frames) noexcept;
+
+  GainLine::News take_news() noexcept { return line_.take_news(); }  ///< frames from the burst's start
 
   std::int64_t end() const noexcept;  ///< the first silent frame after the burst
   const PreparedBurst& burst() const noexcept { return burst_; }
@@ -100,6 +107,7 @@ class Voice {
   std::array<Stop, 8> stops_;
   std::size_t stop_count_ = 0;
   std::int64_t resume_at_ = -never;
+  GainLine line_;
   double high_[2] = {}, low_[2] = {};  ///< states of the noise's high-pass and low-pass filter
 };
 

@@ -103,6 +103,7 @@ Json to_json(const rehearsal::Check& check, const std::string& signal) {
                       {"duration_s", spread_json(block.duration_s)}});
   for (const auto& cue : check.cues.reports)
     cues.push_back({{"cue", cue.cue},
+                    {"task", cue.task.empty() ? Json(nullptr) : Json(cue.task)},
                     {"low", json_number(cue.low)},
                     {"high", json_number(cue.high)},
                     {"unit", cue.unit},
@@ -134,6 +135,10 @@ Json to_json(const rehearsal::Check& check, const std::string& signal) {
       {"duration_range_s", {json_number(check.duration_s.low), json_number(check.duration_s.high)}},
       {"trials_error", json_number(check.trials.error)},
       {"duration_error_s", json_number(check.duration_s.error)},
+      {"longest_trial_again_s",
+       check.longest_trial_again_s ? json_number(*check.longest_trial_again_s) : Json(nullptr)},
+      {"longest_session_again_s",
+       check.longest_session_again_s ? json_number(*check.longest_session_again_s) : Json(nullptr)},
       {"simulated_sessions", check.simulated_sessions},
       {"wanted_sessions", check.wanted_sessions},
       {"stopped", signal.empty() ? Json(nullptr) : Json(signal)},
@@ -179,17 +184,18 @@ void print_cues(std::ostream& out, const rehearsal::CueGuard& cues) {
                cues.reports.size());
   if (cues.stopped && cues.reports.empty()) return;
   if (!cues.not_compared.empty())
-    return fmt::print(out,
-                      "Cues: NOT COMPARED ({}): it is not known whether unwanted cues give the answer away\n",
-                      cues.not_compared);
+    fmt::print(out, "Cues: NOT COMPARED ({}): it is not known whether unwanted cues give the answer away\n",
+               cues.not_compared);
   if (!cues.nothing_to_tell.empty())
-    return fmt::print(out, "Cues: there are none to compare: {}\n", cues.nothing_to_tell);
+    fmt::print(out, "Cues: there are none to compare: {}\n", cues.nothing_to_tell);
+  if (cues.reports.empty()) return;
   std::string named;
   double least = 1, most = 0;
   for (const auto& cue : cues.reports) {
     least = std::min(least, cue.chance), most = std::max(most, cue.chance);
     if (!cue.above_chance()) continue;
-    named += fmt::format("\n  {}: {} % right{} (chance {} %)", cue.cue, percent(cue.accuracy),
+    named += fmt::format("\n  {}{}: {} % right{} (chance {} %)", cue.task.empty() ? "" : cue.task + ", ",
+                         cue.cue, percent(cue.accuracy),
                          cue.error > 0 ? fmt::format(" +- {} %", number(100 * cue.error, 2)) : "",
                          percent(cue.chance));
     if (!cue.unit.empty())
@@ -244,6 +250,12 @@ void print(std::ostream& out, const rehearsal::Check& check, const std::string& 
         range(check.trials, 1), range(check.duration_s, 60), check.simulated_sessions,
         check.simulated_sessions < check.wanted_sessions ? fmt::format(" of {}", check.wanted_sessions) : "",
         number(check.trials.error, 2), number(check.duration_s.error / 60, 2));
+  if (check.longest_session_again_s)
+    fmt::print(
+        out,
+        "If people ask for every trial as often as \"again\" allows: up to {} s for a trial and {} minutes "
+        "for the session, without the pauses that the rig's limits may add\n",
+        number(*check.longest_trial_again_s, 3), number(*check.longest_session_again_s / 60, 2));
   if (check.different_places > 1)
     fmt::print(
         out, "Places in the counterbalancing: {} different ones; {}\n", check.different_places,

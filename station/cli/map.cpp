@@ -171,22 +171,6 @@ void print(std::ostream& out, const std::vector<physics::MapAnswer>& answers) {
   }
 }
 
-/// Answers for one boundary by a map of the frequencies around it. A map of all frequencies would take many
-/// times as long; it is made only to say why there is no such boundary.
-physics::MapAnswer at_boundary(const physics::Surface& surface, const physics::MapOptions& wanted,
-                               double x_m) {
-  try {
-    if (const auto f = physics::solve_frequency_Hz(surface, wanted, x_m)) {
-      auto near = wanted;
-      near.band = physics::MapOptions::Band{0.99 * *f, 1.01 * *f};
-      const auto answer = physics::BoundaryMap(surface, near).at_boundary(x_m);
-      if (answer.frequency_Hz) return answer;
-    }
-  } catch (const std::domain_error&) {  // no boundary in this band
-  }
-  return physics::BoundaryMap(surface, wanted).at_boundary(x_m);
-}
-
 void map(const Options& options, Context& context) {
   if (options.boundaries_mm.empty() == options.frequencies_Hz.empty())
     throw UsageError("map: give either --boundary or --frequency");
@@ -203,7 +187,8 @@ void map(const Options& options, Context& context) {
     wanted.friction = physics::FrictionContext{rig::friction_of(rig), 1e-6, rig.friction.fingertip_m};
   const auto surface = rig::surface_of(rig);
   std::vector<physics::MapAnswer> answers;
-  for (const double mm : options.boundaries_mm) answers.push_back(at_boundary(surface, wanted, mm * 1e-3));
+  for (const double mm : options.boundaries_mm)
+    answers.push_back(physics::answer_at_boundary(surface, wanted, mm * 1e-3));
   if (!options.frequencies_Hz.empty()) {
     const physics::BoundaryMap boundary_map(surface, wanted);
     for (const double f : options.frequencies_Hz) answers.push_back(boundary_map.at_frequency(f));

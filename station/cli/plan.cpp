@@ -11,6 +11,7 @@
 #include "station/protocol/protocol.hpp"
 #include "station/protocol/resolve.hpp"
 #include "station/rig/rig.hpp"
+#include "station/scene/following.hpp"
 #include "station/scene/planner.hpp"
 #include "station/session/places.hpp"
 #include "station/session/prepare.hpp"
@@ -98,6 +99,28 @@ Json touched_json(const Touched& touched) {
           {"contrast_dB", json_number(touched.contrast_dB)}};
 }
 
+Json follow_json(const scene::DrivePlan& plan) {
+  if (!plan.follow) return nullptr;
+  const auto figures = scene::follow_figures(plan);
+  Json textures = Json::array(), unmet = Json::array();
+  for (const auto& texture : figures.textures)
+    textures.push_back({{"part", texture.part + 1},
+                        {"period_mm", json_number(1e3 * texture.period_m)},
+                        {"place_mm", json_number(1e3 * texture.place_m)},
+                        {"bandwidth_Hz", json_number(texture.bandwidth_Hz)},
+                        {"most_speed_mm_s", json_number(texture.most_speed_m_s, 1e3)}});
+  for (const auto& one : figures.unmet)
+    unmet.push_back({{"from_mm", json_number(1e3 * one.from_m)},
+                     {"to_mm", json_number(1e3 * one.to_m)},
+                     {"text", core::say(scene::in_words(plan, one), "en")}});
+  return {{"delay_ms", json_number(1e3 * figures.delay.total_s)},
+          {"converter_ms", json_number(1e3 * figures.delay.converter_s)},
+          {"plate_ms", json_number(1e3 * figures.time_constant_s)},
+          {"loop_cutoff_Hz", json_number(figures.loop_cutoff_Hz)},
+          {"textures", textures},
+          {"unmet", unmet}};
+}
+
 Json to_json(scene::Planner& planner, const scene::DrivePlan& plan, const protocol::Factors& factors,
              const std::optional<scene::SoundBound>& sound, const Touched& touched) {
   Json values;
@@ -138,6 +161,7 @@ Json to_json(scene::Planner& planner, const scene::DrivePlan& plan, const protoc
             {"edge_width_mm", json_number(cues.edge_width_m * 1e3)},
             {"strip_width_mm", json_number(cues.strip_width_m * 1e3)},
             {"displacement_um", json_number(cues.displacement_m * 1e6)}}},
+          {"follow", follow_json(plan)},
           {"warnings", json_warnings(plan.warnings)}};
 }
 
@@ -172,6 +196,28 @@ void print(std::ostream& out, const Touched& touched) {
                number(*under.boundary_shift_m * 1e3, 3));
 }
 
+void print_follow(std::ostream& out, const scene::DrivePlan& plan) {
+  using core::number;
+  if (!plan.follow) return;
+  const auto figures = scene::follow_figures(plan);
+  fmt::print(out, "  follows the finger: {}\n", follow::sentence(figures.delay));
+  fmt::print(out, "  the plate rings with a time constant of {} ms\n",
+             number(1e3 * figures.time_constant_s, 3));
+  if (figures.loop_cutoff_Hz)
+    fmt::print(out, "  friction is held by a loop of {} Hz\n", number(*figures.loop_cutoff_Hz, 3));
+  for (const auto& texture : figures.textures) {
+    fmt::print(out, "  part {}: bandwidth {} Hz for this change (least at {} mm)", texture.part + 1,
+               number(texture.bandwidth_Hz, 3), number(1e3 * texture.place_m, 4));
+    if (texture.most_speed_m_s)
+      fmt::print(out, ", felt by fingers up to {} mm/s\n", number(1e3 * *texture.most_speed_m_s, 3));
+    else
+      fmt::print(out, "{}\n", texture.period_m > 0 ? ", felt at no speed" : "");
+  }
+  if (figures.unmet.empty()) fmt::print(out, "  everything that is asked for can be reached\n");
+  for (const auto& unmet : figures.unmet)
+    fmt::print(out, "  not met: {}\n", core::say(scene::in_words(plan, unmet), "en"));
+}
+
 void print(std::ostream& out, const scene::DrivePlan& plan, const std::optional<scene::SoundBound>& sound,
            const Touched& touched) {
   using core::number;
@@ -204,6 +250,7 @@ void print(std::ostream& out, const scene::DrivePlan& plan, const std::optional<
              number(plan.peak_displacement_m * 1e6, 4), number(plan.crest_factor, 3),
              number(plan.lowest_friction, 3));
   print(out, touched);
+  print_follow(out, plan);
   fmt::print(out, "  sound: {}\n", in_words(sound));
   for (const auto& product : plan.audible_products)
     fmt::print(out, "  audible product: {} Hz, order {}\n", number(product.frequency_Hz), product.order);

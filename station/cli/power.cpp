@@ -19,6 +19,7 @@
 #include "station/core/number.hpp"
 #include "station/core/read_file.hpp"
 #include "station/core/usage_error.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/rehearsal/cue_guard.hpp"
 #include "station/rehearsal/parallel.hpp"
 #include "station/rehearsal/power.hpp"
@@ -86,6 +87,7 @@ Json study_of(const PowerPart& part) {
           {"intervals", part.options.interval_sessions},
           {"replicates", part.options.replicates},
           {"people", part.options.people},
+          {"task", part.options.task},
           {"between", part.options.between},
           {"seed", part.options.seed},
           {"parts", part.options.part.of}};
@@ -209,6 +211,7 @@ SessionOutcome session_of(const Json& json) {
 
 Json cue_json(const rehearsal::CueReport& cue) {
   return {{"cue", cue.cue},
+          {"task", cue.task},
           {"accuracy", exact(cue.accuracy)},
           {"chance", exact(cue.chance)},
           {"error", exact(cue.error)}};
@@ -251,11 +254,13 @@ PowerPart part_of(const Json& json) {
   part.protocol = study.at("protocol"), part.observer = study.at("observer");
   part.options.observers = study.at("observers"), part.options.interval_sessions = study.at("intervals");
   part.options.replicates = study.at("replicates"), part.options.seed = study.at("seed");
+  part.options.task = study.at("task");
   part.options.people = study.at("people"), part.options.between = study.at("between").get<simulation::Spread>();
   part.options.part = {json.at("part"), study.at("parts")};
   for (const auto& session : json.at("sessions")) part.sessions.push_back(session_of(session));
   for (const auto& cue : json.at("cues")) {
     auto& report = part.cues.emplace_back();
+    report.task = cue.at("task");
     report.cue = cue.at("cue"), report.accuracy = number(cue.at("accuracy"));
     report.chance = number(cue.at("chance")), report.error = number(cue.at("error"));
   }
@@ -351,7 +356,7 @@ namespace power_command {
 using core::number;
 
 struct Options {
-  std::string protocol, rig, calibration, observer = "sim", out, part;
+  std::string protocol, rig, calibration, observer = "sim", out, part, task;
   std::vector<std::string> join;
   int observers = 1000, intervals = 200, people = 0;
   std::string between;
@@ -393,6 +398,7 @@ Json to_json(const std::vector<rehearsal::CueReport>& cues) {
   Json list = Json::array();
   for (const auto& cue : cues)
     list.push_back({{"cue", cue.cue},
+                    {"task", cue.task.empty() ? Json(nullptr) : Json(cue.task)},
                     {"accuracy", json_number(cue.accuracy)},
                     {"chance", json_number(cue.chance)},
                     {"accuracy_error", json_number(cue.error)},
@@ -407,6 +413,7 @@ struct Found {
   std::vector<rehearsal::CueReport> cues;
   std::vector<rehearsal::BestReward> rewards;  ///< empty without --reward
   std::string id, title;  ///< id and title of the protocol
+  std::string task;       ///< of a protocol with several: the one that this is about
   std::string signal;     ///< the signal that stopped the work; usually ""
 };
 
@@ -415,6 +422,7 @@ Json to_json(const Found& found, const std::vector<std::string>& files) {
   Json recoveries = Json::array();
   for (const auto& recovery : power.recoveries) recoveries.push_back(to_json(recovery));
   return {{"protocol", found.id},
+          {"task", found.task.empty() ? Json(nullptr) : Json(found.task)},
           {"observers", power.observers},
           {"wanted_observers", power.asked},
           {"stopped", found.signal.empty() ? Json(nullptr) : Json(found.signal)},
@@ -431,7 +439,9 @@ Json to_json(const Found& found, const std::vector<std::string>& files) {
           {"files", files}};
 }
 
-void print(std::ostream& out, const rehearsal::Power& power) {
+void print(std::ostream& out, const Found& found) {
+  const auto& power = found.power;
+  if (!found.task.empty()) fmt::print(out, "Task {}\n", found.task);
   fmt::print(out, "{}{} simulated sessions, on average {} trials and {} minutes each{}\n", power.observers,
              power.observers < power.asked ? fmt::format(" of {}", power.asked) : "", number(power.trials, 4),
              number(power.minutes, 3),
@@ -486,11 +496,15 @@ void print(std::ostream& out, const rehearsal::Power& power) {
     fmt::print(out, "Truth is the mean over all simulated people\n");
 }
 
+std::string named(const rehearsal::CueReport& cue) {
+  return cue.task.empty() ? cue.cue : cue.task + ": " + cue.cue;
+}
+
 void print(std::ostream& out, const std::vector<rehearsal::CueReport>& cues) {
   if (cues.empty()) return;
   fmt::print(out, "An observer who uses only one cue, with the best rule for it:\n");
   for (const auto& cue : cues)
-    fmt::print(out, "  {:<30} {:>5} % right (chance {} %){}\n", cue.cue, number(100 * cue.accuracy, 3),
+    fmt::print(out, "  {:<30} {:>5} % right (chance {} %){}\n", named(cue), number(100 * cue.accuracy, 3),
                number(100 * cue.chance, 3), cue.above_chance() ? ", above chance" : "");
 }
 
@@ -543,7 +557,7 @@ void show(const Found& found, const Options& options, Context& context) {
   if (context.json)
     print_json(context.out, to_json(found, files));
   else
-    print(context.out, found.power), print(context.out, found.rewards), print(context.out, found.cues);
+    print(context.out, found), print(context.out, found.rewards), print(context.out, found.cues);
   for (const auto& file : files)
     if (!context.json) fmt::print(context.out, "wrote {}\n", file);
 }
@@ -556,7 +570,7 @@ void join(const Options& options, Context& context) {
   all.options.cautions = rehearsal::cautions_of(all.rewards);
   rehearsal::complete(protocol, all.options, all.sessions);
   show({rehearsal::power_of(protocol, all.options, all.sessions), all.cues, all.rewards, protocol.id,
-        protocol.title, ""},
+        protocol.title, protocol::of_task(protocol, all.options.task).task.name, ""},
        options, context);
 }
 
@@ -595,6 +609,7 @@ void power(const Options& options, Context& context) {
   if (!options.part.empty()) wanted.part = part_of(options.part, options.observers);
   const auto protocol = protocol::load(options.protocol);
   part.protocol = protocol.source, part.path = protocol.path;
+  wanted.task = protocol::chosen_task(protocol, options.task);
   const auto rig = session::calibrated_rig(session::rig_or_default(options.rig, context.err),
                                            options.calibration, context.err);
   for (const auto& note : trial::observer_notes(protocol, simulation::Observer{wanted.observer}))
@@ -627,7 +642,7 @@ void power(const Options& options, Context& context) {
     context.out << to_json(part).dump(-1, ' ', false, kInvalidBytes) << "\n";
   else if (!part.sessions.empty())
     show({rehearsal::power_of(protocol, wanted, part.sessions), part.cues, part.rewards, protocol.id,
-          protocol.title, signal},
+          protocol.title, protocol::of_task(protocol, wanted.task).task.name, signal},
          options, context);
 }
 
@@ -649,6 +664,8 @@ void add_power(CommandLine& app, Context& context) {
                                      "Number of sessions for which 95 % intervals are computed as well")
                         ->capture_default_str()
                         ->check(range(0, 1'000'000));
+  auto* task = command->add_option("--task", options->task,
+                                   "Of a protocol with several tasks: the one whose estimates are simulated");
   auto* people = command
                      ->add_option("--people", options->people,
                                   "Simulate studies with this number of people, and report what each study finds")
@@ -683,7 +700,7 @@ void add_power(CommandLine& app, Context& context) {
               "--join", options->join,
               "Files of all parts, in any order: print what one machine would have found in all sessions")
           ->value("FILE");
-  for (const auto* other : {protocol, rig, calibration, observers, intervals, people, between, observer, seed, part})
+  for (const auto* other : {protocol, rig, calibration, observers, intervals, people, between, observer, seed, part, task})
     join->excludes(other);
   people->excludes(intervals);
   add_progress(*command, options->progress);

@@ -34,6 +34,7 @@ struct Options {
   std::string out, tables, figures, estimator;
   store::SessionFilter filter;
   bool study = false, progress = false;
+  std::string task;
   std::string protocol_version, mode;
 };
 
@@ -72,37 +73,51 @@ void write_figures(const std::string& folder, const std::vector<report::NamedFig
   if (!without_pdf.empty()) throw std::runtime_error(without_pdf);
 }
 
-void report_session(Options options, Context& context) {
-  if (options.databases.size() > 1)
-    throw core::UsageError("--db names " + std::to_string(options.databases.size()) +
-                           " files; the report of one session reads one, that of a study (--study) several");
-  if (!options.tables.empty() || !options.protocol_version.empty() || !options.mode.empty())
-    throw core::UsageError(
-        "--tables, --protocol-version and --mode belong to the report of a study: add --study");
-  const auto& database = options.databases.front();
-  const auto id = view::session_to_report(database, options.filter);
-  auto collected = view::report_data(database, id);
-  if (!options.estimator.empty()) add_estimates(options.estimator, database, id, collected);
-  const auto summary = report::summarise(collected);
-  if (context.json) context.out << report::to_json(summary) << "\n";
-  const auto document = report::document(summary);
-  write_figures(options.figures, figures_of(document));
-  if (options.out.empty() && !context.json) options.out = "report-" + id + ".html";
-  if (options.out.empty()) return;
-  system::write_file(options.out, to_html(document));
-  if (context.json) return;
-  const auto& data = summary.data;
-  fmt::print(context.out, "{}: session {} of {}, {}, {} trials\n", options.out, data.session_id,
-             data.participant, data.title, summary.outcomes.presented);
+/// Prints what the procedures estimated themselves.
+void print_estimates(std::ostream& out, const report::SessionData& data) {
   for (const auto& estimate : data.estimates)
-    fmt::print(context.out, "  {}: {} {}{}{}\n", estimate.procedure, estimate.parameter,
+    fmt::print(out, "  {}: {} {}{}{}\n", estimate.procedure, estimate.parameter,
                core::number(estimate.mean, 4),
                estimate.sd ? fmt::format(" (SD {})", core::number(*estimate.sd, 3)) : "",
                estimate.interval ? fmt::format(", 95 % {} to {}", core::number(estimate.interval->low, 3),
                                                core::number(estimate.interval->high, 3))
                                  : "");
   for (const auto& end : data.early_ends)
-    fmt::print(context.out, "  ended early in {}: {}\n", end.block, core::say(end.why, "en"));
+    fmt::print(out, "  ended early in {}: {}\n", end.block, core::say(end.why, "en"));
+}
+
+void report_session(Options options, Context& context) {
+  if (options.databases.size() > 1)
+    throw core::UsageError("--db names " + std::to_string(options.databases.size()) +
+                           " files; the report of one session reads one, that of a study (--study) several");
+  if (!options.tables.empty() || !options.protocol_version.empty() || !options.mode.empty() ||
+      !options.task.empty())
+    throw core::UsageError(
+        "--tables, --protocol-version, --mode and --task belong to the report of a study: add --study");
+  const auto& database = options.databases.front();
+  const auto id = view::session_to_report(database, options.filter);
+  auto collected = view::report_data(database, id);
+  if (!options.estimator.empty()) {
+    if (collected.size() > 1)
+      throw core::UsageError(
+          "--estimator: the session has several tasks, and a separate program is not told which");
+    add_estimates(options.estimator, database, id, collected.front());
+  }
+  std::vector<report::Summary> summaries;
+  for (const auto& data : collected) summaries.push_back(report::summarise(data));
+  if (context.json) context.out << report::to_json(summaries) << "\n";
+  const auto document = report::document(summaries);
+  write_figures(options.figures, figures_of(document));
+  if (options.out.empty() && !context.json) options.out = "report-" + id + ".html";
+  if (options.out.empty()) return;
+  system::write_file(options.out, to_html(document));
+  if (context.json) return;
+  int presented = 0;
+  for (const auto& summary : summaries) presented += summary.outcomes.presented;
+  const auto& first = summaries.front().data;
+  fmt::print(context.out, "{}: session {} of {}, {}, {} trials\n", options.out, first.session_id,
+             first.participant, first.title, presented);
+  for (const auto& summary : summaries) print_estimates(context.out, summary.data);
 }
 
 /// The file trials.csv, which --tables asks for. It is written participant by participant.
@@ -160,7 +175,8 @@ void report_study(Options options, Context& context) {
   LongWork work(options.progress);
   TrialFile trials(options.tables);
   const auto study = view::study_data(
-      {options.databases, options.names, options.filter.protocol_id, options.protocol_version, options.mode},
+      {options.databases, options.names, options.filter.protocol_id, options.protocol_version, options.mode,
+       options.task},
       [&](const auto& person, const auto& data) { trials.add(person, data); },
       [&](int done, int of) {
         work.show("participants", done, of);
@@ -217,6 +233,8 @@ void add_report(CommandLine& app, Context& context) {
                       "text whose SHA-256 begins with this");
   command->add_option("--mode", options->mode, "With --study: only sessions of this mode")
       ->check(one_of({"live", "pilot", "simulated"}));
+  command->add_option("--task", options->task,
+                      "With --study of a protocol with several tasks: the one to report");
   command
       ->add_option("--tables", options->tables,
                    "With --study: write tidy CSV tables for R and Python to this folder")

@@ -26,6 +26,7 @@ enum class Stream : std::uint32_t {
   questionnaire = 15,
   factor_value = 16,
   factor_list = 17,
+  asking_again = 18,
 };
 
 /// Identifies a random draw. The same key always gives the same numbers, whatever else was drawn. Repeating a

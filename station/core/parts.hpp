@@ -6,6 +6,9 @@ namespace turnpoint::core {
 /// trial are scheduled at once.
 inline constexpr int kMostParts = 16;
 
+/// How often at most a participant can ask for the intervals of a trial again, if the task allows it.
+inline constexpr int kMostAgain = 20;
+
 /// A silence that is shorter than this does not count as a rest of the finger, in s.
 inline constexpr double kRest_s = 0.5;
 

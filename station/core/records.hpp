@@ -164,7 +164,7 @@ struct ToneRow {
   /// standard deviation of the level that the rig's parameters cause; empty if the rig does not say theirs
   std::optional<double> level_uncertainty_dB;
   /// the interval of the task to which the interval belongs, from 0; differs from interval_index if an
-  /// interval of the task has several parts
+  /// interval of the task has several parts, or is presented again; -1 before the first interval
   int of_interval = 0;
 };
 
@@ -185,10 +185,16 @@ struct Bytes {
 /// The stream with all captured channels of a void trial, sample by sample.
 inline constexpr const char* kRawStream = "raw";
 
+/// The stream with the updates of a scene that follows the finger, and the one with the gains that they gave:
+/// the envelope of the drive as it was commanded, of which a point is the gain at its frame.
+inline constexpr const char* kFollowStream = "follow";
+inline constexpr const char* kEnvelopeStream = "envelope";
+
 /// What a sensor recorded during one trial: points at a fixed rate, compressed
 /// (station/store/signal_code.hpp).
 struct SignalRow {
-  std::string stream;            ///< what recorded the signal: "finger" (the force cells) or kRawStream
+  /// what recorded the signal: "finger" (the force cells), kFollowStream, kEnvelopeStream or kRawStream
+  std::string stream;
   std::int64_t start_frame = 0;  ///< playback frame of the first point
   double start_s = 0;            ///< time of the first point from the start of the program run (segment)
   double rate_Hz = 0;            ///< points of the signal per second
@@ -228,6 +234,9 @@ struct ResponseRow {
   /// what the result was worth to the participant; empty without points in the protocol, and for void trials
   std::optional<double> points;
   int extra_touches = 0;
+  /// how often the intervals were presented again because the participant asked for it; empty where nobody
+  /// can
+  std::optional<int> again = {};
 };
 
 /// When a trial happened, and how its times were measured.
@@ -266,6 +275,21 @@ struct SurfaceRow {
   std::optional<double> silence_dB, silence_tone_dB;
 };
 
+/// What a scene that follows the finger presented in the interval presented last (station/follow/record.hpp).
+/// `followed` is "" if no scene of the trial follows the finger; otherwise "ok", or the names of the faults
+/// of all intervals that have interrupted following, with spaces between them. A value that could not be
+/// measured is empty.
+struct FollowRow {
+  std::string followed;
+  std::optional<double> mu_asked, mu_commanded, mu_felt;  ///< means of the coefficient of friction
+  std::optional<double> lag_ms;                           ///< of felt behind asked friction
+  std::optional<double> inside;  ///< share of that time in which felt friction is within 10 % of the asked
+  std::optional<double> share;   ///< share of the interval in which the surface followed the finger
+  /// measured minus commanded envelope at the pick-up, relative to the commanded (rms), and its lag; of
+  /// several intervals, the worst
+  std::optional<double> envelope_error_dB, envelope_lag_us;
+};
+
 /// The result of one trial. It is committed as a whole before the next trial begins.
 struct TrialRow {
   int segment_index = 1;   ///< number of the program run, from 1; set by the session log, not by the caller
@@ -285,6 +309,7 @@ struct TrialRow {
   FingerRow finger;
   std::vector<ToneRow> tones;
   std::vector<SignalRow> signal_rows;  ///< signals of the trial; written, but not read back with the trial
+  FollowRow follow;
 };
 
 /// A block of a stored session with its finished trials, in the order in which they were run.

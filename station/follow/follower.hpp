@@ -28,6 +28,7 @@ struct Plan {
   LoopSettings loop;
   Control control = Control::open;
   double resting_friction = 1;  ///< coefficient of friction of the surface at rest, as measured
+  bool resting_known = true;    ///< false: it stands for a value that nobody has stated
   double resting_gain = 0;      ///< without a finger, and after a fault
   double ramp_s = 5e-3;         ///< from the gain at a fault to the resting gain, in a straight line
   double resume_s = 10e-3;      ///< from there to following, after `steady_s` without a fault

@@ -118,11 +118,46 @@ double GainMap::most_displacement_m(double place_m) const noexcept {
   return mix(static_cast<double>(displacement_m_[i]), static_cast<double>(displacement_m_[i + 1]), t);
 }
 
+namespace {
+
+/// The part as a constant at the lowest or the highest value that it takes in a cycle.
+Part extreme_of(const Pattern& pattern, const Part& part, bool highest) {
+  float share = highest ? 1 : 0;
+  if (part.shape == Shape::table) {
+    const auto* samples = pattern.table.data() + part.table_first;
+    share = highest ? *std::max_element(samples, samples + part.table_count)
+                    : *std::min_element(samples, samples + part.table_count);
+  }
+  Part constant = part;
+  constant.shape = Shape::constant;
+  constant.to = part.from + (part.to - part.from) * static_cast<double>(share);
+  return constant;
+}
+
+/// The pattern with its parts that vary in time at each combination of their extremes: in time, each place
+/// meets them.
+std::vector<Pattern> extremes_of(const Pattern& pattern) {
+  std::vector<Pattern> all{pattern};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(pattern.part_count); ++i) {
+    if (pattern.parts[i].cycles_per_s == 0) continue;
+    const auto count = all.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      all.push_back(all[k]);
+      all[k].parts[i] = extreme_of(pattern, pattern.parts[i], false);
+      all.back().parts[i] = extreme_of(pattern, pattern.parts[i], true);
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
 std::vector<Unmet> unmet(const Pattern& pattern, const GainMap& map, double resting_friction, double begin_m,
                          double end_m, double tolerance) {
   PatternState none, all;
   all.active.fill(true);
   for (std::size_t i = 0; i < all.since_s.size(); ++i) all.since_s[i] = -pattern.parts[i].trigger.delay_s;
+  const auto patterns = extremes_of(pattern);
   std::vector<Unmet> found;
   double worst = 0, last_m = 0;
   const auto steps = static_cast<int>(std::floor((end_m - begin_m) / unmet_step_m + 1e-9));
@@ -132,11 +167,12 @@ std::vector<Unmet> unmet(const Pattern& pattern, const GainMap& map, double rest
     const double least = friction ? resting_friction * map.lowest_friction(place_m) : 0;
     const double most = friction ? resting_friction : map.most_displacement_m(place_m);
     double miss = 0, asked = 0;
-    for (const PatternState* state : {&none, &all}) {
-      const double value = asked_at(pattern, *state, place_m, 0);
-      const double by = std::max(least - value, value - most);
-      if (by > miss) miss = by, asked = value;
-    }
+    for (const auto& extreme : patterns)
+      for (const PatternState* state : {&none, &all}) {
+        const double value = asked_at(extreme, *state, place_m, 0);
+        const double by = std::max(least - value, value - most);
+        if (by > miss) miss = by, asked = value;
+      }
     if (!(miss > tolerance)) continue;
     if (found.empty() || place_m - last_m > 1.5 * unmet_step_m) found.push_back({place_m}), worst = 0;
     last_m = found.back().to_m = place_m;

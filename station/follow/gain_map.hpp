@@ -64,7 +64,7 @@ struct Unmet {
 };
 
 /// Where a pattern asks for more than `tolerance` (in its own unit) beyond what can be presented, from
-/// begin_m to end_m, in steps of 0.1 mm at time 0: once without the events, once with all of them.
+/// begin_m to end_m, in steps of 0.1 mm: without the events and with all of them, at all times.
 /// `resting_friction` is the coefficient of friction of the surface at rest; it is not used for a pattern of
 /// displacement.
 std::vector<Unmet> unmet(const Pattern& pattern, const GainMap& map, double resting_friction, double begin_m,

@@ -10,6 +10,7 @@
 #include "station/core/texts.hpp"
 #include "station/io/amplifier.hpp"
 #include "station/protocol/answers.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/session/burst.hpp"
 #include "station/session/stage.hpp"
 #include "station/system/clocks.hpp"
@@ -43,6 +44,8 @@ core::Phrase trouble_of(const audio::Event& event, const audio::OutputConfig& ou
                      plain(output.rate_Hz)});
     case audio::EventKind::burst_started:
     case audio::EventKind::burst_ended:
+    case audio::EventKind::burst_unfollowed:
+    case audio::EventKind::burst_follows:
     case audio::EventKind::burst_heard:
     case audio::EventKind::device_back:
       return {};
@@ -165,10 +168,11 @@ FeltScene feel_scene(const rig::Rig& rig, const protocol::Protocol& protocol, co
                      const protocol::Factors& factors, const std::stop_token& stop) {
   FeltScene felt;
   double length_s = protocol.timing.explore_s.value_or(kUsual_s);
-  for (const auto& part : protocol::parts_of(protocol.task))
-    if (std::find(part.scenes.begin(), part.scenes.end(), scene) != part.scenes.end() &&
-        protocol::length_of(protocol.task, part) != nullptr)
-      length_s = protocol::length_range_s(protocol, part).second;
+  for (const auto* one : protocol::tasks_of(protocol))
+    for (const auto& part : protocol::parts_of(one->task))
+      if (std::find(part.scenes.begin(), part.scenes.end(), scene) != part.scenes.end() &&
+          protocol::length_of(one->task, part) != nullptr)
+        length_s = protocol::length_range_s(*one, part).second;
   felt.length_s = std::min({length_s, kLongest_s, rig.limits.continuous_s});
   felt.rest_s = std::max(kShortestRest_s, felt.length_s * (1 / rig.limits.duty - 1));
   const auto burst = session::scene_burst(rig, protocol, scene, factors, felt.length_s);

@@ -196,9 +196,8 @@ std::vector<std::size_t> Posterior::places_that_matter() const {
 /// Returns for each stimulus the sum of products over all places that matter: `factors` times the rows of
 /// `table` that belong to the stimulus. Both have `length` entries per place.
 std::vector<double> Posterior::sums(const std::vector<double>& factors, const std::vector<double>& table,
-                                    std::size_t length) const {
+                                    std::size_t length, const std::vector<std::size_t>& matter) const {
   const std::size_t n = stimuli_.size();
-  const auto matter = places_that_matter();
   std::vector<double> all(n + kAbreast);
   for (std::size_t first = 0; first < n; first += kAbreast) {
     std::array<const std::uint32_t*, kAbreast> rows;
@@ -209,7 +208,7 @@ std::vector<double> Posterior::sums(const std::vector<double>& factors, const st
   return all;
 }
 
-std::vector<double> Posterior::predictives() const {
+std::vector<double> Posterior::predictives(const std::vector<std::size_t>& matter) const {
   // The answer's probability is a linear function of guess and of 1 - guess - lapse, so first average over
   // these two.
   std::vector<double> range(places_ * padded_shapes_);
@@ -223,7 +222,7 @@ std::vector<double> Posterior::predictives() const {
       from_guessing += low;
       range[p * padded_shapes_ + s] = between;
     }
-  auto all = sums(range, core_, padded_shapes_);
+  auto all = sums(range, core_, padded_shapes_, matter);
   for (auto& p : all) p += from_guessing;
   return all;
 }
@@ -232,14 +231,13 @@ std::vector<double> Posterior::predictives() const {
 /// parameters) were known. It groups grid points with the same kept parameters, averages the probability of
 /// the answer within each group, and returns the weighted mean of the groups' entropies. A group's weight,
 /// and the part of its probability that comes from guessing, do not depend on the stimulus.
-std::vector<double> Posterior::kept_entropies() const {
+std::vector<double> Posterior::kept_entropies(const std::vector<std::size_t>& matter) const {
   std::vector<double> weight(groups_), guess_part(groups_), entropies;
   for (std::size_t i = 0; i < size();)
     for (std::size_t e = 0; e < ends_; ++e, ++i) {
       weight[kept_[i]] += weights_[i];
       guess_part[kept_[i]] += weights_[i] * guesses_[e];
     }
-  const auto matter = places_that_matter();
   std::vector<double> values(shapes_ * kAbreast), ones(groups_ * kAbreast);
   for (std::size_t first = 0; first < stimuli_.size(); first += kAbreast) {
     for (std::size_t i = 0; i < ones.size(); ++i) ones[i] = guess_part[i / kAbreast];
@@ -267,11 +265,15 @@ std::size_t Posterior::memory_bytes() const {
          sizeof(std::uint32_t) * (rows_.size() + kept_.size());
 }
 
-double Posterior::predictive(std::size_t stimulus) const { return predictives()[stimulus]; }
+double Posterior::predictive(std::size_t stimulus) const {
+  return predictives(places_that_matter())[stimulus];
+}
 
 std::vector<double> Posterior::information() const {
-  auto information = predictives();
-  const auto given = kept_.empty() ? sums(weights_, entropy_, shapes_ * ends_) : kept_entropies();
+  const auto matter = places_that_matter();
+  auto information = predictives(matter);
+  const auto given =
+      kept_.empty() ? sums(weights_, entropy_, shapes_ * ends_, matter) : kept_entropies(matter);
   for (std::size_t x = 0; x < stimuli_.size(); ++x)
     information[x] = binary_entropy(information[x]) - given[x];
   return information;

@@ -77,10 +77,10 @@ class Posterior {
   void set_groups(const Spec& spec);
   double threshold_of(std::size_t place, double second) const;
   std::vector<double> sums(const std::vector<double>& factors, const std::vector<double>& table,
-                           std::size_t length) const;
+                           std::size_t length, const std::vector<std::size_t>& matter) const;
   std::vector<std::size_t> places_that_matter() const;
-  std::vector<double> predictives() const;
-  std::vector<double> kept_entropies() const;
+  std::vector<double> predictives(const std::vector<std::size_t>& matter) const;
+  std::vector<double> kept_entropies(const std::vector<std::size_t>& matter) const;
   std::vector<double> marginal(Parameter parameter) const;
   std::size_t index_of(std::size_t point, Parameter parameter) const;
   std::size_t row(std::size_t stimulus, std::size_t place) const { return rows_[stimulus * places_ + place]; }

@@ -21,6 +21,7 @@ void sum_rows(double* __restrict sums, const double* __restrict factors, const d
               const std::array<const std::uint32_t*, kAbreast>& rows, const std::size_t* places,
               std::size_t count, std::size_t length) {
   Lanes sum[kAbreast] = {};
+  Quad half[kAbreast] = {};
   Quad rest = {};  // one for each stimulus
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t place = places[k];
@@ -37,10 +38,21 @@ void sum_rows(double* __restrict sums, const double* __restrict factors, const d
         sum[x] += factor_here * by;
       }
     }
+    if (i + 4 <= length) {
+      Quad factor_here, by;
+      std::memcpy(&factor_here, factor + i, sizeof factor_here);
+#pragma GCC unroll 4
+      for (std::size_t x = 0; x < kAbreast; ++x) {
+        std::memcpy(&by, row[x] + i, sizeof by);
+        half[x] += factor_here * by;
+      }
+      i += 4;
+    }
     for (; i < length; ++i) rest += factor[i] * Quad{row[0][i], row[1][i], row[2][i], row[3][i]};
   }
   for (std::size_t x = 0; x < kAbreast; ++x)
-    sums[x] = rest[x] + ((sum[x][0] + sum[x][1]) + (sum[x][2] + sum[x][3])) +
+    sums[x] = rest[x] + ((half[x][0] + half[x][1]) + (half[x][2] + half[x][3])) +
+              ((sum[x][0] + sum[x][1]) + (sum[x][2] + sum[x][3])) +
               ((sum[x][4] + sum[x][5]) + (sum[x][6] + sum[x][7]));
 }
 

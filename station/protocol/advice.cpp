@@ -5,6 +5,7 @@
 #include "station/protocol/advice_list.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/protocol/survey.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/protocol/visits.hpp"
 
 namespace turnpoint::protocol {
@@ -131,15 +132,16 @@ void check_differences(AdviceList& advice, const procedure::Spec& spec) {
                phrase("choose values closer to equal steps of feeling"));
 }
 
+/// Looks at all tasks together.
 void check_unused(AdviceList& advice) {
   const auto& protocol = advice.protocol;
-  const auto used = factors_used(protocol);
+  auto used = factors_used(protocol);
+  for (const auto* one : tasks_of(protocol)) used.insert(one->task.question_shows);
   const auto sources = sources_of(protocol);
   for (const auto& factor : protocol.factors) {
     const auto sets = [&](const Source& source) { return source.sets.count(factor.name) > 0; };
     // a factor that divides participants into groups need not change what the surface presents
-    if (!is_group(factor) && !used.count(factor.name) && factor.name != protocol.task.question_shows &&
-        std::none_of(sources.begin(), sources.end(), sets))
+    if (!is_group(factor) && !used.count(factor.name) && std::none_of(sources.begin(), sources.end(), sets))
       advice.add("factor." + factor.name + ".name",
                  phrase("the factor \"%1\" is not used", {plain(factor.name)}));
   }
@@ -176,23 +178,40 @@ void advise_on_levels(AdviceList& advice) {
     check_unequal_steps(advice, spec);
     check_differences(advice, spec);
   }
-  check_unused(advice);
 }
 
-std::vector<core::Problem> advice(const Protocol& protocol) {
+namespace {
+
+/// Advice on the protocol as one of its tasks sees it.
+std::vector<core::Problem> advice_on_task(const Protocol& protocol) {
   AdviceList advice(protocol);
   for (const auto& spec : protocol.procedures)
     for (const auto& fault : procedure::advise(spec))
       advice.add(key_of(spec, fault.key), phrase("procedure \"%1\": %2", {plain(spec.name), fault.what}),
                  fault.allowed);
   advise_on_levels(advice);
+  if (protocol.task.name.empty()) check_unused(advice);
   advise_on_answers(advice);
   advise_on_times(advice);
   advise_on_grids(advice);
   advise_on_plan(advice);
   advise_on_labels(advice);
-  advise_on_interludes(advice);
+  if (protocol.task.name.empty()) advise_on_interludes(advice);
   return std::move(advice.found);
+}
+
+}  // namespace
+
+std::vector<core::Problem> advice(const Protocol& protocol) {
+  if (protocol.by_task.empty()) return advice_on_task(protocol);
+  AdviceList whole(protocol);
+  check_unused(whole);
+  advise_on_plan(whole);
+  advise_on_interludes(whole);
+  auto all = std::move(whole.found);
+  for (const auto& one : protocol.by_task)
+    for (auto& found : advice_on_task(one)) add_once(std::move(found), all);
+  return all;
 }
 
 }  // namespace turnpoint::protocol

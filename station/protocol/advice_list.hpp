@@ -51,7 +51,8 @@ void advise_on_answers(AdviceList& advice);
 void advise_on_times(AdviceList& advice);
 /// Checks the grids, rates, thresholds and stopping rules of procedures.
 void advise_on_grids(AdviceList& advice);
-/// Checks blocks, instructions, labels, questions, and the analysis.
+/// Checks blocks, instructions, labels, questions, and the analysis. Of a file with several tasks, the whole
+/// protocol is asked for what concerns all of them, and the protocol as one of them sees it for the rest.
 void advise_on_plan(AdviceList& advice);
 /// Finds labels of answers that are too long for a small screen.
 void advise_on_labels(AdviceList& advice);

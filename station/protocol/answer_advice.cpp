@@ -6,6 +6,7 @@
 #include "station/protocol/advice_list.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
+#include "station/protocol/tasks.hpp"
 
 namespace turnpoint::protocol {
 
@@ -74,10 +75,12 @@ void check_each_answer(AdviceList& advice) {
   for (const auto& [id, comparison] : protocol.task.correct_answer) {
     const int times = right.times[id];
     if (times == 0)
-      advice.add("task.correct." + id, phrase("the answer \"%1\" is never right", {plain(id)}),
+      advice.add(key_of(protocol.task, "correct.") + id,
+                 phrase("the answer \"%1\" is never right", {plain(id)}),
                  phrase("write a comparison that is true for some levels"));
     else if (times == right.all)
-      advice.add("task.correct." + id, phrase("the answer \"%1\" is always right", {plain(id)}),
+      advice.add(key_of(protocol.task, "correct.") + id,
+                 phrase("the answer \"%1\" is always right", {plain(id)}),
                  phrase("write a comparison that is false for some levels"));
   }
 }

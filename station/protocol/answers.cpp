@@ -237,11 +237,24 @@ procedure::Answer learned_from(const procedure::Spec& spec, const std::string& r
 std::vector<Part> parts_of(const Task& task, const std::vector<std::string>& interval) {
   if (interval.size() == 1)
     if (const auto named = task.parts.find(interval.front()); named != task.parts.end()) return named->second;
-  return {{interval, {}, {}, {}}};
+  std::vector<Part> one(1);
+  one.front().scenes = interval;
+  return one;
+}
+
+std::vector<std::vector<Part>> parts_of_trial(const Task& task,
+                                              const std::vector<std::vector<std::string>>& intervals) {
+  std::vector<std::vector<Part>> all;
+  for (const auto& interval : intervals) all.push_back(parts_of(task, interval));
+  if (task.before.empty() || all.empty() || all.front().empty()) return all;
+  auto& silences_s = all.front().front().silences_s;
+  silences_s.insert(silences_s.begin(), task.before_silences_s.begin(), task.before_silences_s.end());
+  all.front().insert(all.front().begin(), task.before.begin(), task.before.end());
+  return all;
 }
 
 std::vector<Part> parts_of(const Task& task) {
-  std::vector<Part> all;
+  std::vector<Part> all = task.before;
   const auto add = [&](const std::vector<std::string>& interval) {
     for (auto& part : parts_of(task, interval)) all.push_back(std::move(part));
   };
@@ -260,6 +273,7 @@ std::vector<Linear> stimulus_times(const Task& task) {
     if (part.duration_s) times.push_back(*part.duration_s);
     times.insert(times.end(), part.silences_s.begin(), part.silences_s.end());
   }
+  times.insert(times.end(), task.before_silences_s.begin(), task.before_silences_s.end());
   return times;
 }
 
@@ -375,8 +389,8 @@ double quick_trial_s(const Protocol& protocol, double answer_s) {
   const auto intervals =
       task.intervals.empty() ? std::vector<std::vector<std::string>>{{task.standard}} : task.intervals;
   double stimuli_s = 0;
-  for (const auto& interval : intervals)
-    for (const auto& part : parts_of(task, interval)) {
+  for (const auto& parts : parts_of_trial(task, intervals))
+    for (const auto& part : parts) {
       for (const auto& silence : part.silences_s) stimuli_s += middle(silence);
       if (const auto* length = length_of(task, part))
         stimuli_s += middle(*length);
@@ -384,7 +398,7 @@ double quick_trial_s(const Protocol& protocol, double answer_s) {
         stimuli_s += mean(*task.foreperiod_s);
     }
   if (task.gap_s) stimuli_s += static_cast<double>(intervals.size() - 1) * middle(*task.gap_s);
-  return kCue_s + stimuli_s + answer_s + mean(protocol.timing.iti_s);
+  return middle(task.cue_s) + stimuli_s + answer_s + mean(protocol.timing.iti_s);
 }
 
 std::optional<double> accepted(const ValueAnswer& answer, double given) {

@@ -20,6 +20,9 @@ AnswerRule answer_rule_of(const Protocol& protocol, const std::string& level);
 /// only.
 std::vector<Meaning> meanings_of(const Protocol& protocol);
 
+/// The meanings of a file with several tasks: those of each, with its name.
+std::vector<Meaning> meanings_of_tasks(const Protocol& protocol);
+
 /// In 2ifc, the scene of the interval with this number (0 or 1) as the protocol lists them, by which
 /// `correct` names it.
 std::string scene_of(const Task& task, int number);
@@ -44,8 +47,13 @@ procedure::Answer learned_from(const procedure::Spec& spec, const std::string& r
 /// The parts of an interval that the task lists.
 std::vector<Part> parts_of(const Task& task, const std::vector<std::string>& interval);
 
-/// All parts that the task presents, in the order of the task: those of its intervals, or of standard and
-/// target.
+/// The parts of a trial with these intervals, a list for each. What comes before the first interval is at the
+/// beginning of the first list, and the silence after it before the next part.
+std::vector<std::vector<Part>> parts_of_trial(const Task& task,
+                                              const std::vector<std::vector<std::string>>& intervals);
+
+/// All parts that the task presents, in the order of the task: what comes before the intervals, and those of
+/// its intervals, or of standard and target.
 std::vector<Part> parts_of(const Task& task);
 
 /// The parts that can be the last one of a trial: one for each order of the intervals, without repetition.
@@ -81,8 +89,8 @@ struct LatestChange {
 };
 std::optional<LatestChange> latest_change(const Protocol& protocol);
 
-/// About how long a trial lasts that is answered `answer_s` after its stimuli: the get-ready cue, the
-/// stimuli, the answer and the pause.
+/// About how long a trial of the task lasts that is answered `answer_s` after its stimuli: the get-ready cue,
+/// the stimuli, the answer and the pause.
 double quick_trial_s(const Protocol& protocol, double answer_s);
 
 /// True if answers are ratings or numbers, none of which is right or wrong.

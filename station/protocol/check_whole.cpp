@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "station/core/number.hpp"
@@ -9,6 +10,7 @@
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/protocol/tasks.hpp"
 
 namespace turnpoint::protocol {
 
@@ -85,33 +87,52 @@ core::Phrase instead_of_judging(const Task& task) {
   if (task.kind == TaskKind::adjustment) return phrase("use another kind of task");
   if (task.kind == TaskKind::comparison)
     return phrase("leave it out: in a comparison no answer is right or wrong");
-  return phrase("set \"correct\" in [task]");
+  return phrase("set \"correct\" in %1", {plain(table_of(task))});
 }
 
-// Points and goals need answers that are right or wrong.
+/// True if the file has a task, or several.
+bool has_task(const Reading& reading) { return reading.places.has("task") || reading.places.has("tasks"); }
+
+// Points and goals need answers that are right or wrong: points in some task, a goal in some task of each
+// block that has it.
 void check_goals(const Reading& reading) {
   const auto& protocol = reading.protocol;
-  const auto& task = protocol.task;
-  const bool judged = task.kind != TaskKind::adjustment && scored(task);
-  if (judged || !reading.places.has("task") || reading.places.has("task.correct")) return;
-  const auto report = [&](const std::string& key) {
+  if (!has_task(reading)) return;
+  const auto all = as_tasks_see(reading);
+  const auto judged = [&](const Protocol& one) {
+    return (one.task.kind != TaskKind::adjustment && scored(one.task)) ||
+           reading.places.has(key_of(one.task, "correct"));
+  };
+  const auto report = [&](const std::string& key, const Task& task) {
     reading.findings.add(reading.places.of(key),
                          phrase("\"%1\" judges answers, but no answer is correct", {plain(key)}),
                          instead_of_judging(task));
   };
-  if (protocol.payoff) report("payoff");
-  for (const auto& [name, instruction] : protocol.instructions)
-    if (instruction.goal) report("instructions." + name + ".goal");
+  if (protocol.payoff && std::none_of(all.begin(), all.end(), judged)) report("payoff", all.front().task);
+  for (const auto& [name, instruction] : protocol.instructions) {
+    if (!instruction.goal) continue;
+    std::map<std::string, std::vector<const Protocol*>> asked;  // by each block that has the goal
+    for (const auto& one : all)
+      for (const auto& block : all_blocks(one))
+        if (const auto fixed = block.fixed.find("instruction");
+            fixed != block.fixed.end() && fixed->second == FactorValue(name))
+          asked[block.name].push_back(&one);
+    if (asked.empty()) asked[""].push_back(&all.front());
+    for (const auto& [block, tasks] : asked)
+      if (std::none_of(tasks.begin(), tasks.end(), [&](const auto* one) { return judged(*one); })) {
+        report("instructions." + name + ".goal", tasks.front()->task);
+        break;
+      }
+  }
 }
 
 // Without correct answers, a procedure cannot follow right answers, and practice cannot be passed. Reports
 // such procedures and blocks.
-void check_scored(core::TableReader& file, const Reading& reading) {
+void check_scored(const Reading& reading) {
   const auto& protocol = reading.protocol;
   const auto& task = protocol.task;
-  const auto* table = file.take("task");
-  const bool stated = table && table->find("correct");
-  if (!table || task.kind == TaskKind::adjustment || scored(task) || stated) return;
+  const bool stated = reading.places.has(key_of(task, "correct"));
+  if (!has_task(reading) || task.kind == TaskKind::adjustment || scored(task) || stated) return;
   for (const auto& spec : protocol.procedures) {
     if (procedure::follows_answers(spec) && judges(task))
       reading.findings.add(
@@ -119,10 +140,11 @@ void check_scored(core::TableReader& file, const Reading& reading) {
           phrase("the procedure \"%1\" needs answers that are right or wrong", {plain(spec.name)}),
           plain("kind = \"constant-stimuli\""));
     else if (procedure::follows_answers(spec) && spec.tracks.empty())
-      reading.findings.add(table->place,
-                           phrase("the procedure \"%1\" depends on correct answers, but no answer is correct",
-                                  {plain(spec.name)}),
-                           phrase("set \"correct\" in [task], or \"tracks\" in the procedure"));
+      reading.findings.add(
+          reading.places.of(task.name.empty() ? "task" : "tasks." + task.name),
+          phrase("the procedure \"%1\" depends on correct answers, but no answer is correct",
+                 {plain(spec.name)}),
+          phrase("set \"correct\" in %1, or \"tracks\" in the procedure", {plain(table_of(task))}));
   }
   for (const auto& part : protocol.plan) {
     const auto& block = block_of(part);
@@ -291,10 +313,28 @@ void check_foreperiod(const Reading& reading) {
   const auto change = latest_change(reading.protocol);
   if (change && change->change_s >= change->whole_s)
     reading.findings.add(
-        reading.places.of("task.foreperiod_s"),
+        reading.places.of(key_of(reading.protocol.task, "foreperiod_s")),
         phrase("the second scene can begin %1 s after the tones begin, but they last only %2 s",
                {plain(core::number(change->change_s)), plain(core::number(change->whole_s))}),
         phrase("a foreperiod that is shorter than the tones for all values of the factors"));
+}
+
+// A cue whose length depends on what decides the right answer, or the signal, tells it.
+void check_cue(const Reading& reading) {
+  const auto& task = reading.protocol.task;
+  const auto deciding = deciding_factors(task);
+  for (const auto& name : factors_in(task.cue_s))
+    if (deciding.contains(name))
+      return reading.findings.add(
+          task.cue_s.place,
+          phrase("the length of the cue depends on \"%1\", which decides the right answer", {plain(name)}),
+          phrase("other factors"));
+}
+
+/// True if a scene comes before the one that the slider moves.
+bool has_standard(const Task& task) {
+  const auto parts = parts_of(task);
+  return parts.size() > 1 || (!parts.empty() && parts.front().scenes.size() > 1);
 }
 
 void check_timing(core::TableReader& file, const Reading& reading) {
@@ -307,13 +347,17 @@ void check_timing(core::TableReader& file, const Reading& reading) {
     return entry ? entry->value.place : table->place;
   };
   auto& findings = reading.findings;
-  const bool one_interval = explored(protocol.task);
-  if (one_interval && !table->find("explore_s") && !protocol.task.duration_s)
+  const auto& task = protocol.task;
+  const auto task_place = task.name.empty() ? table->place : reading.places.of("tasks." + task.name);
+  if (explored(task) && !table->find("explore_s") && !task.duration_s)
     findings.add(
-        table->place, phrase("nothing ends the interval: [timing] has no \"explore_s\""),
-        phrase(
-            "set it to the longest time that the tones last, in seconds (or set \"duration_s\" in [task])"));
-  if (!one_interval && table->find("explore_s"))
+        task_place, phrase("nothing ends the interval: [timing] has no \"explore_s\""),
+        phrase("set it to the longest time that the tones last, in seconds (or set \"duration_s\" in %1)",
+               {plain(table_of(task))}));
+  const auto all = as_tasks_see(reading);
+  const bool none_explored =
+      std::none_of(all.begin(), all.end(), [](const Protocol& one) { return explored(one.task); });
+  if (none_explored && table->find("explore_s"))
     findings.add(
         place("explore_s"),
         phrase("\"explore_s\" does not apply to intervals that last for the \"duration_s\" of [task]"),
@@ -323,9 +367,23 @@ void check_timing(core::TableReader& file, const Reading& reading) {
         place("response_signal"),
         phrase("a slider is not set at a signal: \"response_signal\" does not apply to \"adjustment\""),
         phrase("use \"deadline_s\""));
-  if (timing.response_zero == ResponseZero::change && !has_change(protocol.task))
+  if (timing.signal && protocol.task.again > 0)
+    findings.add(
+        reading.places.of(key_of(protocol.task, "again")),
+        phrase("nobody can ask for the intervals again and answer at a signal: \"again\" does not apply "
+               "with \"response_signal\""),
+        phrase("leave it out, or use \"deadline_s\""));
+  if (protocol.task.again > 0 && protocol.task.kind == TaskKind::adjustment && !has_standard(protocol.task))
+    findings.add(
+        reading.places.of(key_of(protocol.task, "again")),
+        phrase("nothing comes before the scene that the slider moves, so there is nothing to feel again"),
+        phrase("leave it out, or use an interval that begins with a standard"));
+  if (timing.response_zero == ResponseZero::change && !has_change(task))
     findings.add(place("response_zero"),
-                 phrase("\"response_zero\" is \"change\", but no interval has a second scene"),
+                 task.name.empty()
+                     ? phrase("\"response_zero\" is \"change\", but no interval has a second scene")
+                     : phrase("\"response_zero\" is \"change\", but no interval of %1 has a second scene",
+                              {plain(table_of(task))}),
                  phrase("use an interval of two scenes: %1", {plain("intervals = [[\"a\", \"b\"]]")}));
   check_foreperiod(reading);
   if (!table->find("deadline_s") && !table->find("response_signal"))
@@ -355,13 +413,13 @@ void check_timing(core::TableReader& file, const Reading& reading) {
     }
 }
 
-}  // namespace
-
-void check_whole(core::TableReader& file, Reading& reading) {
+/// Checks the protocol as one of its tasks sees it.
+void check_one(core::TableReader& file, const Reading& reading) {
   check_timing(file, reading);
   check_signal(reading);
-  check_scored(file, reading);
-  check_goals(reading);
+  check_follow(reading);
+  check_scored(reading);
+  check_cue(reading);
   check_limits(reading);
   check_detection(reading);
   check_adjustment(reading);
@@ -371,6 +429,67 @@ void check_whole(core::TableReader& file, Reading& reading) {
   for (const auto& name : needed) check_values(sources, name, reading);
   check_answers(sources, reading);
   check_present(sources, reading);
+}
+
+}  // namespace
+
+void check_whole(core::TableReader& file, Reading& reading) {
+  check_goals(reading);
+  check_tasks(reading);
+  for (auto& one : as_tasks_see(reading)) {
+    const Reading part{
+        one,           reading.findings, reading.places, reading.declared_scenes, reading.families,
+        reading.tasks, reading.asks};
+    check_one(file, part);
+  }
+  if (reading.tasks.empty()) return;
+  std::vector<core::Problem> once;
+  for (auto& problem : reading.findings.problems) add_once(std::move(problem), once);
+  reading.findings.problems = std::move(once);
+}
+
+void check_tasks(const Reading& reading) {
+  if (reading.tasks.empty()) return;
+  std::set<std::string> asked;
+  bool known =
+      true;  // otherwise some procedure or block does not say which task it asks, as has been reported
+  for (const auto& [name, task] : reading.asks) known = known && !task.empty();
+  for (const auto& part : reading.protocol.plan) {
+    const auto& block = block_of(part);
+    if (block.kind != BlockKind::trials) continue;
+    known = known && (block.level.empty() || !block.task.empty());
+    std::set<std::string> here;
+    if (!block.task.empty()) here.insert(block.task);
+    for (const auto& name : block.procedures)
+      if (const auto found = reading.asks.find(name); found != reading.asks.end()) here.insert(found->second);
+    asked.insert(here.begin(), here.end());
+    if (here.size() < 2) continue;
+    if (block.catch_trials)
+      reading.findings.add(
+          reading.places.of(key_of(part, "catch")),
+          phrase("block \"%1\" asks several tasks, so catch trials do not know theirs", {plain(block.name)}),
+          phrase("leave it out, or add a procedure with easy levels"));
+    for (const auto& task : reading.tasks)
+      if (here.contains(task.name) && !reading.places.has(key_of(task, "cue")))
+        reading.findings.add(
+            reading.places.of("tasks." + task.name),
+            phrase("block \"%1\" asks several tasks, but nothing tells people that \"%2\" comes",
+                   {plain(block.name), plain(task.name)}),
+            phrase("give it a \"cue\", which the page shows before each trial"));
+    for (const auto& name : block.procedures)
+      if (const auto* spec = find_procedure(reading.protocol, name); spec && !spec->max_run.empty())
+        reading.findings.add(
+            reading.places.of(key_of(*spec, "order")),
+            phrase("block \"%1\" asks several tasks, whose answers do not make runs together",
+                   {plain(block.name)}),
+            phrase("leave out \"max_run\", or give each task blocks of its own"));
+  }
+  for (const auto& task : reading.tasks)
+    if (known && !asked.contains(task.name))
+      reading.findings.add(reading.places.of("tasks." + task.name),
+                           phrase("no block asks the task \"%1\"", {plain(task.name)}),
+                           phrase("add a procedure with %1 to a block, or remove the task",
+                                  {plain("task = \"" + task.name + "\"")}));
 }
 
 }  // namespace turnpoint::protocol

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -9,6 +10,7 @@
 #include "station/protocol/advice_list.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
+#include "station/protocol/tasks.hpp"
 
 namespace turnpoint::protocol {
 
@@ -56,19 +58,19 @@ void check_words(AdviceList& advice) {
   std::vector<Label> choices, degrees, points;
   for (std::size_t i = 0; !judges(task) && i < task.choices.size(); ++i)
     choices.push_back(
-        {"task.choices." + number_of(i) + ".label", task.choices[i].id, &task.choices[i].label});
+        {key_of(task, "choices.") + number_of(i) + ".label", task.choices[i].id, &task.choices[i].label});
   for (std::size_t i = 0; task.confidence && i < task.confidence->labels.size(); ++i)
     degrees.push_back(
-        {"task.confidence.labels." + number_of(i), number_of(i + 1), &task.confidence->labels[i]});
+        {key_of(task, "confidence.labels.") + number_of(i), number_of(i + 1), &task.confidence->labels[i]});
   const auto& anchors = task.value ? task.value->anchors : task.anchors;
   for (std::size_t i = 0; i < anchors.size(); ++i)
-    points.push_back(
-        {"task.rating.labels." + number_of(i) + ".text", core::number(anchors[i].at), &anchors[i].text});
+    points.push_back({key_of(task, "rating.labels.") + number_of(i) + ".text", core::number(anchors[i].at),
+                      &anchors[i].text});
   for (const auto& language : advice.protocol.languages) {
     for (const auto* labels : {&choices, &degrees, &points}) check_labels(advice, language, *labels);
     const auto question = task.question.find(language);
     if (question != task.question.end() && trimmed(question->second).empty())
-      advice.add("task.question." + language, phrase("the question is blank"),
+      advice.add(key_of(task, "question.") + language, phrase("the question is blank"),
                  phrase("write what the participant is asked"));
   }
 }
@@ -83,8 +85,8 @@ void check_ramps(AdviceList& advice) {
       if (shortest_s <= 0 || 2e-3 * ramp_ms < shortest_s) continue;
       const bool stated = advice.places.has("scene." + name + ".ramp_ms") && ramp_ms > 500;
       return advice.add(stated                                      ? "scene." + name + ".ramp_ms"
-                        : part.duration_s                           ? "task.parts"
-                        : length_of(protocol.task, part) != nullptr ? "task.duration_s"
+                        : part.duration_s                           ? key_of(protocol.task, "parts")
+                        : length_of(protocol.task, part) != nullptr ? key_of(protocol.task, "duration_s")
                                                                     : "timing.explore_s",
                         phrase("the ramps of scene \"%1\" take as long as its tones, %2 s",
                                {plain(name), plain(number(shortest_s))}),
@@ -126,13 +128,13 @@ void check_task(AdviceList& advice) {
   const auto& task = protocol.task;
   for (const auto& interval : task.intervals)
     if (interval.size() == 2 && interval[0] == interval[1])
-      advice.add("task.intervals",
+      advice.add(key_of(task, "intervals"),
                  phrase("the scene \"%1\" is followed by itself, so nothing changes", {plain(interval[0])}),
                  phrase("use two different scenes"));
   const auto* slider = find_factor(protocol.factors, task.adjusts);
   if (slider && slider->range && task.step && *task.step >= slider->range->second - slider->range->first)
     advice.add(
-        "task.step",
+        key_of(task, "step"),
         phrase("a step of %1 is as large as the slider's whole range", {plain(number(*task.step))}),
         phrase("use steps well below %1", {plain(number(slider->range->second - slider->range->first))}));
   const auto& plan = protocol.plan;
@@ -194,7 +196,7 @@ void check_unsure_points(AdviceList& advice, const Payoff& payoff) {
   const auto& protocol = advice.protocol;
   const bool stated = advice.places.has("payoff.unsure");
   if (protocol.task.unsure.empty()) {
-    if (stated)
+    if (stated && protocol.task.name.empty())  // another of several tasks may have it
       advice.add("payoff.unsure", phrase("\"unsure\" has no effect: the task has no such answer"),
                  phrase("set \"unsure\" in [task], or leave it out here"));
     return;
@@ -255,7 +257,9 @@ void check_lasting(AdviceList& advice, const std::variant<Block, Sequence>& part
   const auto& block = block_of(part);
   const auto trials = most_trials(advice.protocol, block);
   if (!block.lasts_s || !trials) return;
-  const double shortest_s = quick_trial_s(advice.protocol, shortest_deadline_s);
+  double shortest_s = std::numeric_limits<double>::infinity();
+  for (const auto task : tasks_in(advice.protocol, block))
+    shortest_s = std::min(shortest_s, quick_trial_s(of_task(advice.protocol, task), shortest_deadline_s));
   if (*trials * shortest_s < *block.lasts_s)
     advice.add(key_of(part, "lasts_s"),
                phrase("the %1 trials of the block can be over before %2 s",
@@ -304,7 +308,8 @@ void check_blocks(AdviceList& advice) {
                phrase("plan fewer practice trials"));
 }
 
-void check_instructions(AdviceList& advice) {
+/// Finds instructions that no block shows.
+void check_shown(AdviceList& advice) {
   const auto blocks = all_blocks(advice.protocol);
   for (const auto& [name, instruction] : advice.protocol.instructions) {
     const auto shows = [&, wanted = FactorValue(name)](const Block& block) {
@@ -315,6 +320,12 @@ void check_instructions(AdviceList& advice) {
       advice.add("instructions." + name, phrase("no block shows the instruction \"%1\"", {plain(name)}),
                  phrase("set %1 in a block, or use a sequence over a factor named \"instruction\"",
                         {plain("instruction = \"" + name + "\"")}));
+  }
+}
+
+/// Compares goals and target accuracies with guessing.
+void check_goals(AdviceList& advice) {
+  for (const auto& [name, instruction] : advice.protocol.instructions) {
     if (instruction.goal && instruction.goal->accuracy_above.value_or(1) < chance(advice.protocol))
       advice.add("instructions." + name + ".goal", phrase("guessing already reaches this goal"),
                  phrase("above %1", {plain(number(chance(advice.protocol), 3))}));
@@ -343,14 +354,14 @@ void check_analysis(AdviceList& advice) {
 }  // namespace
 
 void advise_on_plan(AdviceList& advice) {
-  check_words(advice);
-  check_ramps(advice);
-  check_scenes(advice);
-  check_task(advice);
-  check_blocks(advice);
-  check_instructions(advice);
-  check_payoff(advice);
-  check_analysis(advice);
+  const auto& protocol = advice.protocol;
+  const bool is_task = protocol.by_task.empty(), is_whole = !is_task || protocol.task.name.empty();
+  if (is_task) check_words(advice), check_ramps(advice);
+  if (is_whole) check_scenes(advice);
+  if (is_task) check_task(advice);
+  if (is_whole) check_blocks(advice), check_shown(advice);
+  if (is_task) check_goals(advice), check_payoff(advice);
+  if (is_whole) check_analysis(advice);
 }
 
 namespace {
@@ -378,16 +389,18 @@ void note_uneven(AdviceList& notes, const procedure::Spec& spec, std::size_t cel
 std::optional<std::string> telling_pause(const Protocol& protocol) {
   if (!protocol.timing.iti_s.expression) return std::nullopt;
   const auto pause = factors_in(*protocol.timing.iti_s.expression);
-  for (const auto& [id, comparison] : protocol.task.correct_answer)
-    for (const auto* side : {&comparison.left, &comparison.right})
-      for (const auto& name : factors_in(*side))
-        if (std::find(pause.begin(), pause.end(), name) != pause.end()) return name;
+  for (const auto& name : deciding_factors(protocol.task))
+    if (std::find(pause.begin(), pause.end(), name) != pause.end()) return name;
   return std::nullopt;
 }
 
 }  // namespace
 
 std::vector<Problem> notes(const Protocol& protocol) {
+  std::vector<Problem> of_tasks;
+  for (const auto& one : protocol.by_task)
+    for (auto& note : notes(one)) add_once(std::move(note), of_tasks);
+  if (!protocol.by_task.empty()) return of_tasks;
   AdviceList notes(protocol);
   for (const auto& spec : protocol.procedures) {
     std::size_t crossed = 1;
@@ -420,9 +433,10 @@ std::vector<Problem> notes(const Protocol& protocol) {
                {plain(*name)}));
   if (protocol.timing.iti_s.high == 0) notes.add("timing.iti_s", phrase("there is no pause between trials"));
   if (const auto& gap_s = protocol.task.gap_s; gap_s && bounds(*gap_s, protocol.factors).second == 0)
-    notes.add("task.gap_s", phrase("there is no pause between the intervals of a trial"));
+    notes.add(key_of(protocol.task, "gap_s"), phrase("there is no pause between the intervals of a trial"));
   if (protocol.task.foreperiod_s && protocol.task.foreperiod_s->high == 0)
-    notes.add("task.foreperiod_s", phrase("the second scene begins at once, without a foreperiod"));
+    notes.add(key_of(protocol.task, "foreperiod_s"),
+              phrase("the second scene begins at once, without a foreperiod"));
   return std::move(notes.found);
 }
 

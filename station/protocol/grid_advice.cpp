@@ -4,6 +4,7 @@
 #include "station/core/number.hpp"
 #include "station/protocol/advice_list.hpp"
 #include "station/protocol/answers.hpp"
+#include "station/protocol/tasks.hpp"
 
 namespace turnpoint::protocol {
 
@@ -38,7 +39,7 @@ void check_level(AdviceList& advice, const Spec& spec) {
   if (depends_on(advice.protocol, spec.level)) return;
   const bool slider = spec.level == advice.protocol.task.adjusts;
   advice.add(
-      slider ? "task.adjusts" : key_of(spec, "level"),
+      slider ? key_of(advice.protocol.task, "adjusts") : key_of(spec, "level"),
       phrase("no scene of the task depends on \"%1\", so all trials are the same", {plain(spec.level)}),
       phrase("use a scene with \"%1\" in its arithmetic", {plain(spec.level)}));
 }

@@ -2,6 +2,7 @@
 
 #include "station/protocol/advice_list.hpp"
 #include "station/protocol/answers.hpp"
+#include "station/protocol/tasks.hpp"
 
 namespace turnpoint::protocol {
 
@@ -67,15 +68,15 @@ void advise_on_labels(AdviceList& advice) {
   if (!judges(task))
     for (std::size_t i = 0; i < task.choices.size(); ++i)
       for (const auto& [language, label] : task.choices[i].label)
-        check_label(advice, "task.choices." + std::to_string(i) + ".label." + language, label,
+        check_label(advice, key_of(task, "choices.") + std::to_string(i) + ".label." + language, label,
                     answer_count(task));
   for (const auto& [language, label] : task.unsure)
-    check_label(advice, "task.unsure." + language, label, answer_count(task));
+    check_label(advice, key_of(task, "unsure.") + language, label, answer_count(task));
   if (!task.confidence) return;
   const auto& labels = task.confidence->labels;
   for (std::size_t i = 0; i < labels.size(); ++i)
     for (const auto& [language, label] : labels[i])
-      check_label(advice, "task.confidence.labels." + std::to_string(i) + "." + language, label,
+      check_label(advice, key_of(task, "confidence.labels.") + std::to_string(i) + "." + language, label,
                   static_cast<int>(labels.size()));
 }
 

@@ -51,7 +51,14 @@ Protocol parse(const std::string& source, const std::string& path) {
   file.finish();
   findings.throw_if_any();
   protocol.defaults_used = findings.defaults_used;
-  protocol.meanings = meanings_of(protocol);
+  protocol.by_task.clear();
+  if (!reading.tasks.empty()) {
+    auto all = as_tasks_see(reading);
+    for (auto& one : all) one.meanings = meanings_of(one);
+    protocol.task = reading.tasks.front();
+    protocol.by_task = std::move(all);
+  }
+  protocol.meanings = protocol.by_task.empty() ? meanings_of(protocol) : meanings_of_tasks(protocol);
   return protocol;
 }
 

@@ -193,6 +193,16 @@ std::vector<Meaning> meanings_of(const Protocol& protocol) {
   return all;
 }
 
+std::vector<Meaning> meanings_of_tasks(const Protocol& protocol) {
+  std::vector<Meaning> all;
+  for (const auto& one : protocol.by_task)
+    for (auto meaning : one.meanings) {
+      meaning.name = one.task.name + (meaning.name.empty() ? "" : ", ") + meaning.name;
+      all.push_back(std::move(meaning));
+    }
+  return all;
+}
+
 std::size_t meaning_of(const Protocol& protocol, const std::string& procedure, const std::string& block) {
   const auto& all = protocol.meanings;
   const auto has = [](const std::vector<std::string>& names, const std::string& name) {
@@ -293,7 +303,7 @@ std::string in_words(const Meaning& meaning, const Protocol& protocol) {
 }
 
 std::string line_of(const Meaning& meaning, const Protocol& protocol) {
-  std::string line;
+  std::string line = protocol.task.name;
   for (const auto& block : meaning.blocks) line += (line.empty() ? "" : ", ") + block;
   if (!meaning.name.empty()) line += (line.empty() ? "" : ", ") + meaning.name;
   return line + (line.empty() ? "" : ": ") + in_words(meaning, protocol);

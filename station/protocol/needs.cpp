@@ -109,6 +109,23 @@ void check_sensing(const Protocol& protocol, const rig::Rig& rig, Survey& survey
        phrase("leave out [sensing], or use a rig with \"bridges\" in [capture] or with [force_cells]")});
 }
 
+/// Scenes that follow the finger need calibrated cells as [sensing] does. What else they need, the planner
+/// says.
+void check_following(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
+  if (protocol.sensing || !rig::has_force_cells(rig) || rig.capture->uri == "sim:" || rig.capture->forces)
+    return;
+  for (const auto& name : scenes_used(protocol)) {
+    const auto& follow = protocol.scenes.at(name).follow;
+    if (!follow) continue;
+    survey.problems.push_back(
+        {follow->place,
+         phrase("the rig's force cells are not calibrated, so scene \"%1\" cannot follow the finger",
+                {plain(name)}),
+         phrase("calibrate them with %1", {plain("`turnpoint calibrate --forces`")})});
+    return;
+  }
+}
+
 /// Plans each friction table's trials with the largest displacement, and reports those that the rig cannot
 /// play.
 void check_friction_tables(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
@@ -139,6 +156,7 @@ void check_needs(const Protocol& protocol, const rig::Rig& rig, Survey& survey) 
   check_devices(protocol, rig, survey);
   check_triggers(protocol, rig, survey);
   check_sensing(protocol, rig, survey);
+  check_following(protocol, rig, survey);
   check_friction_tables(protocol, rig, survey);
 }
 

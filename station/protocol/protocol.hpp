@@ -84,11 +84,21 @@ struct Part {
   std::vector<Linear> silences_s;  ///< silences before it
 };
 
+/// How long the page shows the get-ready cue, the feedback, and the message after a late answer.
+inline constexpr double kCue_s = 0.8, kFeedback_s = 0.8, kLate_s = 1.0;
+
 struct Task {
+  std::string name;  ///< "" if the file has one task
+  /// What the page says before each trial; if empty, the station's own words.
+  Localised cue;
+  Linear cue_s{kCue_s, {}, {}, false, {}, {}};  ///< how long it does so: at least kCue_s
   TaskKind kind = TaskKind::single_interval;
   /// The scene of each interval, or two scenes of which the second follows the first, or the name of `parts`
   std::vector<std::vector<std::string>> intervals;
   std::map<std::string, std::vector<Part>> parts;  ///< intervals of several parts, by their names
+  /// parts that a trial presents once, before its first interval, and the silences between them and it
+  std::vector<Part> before;
+  std::vector<Linear> before_silences_s;
   /// the two scenes that the task compares, if its kind has a standard and a target
   std::string standard, target;
   Odd odd = Odd::either;
@@ -96,6 +106,7 @@ struct Task {
   std::optional<Linear> duration_s, gap_s;
   std::optional<Distribution> foreperiod_s;  ///< time from the start of an interval to its second scene
   std::optional<double> transition_ms;
+  int again = 0;  ///< how often a participant may ask for the intervals of a trial again
   Device device = Device::touch;
   Place device_place;
   Sound sound = Sound::none;  ///< sound that is played while the surface vibrates
@@ -146,9 +157,6 @@ struct ResponseSignal {
 inline bool in_stimulus(const ResponseSignal& signal) {
   return signal.by == ResponseSignal::By::tone || signal.by == ResponseSignal::By::buzz;
 }
-
-/// How long the page shows the get-ready cue, the feedback, and the message after a late answer.
-inline constexpr double kCue_s = 0.8, kFeedback_s = 0.8, kLate_s = 1.0;
 
 /// What the pause before the next trial is longer by, after a trial that was not right.
 struct Delay {
@@ -236,6 +244,7 @@ struct Block {
   BlockKind kind = BlockKind::trials;
   Strokes strokes;  ///< how the finger strokes, in blocks of a kind other than `trials`
   std::vector<std::string> procedures;
+  std::string task;            ///< with fixed levels: the name of their task, if the file has several
   std::string level;           ///< for practice with fixed levels: the factor to which the levels belong
   std::vector<double> levels;  ///< the fixed levels, presented in shuffled order
   std::optional<int> trials;
@@ -431,6 +440,10 @@ struct Protocol {
   std::vector<Factor> factors;  ///< factors in the order of the file
   std::map<std::string, Scene> scenes;
   Task task;
+  /// If the file has several tasks: this protocol as each of them sees it, in the order of the file. `task`
+  /// of such a part is that task, and it has only the procedures and blocks that ask it, with meanings of
+  /// their own. Empty if the file has one task. See tasks.hpp.
+  std::vector<Protocol> by_task;
   Timing timing;
   std::optional<Payoff> payoff;
   std::vector<procedure::Spec> procedures;

@@ -2,7 +2,9 @@
 
 #include <limits>
 
+#include "station/core/parts.hpp"
 #include "station/core/trial.hpp"
+#include "station/follow/pattern.hpp"
 #include "station/procedure/procedure_keys.hpp"
 #include "station/procedure/spec.hpp"
 #include "station/protocol/protocol.hpp"
@@ -131,6 +133,105 @@ Key edge() {
       .only_with("boundary_mm");
 }
 
+Keys follow_event() {
+  Keys keys{
+      boolean("contact", "true: when the finger touches the surface"),
+      expression("force_N", {0, 20, Ends::open_low, "N"}, "when it presses with this normal force"),
+      expression("place_mm", {0, 1e5, Ends::open_low, "mm"},
+                 "when it passes this place, away from the wide end"),
+      expression("speed_mm_s", {0, 1000, Ends::open_low, "mm/s"}, "when it is as fast as this"),
+      word("until", {"released", "lifted"},
+           "until it falls below that again (by a fifth, or by 0.3 mm), or until the finger lifts")
+          .by_default("\"released\""),
+      expression("delay_s", {0, 10, Ends::closed, "s"}, "the part begins so much later").by_default("0"),
+      expression("lasts_s", {0, 600, Ends::open_low, "s"}, "its longest duration")
+          .without_it("until the event ends")};
+  return keys.one_of({"contact", "force_N", "place_mm", "speed_mm_s"});
+}
+
+Keys follow_part() {
+  const Words textures{"sine", "square", "triangle", "noise", "table"};
+  const Words ranged{"sine", "square", "triangle", "noise", "table", "gradient", "bump", "edge"};
+  const Range value{-1000, 1000}, place_mm{0, 1e5, Ends::closed, "mm"};
+  return {
+      word("shape", {"constant", "sine", "square", "triangle", "noise", "table", "gradient", "bump", "edge"},
+           "how its value varies between `from` and `to`")
+          .required(),
+      expression("from", value,
+                 "in the unit of the scene's `follow`: the lowest of a table or noise, the value "
+                 "before an edge, outside a bump, or at begin_mm of a gradient")
+          .required()
+          .only_with("shape", ranged),
+      expression("to", value, "the value of a constant, and the other end of all others").required(),
+      expression("begin_mm", place_mm, "where the part begins, from the wide end").without_it("everywhere"),
+      expression("end_mm", place_mm,
+                 "where it ends; with both, the rig must be able to present it between them")
+          .without_it("everywhere"),
+      expression("period_mm", {0.1, 1e5, Ends::closed, "mm"},
+                 "length of a cycle; of noise: the length after which it comes again")
+          .without_it("it varies only in time")
+          .only_with("shape", textures),
+      expression("frequency_Hz", {-1000, 1000, Ends::closed, "Hz"},
+                 "cycles in a second: it moves, or without period_mm it vibrates")
+          .by_default("0")
+          .only_with("shape", textures),
+      expression("phase_deg", {-360, 360, Ends::closed, "degrees"}, "its phase at place_mm")
+          .by_default("0")
+          .only_with("shape", textures),
+      expression("place_mm", place_mm, "the middle of a bump or an edge; where a texture has its phase")
+          .without_it("0; required for a bump and an edge")
+          .only_with("shape", {"sine", "square", "triangle", "noise", "table", "bump", "edge"}),
+      expression("width_mm", {0, 1e4, Ends::closed, "mm"}, "width of the bump, or of the change at an edge")
+          .without_it("0 for an edge; required for a bump")
+          .only_with("shape", {"bump", "edge"}),
+      tables("spectrum",
+             {number("cycles_per_mm", {0, 100, Ends::closed}, "spatial frequency").required(),
+              number("density", {0, 1e6, Ends::closed}, "power density there, in any unit").required()},
+             "points of the noise's spectrum, joined by straight lines")
+          .holding(2)
+          .required()
+          .only_with("shape", {"noise"}),
+      expression("instance", {0, 1e6, Ends::closed},
+                 "which one of the noises with this spectrum: each whole number is another")
+          .by_default("1")
+          .only_with("shape", {"noise"}),
+      numbers("samples", {0, 1, Ends::closed}, "one cycle of a table: 0 is `from`, 1 is `to`")
+          .holding(2, follow::kTableSamples)
+          .required()
+          .only_with("shape", {"table"}),
+      word("combine", {"replace", "add"},
+           "whether it takes the place of the parts before it, or is added to them")
+          .by_default("\"replace\""),
+      table("event", follow_event(), "what makes the part begin").without_it("it is always there"),
+  };
+}
+
+Key following() {
+  Keys keys{
+      expression("friction", {0, 1, Ends::open_low}, "friction where no part acts, relative to that at rest")
+          .without_it("that of the base; else one of the three is required"),
+      expression("coefficient", {0, 5, Ends::open_low},
+                 "the same as a coefficient: lateral over normal force"),
+      expression("displacement_um", {0, 1000, Ends::closed, "um"},
+                 "displacement under the finger where no part acts"),
+      word("control", {"open", "closed"},
+           "by the friction table alone, or corrected by the measured friction so that it is held")
+          .by_default("\"open\"")
+          .only_with("coefficient"),
+      expression("resting_friction", {0.05, 3, Ends::closed},
+                 "coefficient of friction of the surface at rest; in a closed loop, the first guess")
+          .by_default("1"),
+      number("resting_gain", {0, 1, Ends::closed},
+             "share of the strength without a finger, and after a fault")
+          .by_default("0"),
+      tables("parts", follow_part(), "textures, edges and events, in order").holding(0, follow::kMostParts),
+  };
+  return table(
+      "follow", keys,
+      "the strength follows the finger: friction over place and time. The scene's own strength is the "
+      "most that is used");
+}
+
 Key scene() {
   Keys tone{
       expression("boundary_mm", position_mm, "where its vibration ends").only_without("frequency_Hz"), edge(),
@@ -140,8 +241,8 @@ Key scene() {
   return table(
       "NAME",
       {string("base",
-              "scene from which everything is taken that this one does not state; of zone and tolerance, "
-              "each key"),
+              "scene from which everything is taken that this one does not state; of zone, tolerance and "
+              "follow, each key"),
        expression("boundary_mm", position_mm, "where the smooth part ends, from the wide end"), edge(),
        expression("displacement_um", displacement_um,
                   "peak displacement at the last maximum, without a finger"),
@@ -174,7 +275,8 @@ Key scene() {
              {number("boundary_mm", {0, 1000, Ends::open_low, "mm"}, "of the boundary"),
               number("level_dB", {0, 60, Ends::open_low, "dB"}, "of the level at the last maximum"),
               number("friction", share, "of the friction")},
-             "the largest error that the physics model may have; the simplest model within it is used")},
+             "the largest error that the physics model may have; the simplest model within it is used"),
+       following()},
       "what the surface presents");
 }
 
@@ -234,15 +336,25 @@ Keys task() {
           .without_it("required with several intervals"),
       table("parts", Keys{}.with_free_names(tables("NAME", part(), "the parts of an interval, in order")),
             "intervals of several parts: scenes with silences between them"),
+      tables("before", part(), "parts that each trial presents once, before its first interval")
+          .only_with("kind", {"2ifc", "3ifc", "4ifc", "same-different", "oddity", "abx", "match-to-sample",
+                              "comparison"}),
       time("foreperiod_s", "time before the second scene of an interval")
           .without_it("required with a second scene"),
       number("transition_ms", {1, 5000, Ends::closed, "ms"}, "length of the change to the second scene")
           .without_it("required with a second scene"),
+      integer("again", 1, core::kMostAgain,
+              "how often people may ask for the intervals of a trial again before they answer")
+          .without_it("never"),
       word("device", {"touch", "buttons", "either"},
            "how people answer; buttons for response times, as a panel adds 50 ms and more")
           .required(),
       word("sound", {"none", "masking_noise"}, "noise on the rig's headphones while the surface vibrates")
           .by_default("\"none\""),
+      localised("cue", "what the page says before each trial")
+          .without_it("where to put the finger, or to get ready; required in blocks of several tasks"),
+      expression("cue_s", {kCue_s, 60, Ends::closed, "s"}, "how long it does so, in silence")
+          .without_it("0.8"),
       localised("question", "what is asked").required(),
       string("question_shows", "a factor whose value in the trial stands for %1 in the question"),
       choices("the answers").holding(1, most_choices),
@@ -356,6 +468,8 @@ Keys trials(bool of_block) {
       strings("procedures", "procedures that choose the levels"),
       string("level", "instead of procedures: the factor of the fixed levels"),
       numbers("levels", any_value, "fixed levels, presented in shuffled order"),
+      string("task", "which of [tasks] the trials with fixed levels ask")
+          .without_it("[task]; required with [tasks]"),
       integer("trials", 1, 100000, "number of trials at most").without_it("until the procedures end"),
       number(
           "lasts_s", {10, 7200, Ends::closed, "s"},
@@ -458,6 +572,7 @@ Keys procedure() {
       word("kind", procedure::kind_names(), "how it chooses levels")
           .without_it("that of the copied one; else required"),
       string("level", "the factor that it sets").without_it("that of the copied one; else required"),
+      string("task", "which of [tasks] its trials ask").without_it("[task]; required with [tasks]"),
   };
   keys.and_also(procedure::procedure_keys());
   return keys.and_also({
@@ -550,7 +665,9 @@ const Keys& all() {
       table("scene", Keys{}.with_free_names(scene()).holding(1),
             "what the surface presents: one table [scene.NAME] for each scene")
           .required(),
-      table("task", task(), "what a trial is and how people answer").required(),
+      table("task", task(), "what a trial is and how people answer").required().only_without("tasks"),
+      table("tasks", Keys{}.with_free_names(table("NAME", task(), "one of several tasks")).holding(2),
+            "several tasks, instead of [task]; each procedure names its own"),
       table("timing", timing(), "when things happen in a trial").required(),
       table("payoff", payoff(), "points for answers"),
       tables("procedure", procedure(), "how levels are chosen"),

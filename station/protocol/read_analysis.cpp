@@ -108,16 +108,27 @@ void read_show(TableReader& reader, Reading& reading) {
   if (!reader.has("show")) return;
   const auto& shown = reader.words("show");
   analysis.show = reader.maybe_strings("show");
+  const auto all = as_tasks_see(reading);
+  // why it would show nothing of any task
+  const auto without_any_effect = [&all](const std::string& word) {
+    core::Phrase reason;
+    for (const auto& one : all) {
+      const auto why = without_effect(word, one);
+      if (why.empty()) return why;
+      if (reason.empty()) reason = why;
+    }
+    return reason;
+  };
   std::vector<std::string> useful;
   for (const auto& word : shown)
-    if (without_effect(word, reading.protocol).empty()) useful.push_back(word);
+    if (without_any_effect(word).empty()) useful.push_back(word);
   for (const auto& word : *analysis.show) {
     if (std::find(shown.begin(), shown.end(), word) == shown.end()) {
       reader.problem("show", phrase("\"%1\" has \"%2\"", {plain("show"), plain(word)}),
                      core::suggestion(word, shown));
       continue;
     }
-    const auto reason = without_effect(word, reading.protocol);
+    const auto reason = without_any_effect(word);
     if (!reason.empty())
       reader.problem("show", phrase("\"%1\" would show nothing: %2", {plain(word), reason}),
                      phrase("allowed here: %1", {core::quoted_list(useful)}));
@@ -144,7 +155,10 @@ void read_analysis(TableReader& file, Reading& reading) {
   if (const auto holm = reader.maybe_word("holm")) analysis.holm = *holm == "all" ? Holm::all : Holm::measure;
   if (const auto pairs = reader.maybe_word("pairs")) {
     analysis.pairs = *pairs == "thurstone" ? core::Function::normal : core::Function::logistic;
-    if (reading.protocol.task.kind != TaskKind::comparison || reading.protocol.task.intervals.size() != 2)
+    const auto all = as_tasks_see(reading);
+    if (std::none_of(all.begin(), all.end(), [](const Protocol& one) {
+          return one.task.kind == TaskKind::comparison && one.task.intervals.size() == 2;
+        }))
       reader.problem("pairs", phrase("the task does not compare pairs"),
                      phrase("%1 with two intervals", {plain("kind = \"comparison\"")}));
   }

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "station/protocol/answers.hpp"
 #include "station/protocol/reading.hpp"
 
@@ -13,7 +15,7 @@ namespace {
 void check_rules(TableReader& reader, const Reading& reading) {
   const auto& protocol = reading.protocol;
   const auto& rules = *protocol.exclusion;
-  const auto& task = protocol.task;
+  const auto all = as_tasks_see(reading);
   bool catches = false;
   for (const auto& part : protocol.plan)
     catches = catches ||
@@ -21,12 +23,16 @@ void check_rules(TableReader& reader, const Reading& reading) {
                   .catch_trials.has_value();
   if (rules.catch_accuracy_below && !catches)
     reader.problem("catch_accuracy_below", phrase("no block has catch trials"),
-                   task.kind == TaskKind::comparison
+                   protocol.task.kind == TaskKind::comparison
                        ? phrase("leave this rule out")
                        : phrase("add \"catch\" to a block, or leave this rule out"));
   // Do not report a task without choices again: the reader of [task] has reported that mistake.
-  const bool broken = task.kind == TaskKind::single_interval && !judges(task) && task.choices.empty();
-  if (rules.accuracy_below && !broken && (task.kind == TaskKind::adjustment || !scored(task)))
+  const auto judged = [](const Protocol& one) {
+    const auto& task = one.task;
+    const bool broken = task.kind == TaskKind::single_interval && !judges(task) && task.choices.empty();
+    return broken || (task.kind != TaskKind::adjustment && scored(task));
+  };
+  if (rules.accuracy_below && std::none_of(all.begin(), all.end(), judged))
     reader.problem("accuracy_below", phrase("no answer of this task is right or wrong"),
                    phrase("leave this rule out"));
 }

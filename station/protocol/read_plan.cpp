@@ -45,7 +45,12 @@ void read_what(TableReader& reader, Block& block, const Reading& reading) {
                                 levels ? phrase("%1 has both procedures and fixed levels", {reader.title()})
                                        : phrase("%1 presents nothing", {reader.title()}),
                                 phrase("write either \"procedures\" or both \"level\" and \"levels\""));
-  if (!levels) return;
+  if (!levels) {
+    if (reader.has("task"))
+      reader.problem("task", phrase("each procedure names its task"), phrase("leave it out here"));
+    return;
+  }
+  block.task = read_asked(reader, reading).name;
   const auto* factor = read_numeric_factor(reader, "level", reading);
   const auto* list = reader.require("levels");
   reader.numbers("levels");

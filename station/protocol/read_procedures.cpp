@@ -345,6 +345,7 @@ void add_family(const Value& table, const std::string& name, std::vector<Spec> f
             phrase("choose another name for the table or for the level"));
       reading.families[name].push_back(one.name);
     }
+    if (!reading.tasks.empty()) reading.asks[one.name] = reading.protocol.task.name;
     reading.protocol.procedures.push_back(std::move(one));
   }
 }
@@ -369,6 +370,7 @@ Spec read_procedure(const Value& table, const Reading& reading, core::Findings& 
   Spec spec;
   spec.name = reader.string("name");
   reader.take("copy");
+  reading.protocol.task = read_asked(reader, reading);
   spec.kind = procedure::parse_kind(reader.word("kind")).value_or(Kind::constant_stimuli);
   const auto* factor = read_numeric_factor(reader, "level", reading);
   if (factor) spec.level = factor->name;

@@ -170,6 +170,11 @@ Scene read_scene(const Value& table, const std::string& name, const Value& own, 
   scene.ramp_ms = reader.number("ramp_ms");
   if (const auto* tolerance = reader.maybe_table("tolerance"))
     scene.tolerance = read_tolerance(*tolerance, path + ".tolerance", findings);
+  if (const auto* follow = reader.maybe_table("follow"))
+    scene.follow = read_follow(*follow, path + ".follow", findings, reading);
+  if (scene.follow && scene.rove_dB > 0)
+    reader.problem("rove_dB", phrase("\"rove_dB\" has no effect in a scene that follows the finger"),
+                   phrase("leave it out, or let a factor change the values of its parts"));
   check_form(reader, scene, findings);
   reader.finish();
   return scene;
@@ -179,8 +184,8 @@ void erase(Value& table, const std::string& key) {
   std::erase_if(table.entries, [&](const auto& entry) { return entry.key == key; });
 }
 
-// Returns the base scene's table with the scene's own keys added or replaced; `zone` and `tolerance` are
-// merged key by key.
+// Returns the base scene's table with the scene's own keys added or replaced; `zone`, `tolerance` and
+// `follow` are merged key by key.
 Value laid_over(Value base, const Value& own) {
   const auto states = [&](const char* key) { return own.find(key) != nullptr; };
   const auto strengths = {"displacement_um", "friction", "displacement_under_finger_um"};
@@ -188,6 +193,10 @@ Value laid_over(Value base, const Value& own) {
     for (const auto* key : strengths) erase(base, key);
     if (!states("displacement_under_finger_um")) erase(base, "finger_mm");
   }
+  // the three units of `follow`
+  const auto units = {"friction", "coefficient", "displacement_um"};
+  if (base.find("parts") && std::any_of(units.begin(), units.end(), states))
+    for (const auto* key : units) erase(base, key);
   if (states("tones"))
     for (const auto* key : {"boundary_mm", "edge", "zone", "displacement_um", "friction",
                             "displacement_under_finger_um", "finger_mm"})
@@ -198,7 +207,7 @@ Value laid_over(Value base, const Value& own) {
     const bool tables =
         below && below->value.kind == Value::Kind::table && entry.value.kind == Value::Kind::table;
     auto merged = entry;
-    if (tables && (entry.key == "zone" || entry.key == "tolerance"))
+    if (tables && (entry.key == "zone" || entry.key == "tolerance" || entry.key == "follow"))
       merged.value = laid_over(below->value, entry.value);
     erase(base, entry.key);
     base.entries.push_back(std::move(merged));

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "station/protocol/reading.hpp"
 
 namespace turnpoint::protocol {
@@ -25,7 +27,10 @@ void read_sensing(TableReader& file, Reading& reading) {
   sensing.strokes = reader.integer("strokes");
   const auto outside = reader.word("outside");
   if (outside == "repeat") sensing.repeats = reader.integer("repeats");
-  if (reading.protocol.task.kind == TaskKind::adjustment && sensing.repeats > 0)
+  const auto all = as_tasks_see(reading);
+  const bool adjusts = std::any_of(all.begin(), all.end(),
+                                   [](const Protocol& one) { return one.task.kind == TaskKind::adjustment; });
+  if (adjusts && sensing.repeats > 0)
     reader.problem("outside", phrase("an adjustment is not presented again"), plain("outside = \"mark\""));
   sensing.guidance = reader.boolean("guidance");
   if (sensing.guidance && !sensing.normal_N && !sensing.speed_mm_s)

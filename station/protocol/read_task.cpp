@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
@@ -10,6 +11,7 @@
 #include "station/protocol/expression.hpp"
 #include "station/protocol/orders.hpp"
 #include "station/protocol/reading.hpp"
+#include "station/protocol/tasks.hpp"
 
 namespace turnpoint::protocol {
 
@@ -88,11 +90,10 @@ std::optional<Linear> read_length(TableReader& reader, const Reading& reading) {
   return length;
 }
 
-/// Reads one list of parts. A silence belongs to the scene after it.
-std::vector<Part> read_part_list(const core::Value& list, const std::string& name, const Reading& reading) {
+/// Reads a list of parts. A silence belongs to the scene after it; those after the last scene go to `after`.
+std::vector<Part> read_part_list(const core::Value& list, const std::string& path, const Reading& reading,
+                                 std::vector<Linear>& after) {
   std::vector<Part> parts;
-  std::vector<Linear> silences_s;
-  const std::string path = "task.parts." + name;
   for (const auto& item : list.items) {
     if (item.kind != Value::Kind::table) {
       reading.findings.add(item.place, phrase("a part is %1", {describe(item)}),
@@ -103,16 +104,25 @@ std::vector<Part> read_part_list(const core::Value& list, const std::string& nam
     TableReader reader(item, path, reading.findings, keys_of("task.parts.NAME"));
     if (reader.has("silence_s")) {
       if (auto silence_s = read_expression(reader, "silence_s", reading))
-        silences_s.push_back(std::move(*silence_s));
+        after.push_back(std::move(*silence_s));
     } else if (reader.require("scene")) {
-      Part part{{read_scene_name(reader, "scene", reading)}, {}, {}, std::exchange(silences_s, {})};
+      Part part{{read_scene_name(reader, "scene", reading)}, {}, {}, std::exchange(after, {})};
       part.duration_s = read_length(reader, reading);
       part.first_s = reader.maybe_number("first_s");
       parts.push_back(std::move(part));
     }
     reader.finish();
   }
-  const auto is_silence = [](const core::Value& item) { return item.find("silence_s") != nullptr; };
+  return parts;
+}
+
+bool is_silence(const core::Value& item) { return item.find("silence_s") != nullptr; }
+
+/// Reads the parts of an interval, which begins and ends with a scene.
+std::vector<Part> read_interval_parts(const core::Value& list, const std::string& name,
+                                      const Reading& reading) {
+  std::vector<Linear> after;
+  auto parts = read_part_list(list, key_of(reading.protocol.task, "parts." + name), reading, after);
   if (!list.items.empty() && (is_silence(list.items.front()) || is_silence(list.items.back())))
     reading.findings.add(is_silence(list.items.front()) ? list.items.front().place : list.items.back().place,
                          phrase("\"%1\" begins or ends with a silence", {plain(name)}),
@@ -121,6 +131,27 @@ std::vector<Part> read_part_list(const core::Value& list, const std::string& nam
     reading.findings.add(list.place, phrase("\"%1\" has no parts", {plain(name)}),
                          phrase("write a list of parts: %1", {plain("[{ scene = \"edge\" }]")}));
   return parts;
+}
+
+/// Reads what a trial presents before its first interval. It begins with a scene; the silence at its end is
+/// that before the interval.
+void read_before(TableReader& reader, Task& task, const Reading& reading) {
+  const auto* list = reader.take("before");
+  if (!list) return;
+  if (list->kind != Value::Kind::array)
+    return reader.problem(
+        "before", phrase("\"%1\" is %2", {plain("before"), describe(*list)}),
+        phrase("write a list of parts: %1",
+               {plain("[{ scene = \"adaptor\", duration_s = 5.0 }, { silence_s = 0.5 }]")}));
+  task.before =
+      read_part_list(*list, key_of(reading.protocol.task, "before"), reading, task.before_silences_s);
+  if (list->items.empty() || is_silence(list->items.front()))
+    reader.problem("before", phrase("\"before\" begins with no scene"),
+                   phrase("write a scene first, or leave \"before\" out"));
+  for (std::size_t i = 0; i < task.before.size(); ++i)
+    if (!task.before[i].duration_s)
+      reader.problem("before", phrase("part %1 of \"%2\" has no length", {plain(i + 1), plain("before")}),
+                     phrase("give it \"duration_s\""));
 }
 
 void read_parts(TableReader& reader, Task& task, const Reading& reading) {
@@ -132,7 +163,7 @@ void read_parts(TableReader& reader, Task& task, const Reading& reading) {
       reading.findings.add(entry.place, phrase("there is already a scene \"%1\"", {plain(entry.key)}),
                            phrase("give the parts another name"));
     if (entry.value.kind == Value::Kind::array)
-      task.parts[entry.key] = read_part_list(entry.value, entry.key, reading);
+      task.parts[entry.key] = read_interval_parts(entry.value, entry.key, reading);
     else
       reading.findings.add(entry.value.place,
                            phrase("\"%1\" is %2", {plain(entry.key), describe(entry.value)}),
@@ -156,14 +187,15 @@ std::size_t most_parts_of_trial(const Task& task, const TaskForm& kind) {
   if (!compares(task.kind)) {
     auto intervals = task.intervals;
     if (!task.standard.empty()) intervals.push_back({task.standard});
-    std::size_t sum = 0;
+    std::size_t sum = task.before.size();
     for (const auto& interval : intervals) sum += parts_of(task, interval).size();
     return sum;
   }
   const bool of_two = task.kind == TaskKind::same_different;
   const bool of_three = task.kind == TaskKind::abx || task.kind == TaskKind::match_to_sample;
   const std::size_t intervals = of_two ? 2 : of_three ? 3 : kind.most;
-  return intervals * std::max(parts_of(task, {task.standard}).size(), parts_of(task, {task.target}).size());
+  return task.before.size() +
+         intervals * std::max(parts_of(task, {task.standard}).size(), parts_of(task, {task.target}).size());
 }
 
 /// Where the intervals are presented in a random order, the place of the longest adaptor must not tell which
@@ -179,7 +211,7 @@ void check_first(const Task& task, const Reading& reading) {
     for (std::size_t i = 0; i < parts.size(); ++i)
       if (parts[i].first_s) here[i] = *parts[i].first_s;
     if (first && here != *first)
-      return reading.findings.add(reading.places.of("task.parts"),
+      return reading.findings.add(reading.places.of(key_of(task, "parts")),
                                   phrase("\"first_s\" is not the same in all intervals, so the first trial "
                                          "of a block tells their order"),
                                   phrase("give the same parts of each interval the same \"first_s\""));
@@ -193,7 +225,7 @@ void check_parts(const Task& task, const TaskForm& kind, const Reading& reading)
   for (const auto& interval : task.intervals) named.insert(named.end(), interval.begin(), interval.end());
   const bool until_answer = explored(task);
   for (const auto& [name, parts] : task.parts) {
-    const auto place = reading.places.of("task.parts." + name);
+    const auto place = reading.places.of(key_of(task, "parts." + name));
     if (std::find(named.begin(), named.end(), name) == named.end())
       reading.findings.add(place, phrase("no interval presents the parts \"%1\"", {plain(name)}),
                            phrase("name them in \"intervals\", \"standard\" or \"target\""));
@@ -218,9 +250,10 @@ void check_parts(const Task& task, const TaskForm& kind, const Reading& reading)
   check_first(task, reading);
   const auto most = most_parts_of_trial(task, kind);
   if (most > core::kMostParts)
-    reading.findings.add(reading.places.of("task.parts"),
-                         phrase("the intervals of a trial have up to %1 scenes", {plain(most)}),
-                         phrase("at most %1", {plain(core::kMostParts)}));
+    reading.findings.add(
+        reading.places.of(key_of(task, reading.places.has(key_of(task, "parts")) ? "parts" : "before")),
+        phrase("the intervals of a trial have up to %1 scenes", {plain(most)}),
+        phrase("at most %1", {plain(core::kMostParts)}));
 }
 
 void read_intervals(TableReader& reader, Task& task, const Reading& reading) {
@@ -365,7 +398,7 @@ std::vector<Choice> read_choice_list(TableReader& reader, const std::string& pat
 namespace {
 
 void read_rating(const Value& table, Task& task, const Reading& reading) {
-  auto scale = read_scale(table, "task.rating", reading);
+  auto scale = read_scale(table, key_of(task, "rating"), reading);
   task.rating = !scale.choices.empty();
   if (task.rating) task.choices = std::move(scale.choices);
   task.anchors = std::move(scale.anchors);
@@ -373,7 +406,7 @@ void read_rating(const Value& table, Task& task, const Reading& reading) {
 }
 
 void read_number(const Value& table, Task& task, const Reading& reading) {
-  TableReader reader(table, "task.number", reading.findings, keys_of("task.number"));
+  TableReader reader(table, key_of(task, "number"), reading.findings, keys_of("task.number"));
   auto value = read_typed(reader);
   if (reader.has("standard")) {
     task.standard = reader.string("standard");
@@ -428,7 +461,7 @@ void read_judgement(TableReader& reader, Task& task, const Reading& reading) {
 void read_confidence(TableReader& reader, Task& task, const Reading& reading) {
   const auto* table = reader.maybe_table("confidence");
   if (!table) return;
-  TableReader inner(*table, "task.confidence", reading.findings, reader.keys("confidence"));
+  TableReader inner(*table, key_of(task, "confidence"), reading.findings, reader.keys("confidence"));
   Confidence confidence;
   confidence.question = read_localised(inner, "question", reading);
   inner.require("labels");
@@ -469,7 +502,7 @@ void read_unsure(TableReader& reader, Task& task, const Reading& reading) {
 }
 
 void read_choices(TableReader& reader, Task& task, const TaskForm& kind, const Reading& reading) {
-  task.choices = read_choice_list(reader, "task.choices", reading);
+  task.choices = read_choice_list(reader, key_of(task, "choices"), reading);
   std::set<std::string> seen;
   for (const auto& choice : task.choices) seen.insert(choice.id);
   const auto [fewest, most] = std::pair(kind.fewest, kind.most);
@@ -607,10 +640,11 @@ void read_shown(TableReader& reader, Task& task, const Reading& reading) {
 
 }  // namespace
 
-void read_task(TableReader& file, Reading& reading) {
-  const auto* table = file.table("task");
-  if (!table) return;
-  TableReader reader(*table, "task", reading.findings, file.keys("task"));
+namespace {
+
+/// Reads one task from its table; `path` is that of the table.
+void read_one(const Value& table, const std::string& path, const core::Keys& keys, Reading& reading) {
+  TableReader reader(table, path, reading.findings, keys);
   auto& task = reading.protocol.task;
   const auto word = reader.word("kind");
   // An unknown kind has been reported. The code below then reads the keys of the first kind.
@@ -619,6 +653,7 @@ void read_task(TableReader& file, Reading& reading) {
   if (kind == std::end(task_forms)) kind = std::begin(task_forms);
   task.kind = kind->kind;
   read_parts(reader, task, reading);
+  read_before(reader, task, reading);
   read_intervals(reader, task, reading);
   const auto device = reader.word("device");
   task.device_place = reader.place("device");
@@ -627,6 +662,9 @@ void read_task(TableReader& file, Reading& reading) {
     reader.problem("device", phrase("a slider cannot be moved with buttons"), plain("\"touch\""));
   if (reader.maybe_word("sound") == "masking_noise") task.sound = Sound::masking_noise;
   task.sound_place = reader.place("sound");
+  if (reader.has("cue")) task.cue = read_localised(reader, "cue", reading);
+  task.cue_s = read_expression(reader, "cue_s", reading).value_or(task.cue_s);
+  task.again = static_cast<int>(reader.maybe_integer("again").value_or(0));
   task.question = read_localised(reader, "question", reading);
   read_shown(reader, task, reading);
   read_judgement(reader, task, reading);
@@ -639,6 +677,66 @@ void read_task(TableReader& file, Reading& reading) {
   }
   check_parts(task, *kind, reading);
   reader.finish();
+}
+
+}  // namespace
+
+void read_task(TableReader& file, Reading& reading) {
+  if (!file.has("tasks")) {
+    if (const auto* one = file.table("task")) read_one(*one, "task", file.keys("task"), reading);
+    return;
+  }
+  const auto* several = file.maybe_table("tasks");
+  if (!several) return;
+  const auto& keys = keys_of("tasks.NAME");
+  for (const auto& entry : several->entries) {
+    if (entry.value.kind != Value::Kind::table) {
+      reading.findings.add(entry.place,
+                           phrase("\"tasks.%1\" is %2", {plain(entry.key), describe(entry.value)}),
+                           phrase("write a table %1", {plain("[tasks.NAME]")}));
+      continue;
+    }
+    const auto fits = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+    if (entry.key.size() > 64 || !std::all_of(entry.key.begin(), entry.key.end(), fits))
+      reading.findings.add(entry.place, phrase("the name of the task is \"%1\"", {plain(entry.key)}),
+                           phrase("at most 64 letters, digits, _ and -"));
+    reading.protocol.task = {};
+    reading.protocol.task.name = entry.key;
+    read_one(entry.value, "tasks." + entry.key, keys, reading);
+    reading.tasks.push_back(reading.protocol.task);
+  }
+  if (several->entries.size() < 2)
+    reading.findings.add(several->place, phrase("[tasks] has %1", {plain(several->entries.size())}),
+                         phrase("two or more tables [tasks.NAME], or one [task]"));
+}
+
+Task read_asked(TableReader& reader, const Reading& reading) {
+  const auto name = reader.maybe_string("task");
+  if (reading.tasks.empty()) {
+    if (name)
+      reader.problem("task", phrase("\"task\" names one of several tasks, but the file has one"),
+                     phrase("leave it out, or write several tables [tasks.NAME]"));
+    return reading.protocol.task;
+  }
+  std::vector<std::string> known;
+  for (const auto& task : reading.tasks) known.push_back(task.name);
+  const auto found = std::find(known.begin(), known.end(), name.value_or(""));
+  if (!name)
+    reader.findings().add(reader.place(), phrase("%1 does not say which task it asks", {reader.title()}),
+                          phrase("\"task\" with %1", {core::quoted_list(known)}));
+  else if (found == known.end())
+    reader.problem("task", phrase("there is no [tasks.%1]", {plain(*name)}), core::suggestion(*name, known));
+  if (found != known.end()) return reading.tasks[static_cast<std::size_t>(found - known.begin())];
+  auto unknown = reading.tasks.front();
+  unknown.name.clear();
+  return unknown;
+}
+
+std::vector<Protocol> as_tasks_see(const Reading& reading) {
+  if (reading.tasks.empty()) return {reading.protocol};
+  std::vector<Protocol> all;
+  for (const auto& task : reading.tasks) all.push_back(with_task(reading.protocol, task, reading.asks));
+  return all;
 }
 
 }  // namespace turnpoint::protocol

@@ -17,6 +17,7 @@ namespace turnpoint::protocol {
 /// The declared keys of a table of a protocol file, such as `task.rating`.
 inline const core::Keys& keys_of(const std::string& path) { return core::below(protocol_keys(), path); }
 
+/// While a part of the file is read that asks one of several tasks, `protocol.task` is that task.
 struct Reading {
   Protocol& protocol;
   core::Findings& findings;
@@ -25,13 +26,22 @@ struct Reading {
   std::vector<std::string> declared_scenes;
   /// for each table with `for_each`, by its name: the names of the procedures that were made from it
   std::map<std::string, std::vector<std::string>> families = {};
+  /// the tasks of a file with several, and which of them each procedure asks, by name
+  std::vector<Task> tasks = {};
+  std::map<std::string, std::string> asks = {};
 };
 
 void read_header(core::TableReader& file, Reading& reading);  ///< Reads `format`, [protocol] and [random].
 void read_factors(core::TableReader& file, Reading& reading);
 void read_scenes(core::TableReader& file, Reading& reading);
 void read_instructions(core::TableReader& file, Reading& reading);
-void read_task(core::TableReader& file, Reading& reading);
+void read_task(core::TableReader& file, Reading& reading);  ///< Reads [task], or all of [tasks].
+/// Reads which of several tasks a procedure or block asks. Reports a problem if it does not say so, or if
+/// there are not several. Returns the only task if there are not, and one without a name if it is not known
+/// which.
+Task read_asked(core::TableReader& reader, const Reading& reading);
+/// The protocol as each of its tasks sees it, as far as it has been read.
+std::vector<Protocol> as_tasks_see(const Reading& reading);
 void read_timing(core::TableReader& file, Reading& reading);
 void read_payoff(core::TableReader& file, Reading& reading);
 void read_procedures(core::TableReader& file, Reading& reading);
@@ -53,8 +63,13 @@ void read_resume(core::TableReader& file, Reading& reading);
 /// Checks what can be checked only when the whole file has been read: values of factors in each trial,
 /// answers, pass criteria, deadlines.
 void check_whole(core::TableReader& file, Reading& reading);
+/// Checks what concerns several tasks: that each is asked, and what blocks of several cannot have.
+void check_tasks(const Reading& reading);
 /// Checks that a response signal that is part of the stimulus (a tone or a buzz) fits into it.
 void check_signal(const Reading& reading);
+/// Checks that scenes that follow the finger are whole intervals: not one end of a change, a buzz, or what a
+/// friction table is measured with.
+void check_follow(const Reading& reading);
 /// Checks sessions and groups: that each has blocks, and that nothing depends on what a session does not
 /// have.
 void check_visits(const Reading& reading);
@@ -72,6 +87,10 @@ std::vector<Choice> read_choice_list(core::TableReader& reader, const std::strin
                                      const Reading& reading);
 /// Reads the name of a scene. Reports a problem if the file has no such scene.
 std::string read_scene_name(core::TableReader& reader, const std::string& key, const Reading& reading);
+
+/// Reads what a scene's gain follows, from its table `follow`.
+Follow read_follow(const core::Value& table, const std::string& path, core::Findings& findings,
+                   const Reading& reading);
 
 /// Reads a number or an expression of factors; empty if the key is not there.
 std::optional<Linear> read_expression(core::TableReader& reader, const std::string& key,

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "physics/root.hpp"
+#include "station/protocol/follow_target.hpp"
+#include "station/scene/planner.hpp"
 
 namespace turnpoint::protocol {
 
@@ -35,6 +37,10 @@ std::vector<std::optional<double>> numbers_of(const scene::Scene& scene) {
   if (scene.zone) numbers.insert(numbers.end(), {scene.zone->from_m, scene.zone->friction});
   for (const auto& tone : scene.tones)
     numbers.insert(numbers.end(), {tone.boundary_m, tone.frequency_Hz, tone.displacement_m, tone.phase_rad});
+  if (scene.follow) {
+    const auto followed = followed_numbers(*scene.follow);
+    numbers.insert(numbers.end(), followed.begin(), followed.end());
+  }
   return numbers;
 }
 
@@ -77,6 +83,13 @@ scene::Scene resolve(const Protocol& protocol, const std::string& name, const Fa
   if (from.tolerance.boundary_mm) scene.tolerance.boundary_m = 1e-3 * *from.tolerance.boundary_mm;
   scene.tolerance.level_dB = from.tolerance.level_dB;
   scene.tolerance.friction = from.tolerance.friction;
+  if (from.follow) try {
+      const auto speed_mm_s = protocol.sensing ? protocol.sensing->speed_mm_s : std::nullopt;
+      scene.follow =
+          std::make_shared<const scene::FollowTarget>(follow_target(*from.follow, factors, speed_mm_s));
+    } catch (const std::invalid_argument& error) {  // values that are not possible together
+      throw scene::Unreachable(core::plain(error.what()));
+    }
   return scene;
 }
 

@@ -9,7 +9,8 @@ namespace turnpoint::protocol {
 
 /// Returns a scene of the protocol as numbers for these values of the factors: evaluates its expressions,
 /// converts the contrast to friction, and changes the strength by `rove_dB`, which the caller has drawn.
-/// Throws std::out_of_range for an unknown scene and std::invalid_argument for a factor without a number.
+/// Throws std::out_of_range for an unknown scene, std::invalid_argument for a factor without a number, and
+/// scene::Unreachable if these factors give what a scene follows impossible values.
 scene::Scene resolve(const Protocol& protocol, const std::string& scene, const Factors& factors,
                      double rove_dB);
 

@@ -4,7 +4,9 @@
 #include <utility>
 #include <vector>
 
+#include "station/follow/pattern.hpp"
 #include "station/protocol/linear.hpp"
+#include "station/scene/scene.hpp"
 
 namespace turnpoint::protocol {
 
@@ -50,6 +52,43 @@ struct Zone {
   std::optional<int> tones;
 };
 
+/// What makes a part of a following scene begin, and how long it lasts.
+struct FollowEvent {
+  follow::Event event = follow::Event::none;
+  std::optional<Linear> threshold;  ///< in N, mm or mm/s; empty for none and contact
+  follow::Until until = follow::Until::released;
+  std::optional<Linear> delay_s, lasts_s;
+};
+
+/// Noise as a sum of sines: power density (any unit) at cycles per mm, joined by straight lines.
+struct Noise {
+  std::vector<follow::SpectrumPoint> spectrum;
+  std::optional<Linear> instance;  ///< which one of the noises with this spectrum
+};
+
+/// One part of what the gain follows; the same as follow::Part, with expressions. Values are in the unit of
+/// the scene's `follow`.
+struct FollowPart {
+  follow::Shape shape = follow::Shape::constant;  ///< `table` also for noise
+  follow::Combine combine = follow::Combine::replace;
+  std::optional<Linear> from, to, begin_mm, end_mm, period_mm, frequency_Hz, phase_deg, place_mm, width_mm;
+  std::vector<double> samples;  ///< one cycle of a table
+  std::optional<Noise> noise;
+  FollowEvent event;
+  Place place;
+};
+
+/// What the gain of a scene's tones follows; see scene::FollowTarget.
+struct Follow {
+  scene::FollowUnit unit = scene::FollowUnit::relative;
+  Linear base;  ///< the value where no part acts
+  follow::Control control = follow::Control::open;
+  std::optional<Linear> resting_friction;
+  double resting_gain = 0;
+  std::vector<FollowPart> parts;
+  Place place;
+};
+
 /// The accuracy that a scene requires. The planner uses the cheapest model that meets all tolerances that are
 /// given.
 struct Tolerance {
@@ -76,6 +115,7 @@ struct Scene {
   double rove_dB = 0;
   double ramp_ms = 50;
   Tolerance tolerance;
+  std::optional<Follow> follow;
   Place place;
 };
 

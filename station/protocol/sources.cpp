@@ -5,6 +5,7 @@
 #include "station/procedure/limits.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
+#include "station/protocol/follow_target.hpp"
 
 namespace turnpoint::protocol {
 
@@ -91,6 +92,10 @@ std::vector<const Linear*> expressions_of(const Scene& scene) {
     add(tone.boundary_mm), add(tone.frequency_Hz);
     all.push_back(&tone.displacement_um);
   }
+  if (scene.follow) {
+    const auto followed = expressions_of(*scene.follow);
+    all.insert(all.end(), followed.begin(), followed.end());
+  }
   return all;
 }
 
@@ -105,6 +110,10 @@ std::vector<Source> sources_of(const Protocol& protocol) {
 
 std::vector<std::string> scenes_used(const Protocol& protocol) {
   std::vector<std::string> names;
+  for (const auto& one : protocol.by_task)
+    for (const auto& name : scenes_used(one))
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  if (!protocol.by_task.empty()) return names;
   const auto add_name = [&](const std::string& name) {
     if (protocol.scenes.count(name) && std::find(names.begin(), names.end(), name) == names.end())
       names.push_back(name);
@@ -114,6 +123,8 @@ std::vector<std::string> scenes_used(const Protocol& protocol) {
     for (const auto& part : parts_of(task, interval))
       for (const auto& name : part.scenes) add_name(name);
   };
+  for (const auto& part : task.before)
+    for (const auto& name : part.scenes) add_name(name);
   for (const auto& interval : task.intervals) add_interval(interval);
   add_interval({task.standard}), add_interval({task.target});
   if (protocol.timing.signal) add_name(protocol.timing.signal->scene);
@@ -122,6 +133,8 @@ std::vector<std::string> scenes_used(const Protocol& protocol) {
 
 std::set<std::string> factors_used(const Protocol& protocol) {
   std::set<std::string> names;
+  for (const auto& one : protocol.by_task) names.merge(factors_used(one));
+  if (!protocol.by_task.empty()) return names;
   for (const auto& name : scenes_used(protocol))
     for (const auto* expression : expressions_of(protocol.scenes.at(name))) add(*expression, names);
   for (const auto& [id, comparison] : protocol.task.correct_answer)
@@ -129,6 +142,7 @@ std::set<std::string> factors_used(const Protocol& protocol) {
   if (const auto& present = protocol.task.present) add(present->left, names), add(present->right, names);
   const auto& timing = protocol.timing;
   for (const auto& time : stimulus_times(protocol.task)) add(time, names);
+  add(protocol.task.cue_s, names);
   if (timing.iti_s.expression) add(*timing.iti_s.expression, names);
   add(timing.anticipation_s, names);
   for (const auto* delay : {&timing.delay_s.wrong, &timing.delay_s.late, &timing.delay_s.early})

@@ -31,10 +31,10 @@ std::vector<Source> sources_of(const Protocol& protocol);
 /// All expressions of a scene. The pointers point into the scene.
 std::vector<const Linear*> expressions_of(const Scene& scene);
 
-/// The factors on which the task's scenes, its right answers and its times depend.
+/// The factors on which the tasks' scenes, their right answers and their times depend.
 std::set<std::string> factors_used(const Protocol& protocol);
 
-/// The scenes that the task presents, each once.
+/// The scenes that the tasks present, each once.
 std::vector<std::string> scenes_used(const Protocol& protocol);
 
 /// Returns a value for each factor: its first level or, if it has no levels, the middle of its range.

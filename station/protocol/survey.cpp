@@ -23,6 +23,8 @@
 #include "station/protocol/orders.hpp"
 #include "station/protocol/resolve.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/protocol/tasks.hpp"
+#include "station/scene/following.hpp"
 #include "station/scene/planner.hpp"
 #include "station/scene/transducer.hpp"
 
@@ -48,28 +50,18 @@ core::Phrase reach(const scene::Scene& scene, const rig::Rig& rig, const scene::
                                                 rig.friction.fingertip_m};
   const double low_Hz = scene::lowest_frequency(rig, 0),
                high_Hz = scene::highest_frequency(rig, core::kHighestShareOfRate * rig.output.rate_Hz);
-  // Without tones that this rig can play, a map of all frequencies says whether the edge exists at all.
-  const auto of_rig = [&]() -> std::optional<physics::BoundaryMap> {
-    auto in_band = options;
-    in_band.band = {low_Hz, high_Hz};
-    try {
-      return physics::BoundaryMap(planner.surface(), in_band);
-    } catch (const std::domain_error&) {
-      physics::BoundaryMap(planner.surface(), options);
-      return std::nullopt;
-    }
-  };
-  const auto map = of_rig();
-  std::optional<double> nearest, furthest;
-  constexpr int steps = 400;
-  for (int i = 0; map && i <= steps; ++i)
-    if (const auto x = map->boundary_m(low_Hz + (high_Hz - low_Hz) * i / steps)) {
-      nearest = std::min(nearest.value_or(*x), *x);
-      furthest = std::max(furthest.value_or(*x), *x);
-    }
-  if (!nearest) return phrase("this rig cannot present any boundary with this edge");
+  auto in_band = options;
+  in_band.band = {low_Hz, high_Hz};
+  physics::Reach reach{};
+  try {
+    reach = physics::boundary_reach_m(planner.surface(), in_band);
+  } catch (const std::domain_error&) {
+    // Without tones that this rig can play, all frequencies say whether the edge exists at all.
+    physics::boundary_reach_m(planner.surface(), options);
+    return phrase("this rig cannot present any boundary with this edge");
+  }
   return phrase("with this edge the rig can present boundaries from %1 to %2 mm (%3 to %4 kHz)",
-                {plain(core::number(1e3 * *nearest, 4)), plain(core::number(1e3 * *furthest, 4)),
+                {plain(core::number(1e3 * reach.first_m, 4)), plain(core::number(1e3 * reach.last_m, 4)),
                  plain(core::number(1e-3 * low_Hz, 4)), plain(core::number(1e-3 * high_Hz, 4))});
 }
 
@@ -108,9 +100,9 @@ std::vector<Combination> planned(const Protocol& protocol, const std::vector<Com
     for (const auto& combination : all)
       if (combination.scene == name) of_scene.push_back(combination);
     const auto& scene = protocol.scenes.at(name);
-    const auto most = !scene.zone              ? most_plans_of_a_scene
-                      : only_expression(scene) ? most_plans_of_a_zone
-                                               : most_plans_of_a_zone_grid;
+    const auto most = !scene.zone && !scene.follow ? most_plans_of_a_scene
+                      : only_expression(scene)     ? most_plans_of_a_zone
+                                                   : most_plans_of_a_zone_grid;
     const auto some = thinned(scene, of_scene, most);
     chosen.insert(chosen.end(), some.begin(), some.end());
   }
@@ -123,7 +115,8 @@ struct Answer {
   std::optional<scene::Cues> cues_roved_down;
   core::Phrase refused;
   std::optional<scene::Scene> refused_scene;
-  Place place;  ///< place in the file of the key that the rig cannot satisfy
+  bool follow_refused = false;  ///< the scene could be presented if it did not follow the finger
+  Place place;                  ///< place in the file of the key that the rig cannot satisfy
 };
 
 bool can_plan(const scene::Scene& scene, scene::Planner& planner) {
@@ -198,8 +191,11 @@ void plan_range(const Protocol& protocol, const std::vector<Combination>& combin
     const auto& from = protocol.scenes.at(combination.scene);
     // Plan with the largest strength that rove_dB allows: the limits must hold for the strongest stimulus
     // that can be drawn.
-    const auto scene = resolve(protocol, combination.scene, combination.factors, from.rove_dB);
+    scene::Scene scene;
+    bool resolved = false;  // else the scene is empty
     try {
+      scene = resolve(protocol, combination.scene, combination.factors, from.rove_dB);
+      resolved = true;
       answers[i].plan = planner.plan(scene);
       if (edge_moves_with_strength(from))
         answers[i].cues_roved_down =
@@ -208,7 +204,15 @@ void plan_range(const Protocol& protocol, const std::vector<Combination>& combin
       answers[i].refused = error.why();
       answers[i].refused_scene = scene;
       answers[i].place = from.place;
-      if (explained.insert(combination.scene).second) try {
+      if (from.follow) {
+        auto still = scene;
+        still.follow.reset();
+        answers[i].follow_refused = !resolved || can_plan(still, planner);
+      }
+      if (answers[i].follow_refused)
+        answers[i].place = from.follow->place;
+      else if (explained.insert(combination.scene).second)
+        try {
           answers[i].place = blamed_place(protocol, places, from, scene, planner);
         } catch (const std::domain_error&) {  // this rig cannot present any boundary with this kind of edge
         }
@@ -275,7 +279,8 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   survey.combinations = all.size();
   const auto combinations = planned(protocol, all);
   const auto answers = plan_all(protocol, rig, combinations, stop, progress);
-  std::map<std::string, Trouble> unreachable, inexact;
+  std::map<std::string, Trouble> unreachable, inexact, unmet;
+  std::map<std::string, core::Phrase> remarks;  // the first one on each scene
   Reaches reaches(rig);
   // the text of the first warning with each warning code, because each code is reported only once
   std::map<std::string, core::Phrase> told;
@@ -284,7 +289,8 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
     if (!answers[i].plan) {
       auto& trouble = unreachable[combination.scene];
       if (trouble.cases++ == 0)
-        trouble = {in_case(combination, answers[i].refused), reaches.of(*answers[i].refused_scene),
+        trouble = {in_case(combination, answers[i].refused),
+                   answers[i].follow_refused ? core::Phrase{} : reaches.of(*answers[i].refused_scene),
                    answers[i].place, 1};
       continue;
     }
@@ -294,6 +300,13 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
     survey.models.emplace(physics::name(plan.model));
     if (!plan.inside_tolerance && inexact[combination.scene].cases++ == 0)
       inexact[combination.scene].first = in_case(combination, plan.beyond_tolerance);
+    if (plan.follow && !remarks.count(combination.scene))
+      if (const auto remark = scene::remark_on(rig, plan))
+        remarks.emplace(combination.scene, in_case(combination, *remark));
+    if (plan.follow)
+      for (const auto& stretch : scene::unmet_of(plan))
+        if (unmet[combination.scene].cases++ == 0)
+          unmet[combination.scene].first = in_case(combination, scene::in_words(plan, stretch));
     for (const auto& warning : plan.warnings)
       told.emplace(warning.code, in_case(combination, rig::phrase_of(warning)));
   }
@@ -302,6 +315,14 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   for (const auto& [name, trouble] : inexact)
     survey.warnings.push_back({protocol.scenes.at(name).place, counted(trouble.first, trouble.cases),
                                phrase("no physical model is known to meet the scene's tolerance")});
+  for (const auto& [name, remark] : remarks)
+    survey.warnings.push_back({protocol.scenes.at(name).follow->place, remark, {}});
+  for (const auto& [name, trouble] : unmet)
+    survey.warnings.push_back(
+        {protocol.scenes.at(name).follow->place, counted(trouble.first, trouble.cases),
+         phrase(
+             "where the finger feels something else, that is in the data: use a stronger scene, or keep the "
+             "finger in a stretch")});
   // this rig reproduces an historical one, whose weaknesses are known, so leave out the planner's warnings
   if (rig.reproduction) return;
   for (const auto& [code, warning] : told) survey.warnings.push_back({{protocol.path, 0, 0}, warning, {}});
@@ -319,6 +340,8 @@ struct Longest {
   double run_s = 0, minute_s = 0;
   const Part* run_part = nullptr;
   bool over_intervals = false;  ///< whether the run goes over the pause between two intervals
+  /// the longest vibration within any minute if the participant asks for the intervals as often as allowed
+  double again_minute_s = 0;
 };
 
 void lengthen(const std::vector<Felt>& trial, Longest& longest) {
@@ -330,7 +353,7 @@ void lengthen(const std::vector<Felt>& trial, Longest& longest) {
     if (rests) run_interval = felt.interval;
     run_s = (rests ? 0 : run_s + felt.silence_s) + felt.length_s;
     if (run_s > longest.run_s + 1e-9)
-      longest = {run_s, longest.minute_s, felt.part, run_interval != felt.interval};
+      longest = {run_s, longest.minute_s, felt.part, run_interval != felt.interval, longest.again_minute_s};
     presented.emplace_back(end_s + felt.silence_s, end_s + felt.silence_s + felt.length_s);
     end_s = presented.back().second;
     double minute_s = 0;
@@ -340,14 +363,23 @@ void lengthen(const std::vector<Felt>& trial, Longest& longest) {
   }
 }
 
+/// A trial whose intervals are presented so many times again, each time at once after the cue.
+std::vector<Felt> repeated(const std::vector<Felt>& trial, int again) {
+  static_assert(kCue_s >= core::kRest_s, "the finger rests before the intervals are presented again");
+  auto all = trial;
+  for (int i = 0; i < again; ++i)
+    for (auto felt : trial) {
+      if (felt.part == trial.front().part && felt.interval == 0) felt.silence_s += kCue_s;
+      all.push_back(felt);
+    }
+  return all;
+}
+
 /// The longest vibration of a trial, over all orders of its intervals, with and without a long first part, at
 /// the ends of the ranges of the factors.
 Longest longest_of(const Protocol& protocol, std::vector<std::vector<std::vector<Part>>>& orders) {
   const auto& task = protocol.task;
-  for (const auto& order : orders_of(task)) {
-    auto& intervals = orders.emplace_back();
-    for (const auto& interval : order.intervals) intervals.push_back(parts_of(task, interval));
-  }
+  for (const auto& order : orders_of(task)) orders.push_back(parts_of_trial(task, order.intervals));
   const auto times = stimulus_times(task);
   std::vector<const Linear*> expressions;
   for (const auto& time : times) expressions.push_back(&time);
@@ -367,6 +399,9 @@ Longest longest_of(const Protocol& protocol, std::vector<std::vector<std::vector
           }
         }
         lengthen(trial, longest);
+        Longest again;
+        lengthen(repeated(trial, task.again), again);
+        longest.again_minute_s = std::max(longest.again_minute_s, again.minute_s);
       }
   return longest;
 }
@@ -378,9 +413,10 @@ void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey)
   const auto longest = longest_of(protocol, orders);
   if (longest.run_part == nullptr) return;
   const auto& part = *longest.run_part;
-  const std::string key = longest.over_intervals             ? "task.gap_s"
-                          : part.duration_s || part.first_s  ? "task.parts"
-                          : length_of(task, part) != nullptr ? "task.duration_s"
+  const std::string parts_key = key_of(task, places.has(key_of(task, "parts")) ? "parts" : "before");
+  const std::string key = longest.over_intervals             ? key_of(task, "gap_s")
+                          : part.duration_s || part.first_s  ? parts_key
+                          : length_of(task, part) != nullptr ? key_of(task, "duration_s")
                                                              : "timing.explore_s";
   if (longest.run_s > rig.limits.continuous_s + 1e-9)
     survey.problems.push_back(
@@ -391,25 +427,54 @@ void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey)
   const double most_s = rig.limits.duty * core::kExposureWindow_s;
   if (longest.minute_s > most_s + 1e-9)
     survey.problems.push_back(
-        {places.of(task.parts.empty() ? key : "task.parts"),
+        {places.of(task.parts.empty() && task.before.empty() ? key : parts_key),
          phrase("the tones of a trial last up to %1 s in %2 s",
                 {plain(core::number(longest.minute_s)), plain(core::number(core::kExposureWindow_s))}),
          phrase("the rig allows at most %1 s (duty = %2)",
                 {plain(core::number(most_s)), plain(core::number(rig.limits.duty))})});
+  else if (longest.again_minute_s > most_s + 1e-9)
+    survey.warnings.push_back({places.of(key_of(task, "again")),
+                               phrase("the tones of a trial that is presented %1 times would last up to %2 s "
+                                      "in %3 s: people wait until "
+                                      "the rig's limits allow them",
+                                      {plain(task.again + 1), plain(core::number(longest.again_minute_s)),
+                                       plain(core::number(core::kExposureWindow_s))}),
+                               phrase("the rig allows at most %1 s without a wait (duty = %2)",
+                                      {plain(core::number(most_s)), plain(core::number(rig.limits.duty))})});
 }
 
 }  // namespace
 
-Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop,
-              const std::function<void(int done, int of)>& progress) {
+namespace {
+
+/// The survey of one task, without advice.
+Survey survey_of_task(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop,
+                      const std::function<void(int done, int of)>& progress) {
   Survey survey;
   check_needs(protocol, rig, survey);
   check_limits(protocol, rig, survey);
   plan_scenes(protocol, rig, stop, progress, survey);
   for (auto& warning : carrier_warnings(protocol, rig, survey.sights))
     survey.warnings.push_back(std::move(warning));
-  for (auto& warning : advice(protocol)) survey.warnings.push_back(std::move(warning));
   return survey;
+}
+
+}  // namespace
+
+Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop,
+              const std::function<void(int done, int of)>& progress) {
+  Survey whole;
+  if (protocol.by_task.empty()) whole = survey_of_task(protocol, rig, stop, progress);
+  for (const auto& one : protocol.by_task) {
+    const auto& own = whole.by_task.emplace_back(survey_of_task(one, rig, stop, progress));
+    for (const auto& problem : own.problems) add_once(problem, whole.problems);
+    for (const auto& warning : own.warnings) add_once(warning, whole.warnings);
+    whole.sights.insert(whole.sights.end(), own.sights.begin(), own.sights.end());
+    whole.combinations += own.combinations;
+    whole.models.insert(own.models.begin(), own.models.end());
+  }
+  for (auto& warning : advice(protocol)) whole.warnings.push_back(std::move(warning));
+  return whole;
 }
 
 }  // namespace turnpoint::protocol

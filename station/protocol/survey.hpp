@@ -46,6 +46,8 @@ struct Survey {
   /// between them were planned
   std::size_t combinations = 0;
   std::set<std::string> models;
+  /// Of a file with several tasks: the survey of each, without advice; `sights` has those of all.
+  std::vector<Survey> by_task;
 };
 
 /// Thrown if survey() is stopped before it has a result.

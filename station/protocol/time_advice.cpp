@@ -5,6 +5,7 @@
 #include "station/protocol/advice_list.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
+#include "station/protocol/tasks.hpp"
 
 namespace turnpoint::protocol {
 
@@ -100,7 +101,7 @@ void check_change(AdviceList& advice) {
     return;
   const double latest_s = change->change_s + 1e-3 * advice.protocol.task.transition_ms.value_or(0);
   advice.add(
-      "task.foreperiod_s",
+      key_of(advice.protocol.task, "foreperiod_s"),
       phrase("the change can end %1 s after the tones begin, but the tones last only %2 s",
              {plain(number(latest_s)), plain(number(change->whole_s))}),
       phrase("the foreperiod plus the transition must be well below %1 s", {plain(number(change->whole_s))}));
@@ -141,15 +142,21 @@ void advise_on_times(AdviceList& advice) {
   const auto longest = [&](const std::optional<Linear>& time) {
     return time ? bounds(*time, advice.protocol.factors).second : 0;
   };
-  check_length(advice, "task.duration_s", longest(task.duration_s));
+  check_length(advice, key_of(task, "duration_s"), longest(task.duration_s));
   for (const auto& [name, parts] : task.parts)
     for (const auto& part : parts) {
-      check_length(advice, "task.parts." + name, longest(part.duration_s));
-      check_length(advice, "task.parts." + name, part.first_s.value_or(0));
+      check_length(advice, key_of(task, "parts.") + name, longest(part.duration_s));
+      check_length(advice, key_of(task, "parts.") + name, part.first_s.value_or(0));
       for (const auto& silence : part.silences_s)
-        check_length(advice, "task.parts." + name, longest(silence));
+        check_length(advice, key_of(task, "parts.") + name, longest(silence));
     }
-  check_length(advice, "task.foreperiod_s", task.foreperiod_s.value_or(Distribution{}).high);
+  const auto before = key_of(task, "before");
+  for (const auto& part : task.before) {
+    check_length(advice, before, std::max(longest(part.duration_s), part.first_s.value_or(0)));
+    for (const auto& silence : part.silences_s) check_length(advice, before, longest(silence));
+  }
+  for (const auto& silence : task.before_silences_s) check_length(advice, before, longest(silence));
+  check_length(advice, key_of(task, "foreperiod_s"), task.foreperiod_s.value_or(Distribution{}).high);
   check_change(advice);
 }
 

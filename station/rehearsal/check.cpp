@@ -20,6 +20,7 @@
 #include "station/protocol/design_advice.hpp"
 #include "station/protocol/glyphs.hpp"
 #include "station/protocol/interludes.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/protocol/triggers.hpp"
 #include "station/protocol/visits.hpp"
 #include "station/rehearsal/parallel.hpp"
@@ -46,6 +47,7 @@ constexpr double instruction_s = 12, explored_share = 0.5, setting_s = 15;
 struct Estimate {
   std::vector<CheckedBlock> blocks;
   std::vector<double> trials, durations_s;
+  double longest_trial_s = 0;
 
   double all_trials() const { return std::accumulate(trials.begin(), trials.end(), 0.0); }
   double duration_s() const { return std::accumulate(durations_s.begin(), durations_s.end(), 0.0); }
@@ -56,17 +58,20 @@ double longest_s(const Protocol& protocol) { return protocol.timing.explore_s.va
 
 /// Returns the observer of `run --observer sim`, except that setting a slider takes as long as it would take
 /// a person, and that this observer is as quick as a deadline asks, if people can be so quick, and never too
-/// early.
-Rehearser person(const Protocol& protocol) {
-  auto person = rehearser(simulation::Observer{simulation::Parameters{}});
+/// early. It asks for the intervals again with the probability `again`.
+Rehearser person(const Protocol& protocol, double again) {
+  simulation::Parameters parameters;
+  parameters.again = again;
+  auto person = rehearser(simulation::Observer{parameters});
   person.adjust = [adjust = person.adjust, done_s = std::min(setting_s, longest_s(protocol))](
                       const trial::TrialSpec& spec, const simulation::Adjustment& asked) {
     auto setting = adjust(spec, asked);
     setting.done_s = std::min(done_s, 0.9 * asked.within_s);
     return setting;
   };
-  person.answer = [](const trial::TrialSpec& spec, const simulation::Question& asked) {
+  person.answer = [again](const trial::TrialSpec& spec, const simulation::Question& asked) {
     simulation::Parameters usual;
+    usual.again = again;
     const double outside_s = simulation::Observer(usual).nondecision_s();
     if (!asked.signal_s && asked.deadline_s >= protocol::shortest_deadline_s &&
         asked.deadline_s < outside_s + trial::kLeastDecision_s) {
@@ -84,8 +89,8 @@ Rehearser person(const Protocol& protocol) {
 
 /// The time for which people explore the surface in each trial before they decide, if the task lets them
 /// choose when to answer.
-double exploring_s(const Protocol& protocol) {
-  const auto& task = protocol.task;
+double exploring_s(const Protocol& protocol, std::size_t of_task) {
+  const auto& task = protocol::of_task(protocol, of_task).task;
   const bool free =
       task.kind == protocol::TaskKind::single_interval && protocol::explored(task) && !task.foreperiod_s;
   return free ? explored_share * longest_s(protocol) : 0;
@@ -107,7 +112,8 @@ std::vector<CheckedInterlude> interludes(const Protocol& protocol, const std::ve
   return list;
 }
 
-Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed) {
+Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed,
+                  double again = 0) {
   const auto order = protocol::block_order(protocol, visit);
   // Procedures that continue have fewer trials left after earlier sessions.
   procedure::EarlierTrials earlier;
@@ -115,9 +121,9 @@ Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::u
   if (std::any_of(all.begin(), all.end(), [](const auto& procedure) { return procedure.continues; }))
     for (int session = 1; session < visit.session; ++session)
       trial::add_earlier_trials(
-          protocol, rehearse(protocol, {visit.place, session}, seed, person(protocol), earlier).blocks,
+          protocol, rehearse(protocol, {visit.place, session}, seed, person(protocol, again), earlier).blocks,
           earlier);
-  const auto rehearsal = rehearse(protocol, visit, seed, person(protocol), earlier);
+  const auto rehearsal = rehearse(protocol, visit, seed, person(protocol, again), earlier);
   Estimate estimate;
   for (std::size_t b = 0; b < rehearsal.blocks.size(); ++b) {
     const auto& [start, trials] = rehearsal.blocks[b];
@@ -135,10 +141,14 @@ Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::u
       estimate.trials.push_back(0);
       estimate.durations_s.push_back(0);
     }
-    const auto count = static_cast<double>(trials.size());
-    estimate.trials.back() += count;
+    double exploring = 0;
+    for (const auto& row : trials) {
+      exploring += exploring_s(protocol, protocol::task_of(protocol, row.procedure, start.name));
+      estimate.longest_trial_s = std::max(estimate.longest_trial_s, row.timing.duration_s);
+    }
+    estimate.trials.back() += static_cast<double>(trials.size());
     estimate.durations_s.back() +=
-        rehearsal.block_s[b] + count * exploring_s(protocol) + instruction_s +
+        rehearsal.block_s[b] + exploring + instruction_s +
         breaks_s(order[static_cast<std::size_t>(start.block_index)], trials.size());
   }
   if (!estimate.blocks.empty())
@@ -241,6 +251,21 @@ void estimate(const Protocol& protocol, std::optional<int> sessions, const std::
       return;
     each = std::min(most, 2 * each);
   }
+}
+
+/// How long trials and sessions become if everybody asks for the intervals as often as the task allows: one
+/// session of each visit.
+void estimate_again(const Protocol& protocol, const std::stop_token& stop, Check& check) {
+  if (protocol.task.again == 0) return;
+  constexpr double always = 1;
+  double trial_s = 0, session_s = 0;
+  for (const auto& visit : protocol::different_visits(protocol)) {
+    if (stop.stop_requested()) throw protocol::Abandoned();
+    const auto estimate = simulate(protocol, visit, 0, always);
+    trial_s = std::max(trial_s, estimate.longest_trial_s);
+    session_s = std::max(session_s, estimate.duration_s());
+  }
+  check.longest_trial_again_s = trial_s, check.longest_session_again_s = session_s;
 }
 
 /// A scene's sound, and the tones and the model of which it is.
@@ -411,7 +436,7 @@ std::vector<CheckedRuns> check_runs(const Protocol& protocol, int sessions, cons
       [&](int i) {
         if (stop.stop_requested()) throw protocol::Abandoned();
         const auto seed = static_cast<std::uint64_t>(i);
-        auto careless = person(protocol);
+        auto careless = person(protocol, 0);
         careless.answer = [answer = careless.answer, seed](const trial::TrialSpec& spec,
                                                            const simulation::Question& asked) {
           auto reply = answer(spec, asked);
@@ -458,8 +483,8 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   }
   if (check.problems.empty() && options.try_programs) check.problems = options.try_programs(*protocol);
   if (!check.problems.empty()) return check;
-  for (const auto& meaning : protocol->meanings)
-    check.measures.push_back(protocol::line_of(meaning, *protocol));
+  for (const auto* one : protocol::tasks_of(*protocol))
+    for (const auto& meaning : one->meanings) check.measures.push_back(protocol::line_of(meaning, *one));
   check.languages = options.drawable ? drawn.languages : protocol->languages;
   check.id = protocol->id, check.title = protocol->title, check.rig_name = rig->name;
   check.different_places = protocol::place_count(*protocol);
@@ -486,6 +511,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
              options.steps, check);
     if (stop.stop_requested()) throw protocol::Abandoned();
     if (can_run) {
+      estimate_again(*protocol, stop, check);
       check.runs = check_runs(
           *protocol, std::min(runs_sessions(check.trials.median), options.sessions.value_or(kMostSessions)),
           stop, options.steps);
@@ -517,6 +543,13 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
          phrase("the session will last about %1 minutes, longer than the rig's session_minutes",
                 {plain(std::lround(check.duration_s.median / 60))}),
          phrase("at most %1", {plain(std::lround(rig->limits.session_minutes))})});
+  else if (check.longest_session_again_s.value_or(0) > 60 * rig->limits.session_minutes)
+    check.warnings.push_back({{protocol_path, 0, 0},
+                              phrase("if people ask for every trial as often as \"again\" allows, the "
+                                     "session lasts about %1 minutes, "
+                                     "longer than the rig's session_minutes",
+                                     {plain(std::lround(*check.longest_session_again_s / 60))}),
+                              phrase("at most %1", {plain(std::lround(rig->limits.session_minutes))})});
   return check;
 }
 

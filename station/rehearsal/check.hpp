@@ -85,6 +85,9 @@ struct Check {
   /// values of one session; if sessions or groups differ in length, values of the longest
   Spread trials, duration_s;
   int simulated_sessions = 0, wanted_sessions = 0;
+  /// If people may ask for the intervals of a trial again: the longest trial, and the longest session with
+  /// its reading, of simulated sessions in which everybody asks as often as allowed in every trial, in s
+  std::optional<double> longest_trial_again_s, longest_session_again_s;
   protocol::Survey survey;
   CueGuard cues;
   /// upper limit of the airborne sound level for the loudest combination of factors; empty if

@@ -84,8 +84,11 @@ void add_reports(CueObserver& observer, const Protocol& protocol, const Steps& s
 
 }  // namespace
 
-CueGuard cue_guard(const Protocol& protocol, const rig::Rig& rig, const protocol::Survey& survey,
-                   const std::stop_token& stop, const Steps& steps) {
+namespace {
+
+/// The cues of the protocol as one of its tasks sees it.
+CueGuard guard_of_task(const Protocol& protocol, const rig::Rig& rig, const protocol::Survey& survey,
+                       const std::stop_token& stop, const Steps& steps) {
   CueGuard guard;
   if (protocol.task.kind == TaskKind::adjustment) {
     guard.nothing_to_tell = "in an adjustment no setting is right or wrong";
@@ -109,7 +112,27 @@ CueGuard cue_guard(const Protocol& protocol, const rig::Rig& rig, const protocol
   } catch (const Finished&) {
     guard.stopped = true;
   }
+  for (auto& report : guard.reports) report.task = protocol.task.name;
   return guard;
+}
+
+}  // namespace
+
+CueGuard cue_guard(const Protocol& protocol, const rig::Rig& rig, const protocol::Survey& survey,
+                   const std::stop_token& stop, const Steps& steps) {
+  if (protocol.by_task.empty()) return guard_of_task(protocol, rig, survey, stop, steps);
+  CueGuard all;
+  for (std::size_t i = 0; i < protocol.by_task.size() && !all.stopped; ++i) {
+    auto one = guard_of_task(protocol.by_task[i], rig, survey.by_task.at(i), stop, steps);
+    std::move(one.reports.begin(), one.reports.end(), std::back_inserter(all.reports));
+    const auto say = [&](const std::string& words, std::string& in) {
+      if (!words.empty()) in += (in.empty() ? "" : "; ") + protocol.by_task[i].task.name + ": " + words;
+    };
+    say(one.nothing_to_tell, all.nothing_to_tell);
+    say(one.not_compared, all.not_compared);
+    all.stopped = one.stopped;
+  }
+  return all;
 }
 
 }  // namespace turnpoint::rehearsal

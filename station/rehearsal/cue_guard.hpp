@@ -46,16 +46,18 @@ struct CueReport {
   /// or from presenting all levels equally often, whichever gives the larger gain over chance. For the
   /// observer without a cue, they are taken from this result.
   std::optional<Reached> whole_sessions = {};
+  std::string task = {};  ///< the task, if the file has several
 
   /// True if the cue clearly helps. A gain of 0.1 over a chance of 0.5 is two standard errors in 100 trials.
   bool above_chance() const { return accuracy > chance + 0.1; }
 };
 
 struct CueGuard {
-  std::vector<CueReport> reports;  ///< one report per cue; if empty, one of the next two members says why
+  /// one report per cue and task; if a task has none, one of the next two members says why
+  std::vector<CueReport> reports;
   /// why the task has no right answers that a cue could give away; otherwise ""
   std::string nothing_to_tell;
-  /// which trials could not be planned or interpolated; if not empty, no cue was examined
+  /// which trials could not be planned or interpolated; if not empty, no cue of their task was examined
   std::string not_compared;
   bool stopped = false;  ///< true if `finish` was requested; `reports` then has the cues compared until then
 };

@@ -174,7 +174,7 @@ int CueObserver::answer(const CueKind& kind, const Strategy& strategy, const Tri
                         std::uint64_t seed) {
   const auto& intervals = intervals_of(trial);
   CueValues x{};
-  std::size_t next = 0;  // the part with which the interval begins
+  std::size_t next = protocol_.task.before.size();  // the part with which the interval begins
   for (std::size_t i = 0; i < intervals.size(); ++i) {
     double share = 0;
     for (const auto& part : protocol::parts_of(protocol_.task, trial.intervals[i])) {

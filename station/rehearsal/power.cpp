@@ -11,6 +11,7 @@
 #include "station/analysis/quantile.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/protocol/visits.hpp"
 #include "station/rehearsal/power_session.hpp"
 #include "station/report/stored_trials.hpp"
@@ -205,8 +206,7 @@ void finish(Recovery& entry, const std::vector<analysis::Interval>& intervals) {
   // if all answers are right, the interval of d' has no upper end
   const double width = analysis::quantile(std::move(widths), 0.5);
   if (std::isfinite(width)) entry.interval_width = width;
-  if (entry.truth)
-    entry.coverage = proportion_of(hold, count);
+  if (entry.truth) entry.coverage = proportion_of(hold, count);
 }
 
 /// Gathers the findings of sessions or studies. `truth_of` says what is true of an entry.
@@ -278,12 +278,13 @@ std::vector<Finding> findings_of(const report::Study& study, const GroupTruths& 
           truths.of(mean.condition, mean.measure));
   for (const auto& effect : study.effects) {
     if (!effect.difference) continue;
-    const auto first = truths.of(effect.first, effect.measure), second = truths.of(effect.second, effect.measure);
+    const auto first = truths.of(effect.first, effect.measure),
+               second = truths.of(effect.second, effect.measure);
     const auto& interval = effect.difference->interval;
     const bool claimed =
         effect.corrected_p ? *effect.corrected_p < 0.05 : interval.low > 0 || interval.high < 0;
-    add({effect.second + " - " + effect.first, effect.measure, effect.unit, effect.difference->value, interval,
-         claimed},
+    add({effect.second + " - " + effect.first, effect.measure, effect.unit, effect.difference->value,
+         interval, claimed},
         first && second ? std::optional(exact_difference(*second - *first, *first)) : std::nullopt);
   }
   return findings;
@@ -331,7 +332,8 @@ Measures true_measures(const SessionOutcome& outcome, const simulation::Observer
   auto conditions = settings.conditions;
   if (conditions.empty()) conditions.emplace_back();
   const auto& generating = outcome.generating;
-  const auto add = [&](const std::string& condition, const char* measure, const std::optional<double>& value) {
+  const auto add = [&](const std::string& condition, const char* measure,
+                       const std::optional<double>& value) {
     if (value) truths.push_back({"", condition, measure, "", *value});
   };
   for (const auto& condition : conditions) {
@@ -360,9 +362,10 @@ Measures true_measures(const SessionOutcome& outcome, const simulation::Observer
 
 int sessions_of(const Part& part, int observers) { return (observers - part.number) / part.of + 1; }
 
-Power power_of(const protocol::Protocol& protocol, const PowerOptions& asked,
+Power power_of(const protocol::Protocol& whole, const PowerOptions& asked,
                const std::vector<SessionOutcome>& outcomes) {
   auto options = asked;
+  const auto& protocol = protocol::of_task(whole, options.task);
   options.observers = static_cast<int>(outcomes.size());
   Power power;
   power.observers = options.observers, power.asked = asked.observers;

@@ -22,6 +22,7 @@ int sessions_of(const Part& part, int observers);  ///< number of sessions in a 
 
 struct PowerOptions {
   int observers = 1000;
+  std::size_t task = 0;  ///< of a file with several tasks: the number of the one whose numbers are estimated
   simulation::Parameters observer;
   /// 0: each session stands alone. Otherwise so many sessions, by different people around `observer`, make a
   /// study; its findings are those of the report of a study. `observers` must be a multiple.

@@ -8,6 +8,7 @@
 #include "station/core/usage_error.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/protocol/visits.hpp"
 #include "station/rehearsal/parallel.hpp"
 #include "station/rehearsal/rehearsal.hpp"
@@ -212,7 +213,8 @@ void require_possible(const protocol::Protocol& protocol, const PowerOptions& op
     throw std::invalid_argument("power: the observers must make whole studies");
   if (options.part.number < 1 || options.part.number > options.part.of || options.part.of > options.observers)
     throw std::invalid_argument("power: each part must have at least one session");
-  if (protocol::judges(protocol.task) && !(protocol.task.value && protocol.task.value->typed))
+  if (const auto& task = protocol::of_task(protocol, options.task).task;
+      protocol::judges(task) && !(task.value && task.value->typed))
     throw core::UsageError(protocol.path +
                            ": ratings have no threshold, so there is nothing to estimate; simulate sessions "
                            "with `turnpoint run --observer sim` and analyse their export");
@@ -318,6 +320,7 @@ std::vector<Rehearsal> planned_sessions(const protocol::Protocol& protocol, std:
 SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerOptions& options,
                                 int session) {
   const simulation::Observer observer(person_in(options, session));
+  const auto& of_task = protocol::of_task(protocol, options.task);
   SessionOutcome outcome;
   std::map<int, std::vector<std::optional<double>>> cautions;  // by the visit's number
   const auto answer = [&](const protocol::Visit& visit, const trial::TrialSpec& trial,
@@ -326,13 +329,16 @@ SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerO
     if (is_new) entry->second = cautions_in(protocol, options, visit);
     const auto block = static_cast<std::size_t>(trial.block_index);
     if (block < entry->second.size()) question.caution = entry->second[block];
-    outcome.generating.add(protocol, trial, question, observer);
+    if (protocol.by_task.empty() || trial.task == options.task)
+      outcome.generating.add(of_task, trial, question, observer);
     return observer.answer(question);
   };
   report::SessionData data;
   data.seed = options.seed + static_cast<std::uint64_t>(session);
   const auto sessions = planned_sessions(protocol, options.seed, session, observer, answer);
-  report::add_trials(joined(sessions), protocol, data);
+  auto blocks = joined(sessions);
+  if (options.people > 0) report::add_other_trials(blocks, protocol, options.task, data);
+  report::add_trials(report::of_task(std::move(blocks), protocol, options.task), of_task, data);
   const auto& unit = data.level_unit;
   for (const auto& one : sessions) outcome.presented += one.trials, outcome.duration_s += one.duration_s;
   outcome.design = data.design;
@@ -345,17 +351,17 @@ SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerO
   } else {
     data.replicates = session < options.interval_sessions ? options.replicates : 0;
     for (std::size_t i = 0; i < sessions.size(); ++i)
-      add_estimates(sessions[i], protocol, session_suffix(protocol, static_cast<int>(i) + 1),
+      add_estimates(sessions[i], of_task, session_suffix(protocol, static_cast<int>(i) + 1),
                     outcome.findings);
     add_fits(data, unit, outcome);
-    add_discriminations(protocol, data, outcome.findings);
+    add_discriminations(of_task, data, outcome.findings);
     if (data.replicates > 0) {
       add_trade(data, outcome);
       add_curves(data, outcome.findings);
     }
   }
   if (options.people == 0) return outcome;
-  data.trials = {}, data.finger = {};
+  data.trials = {}, data.other_trials = {}, data.finger = {};
   outcome.truths = true_measures(outcome, observer, data);
   if (session == 0) outcome.settings = std::move(data);
   return outcome;

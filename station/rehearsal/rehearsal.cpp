@@ -29,7 +29,7 @@ std::int64_t ns(double s) { return static_cast<std::int64_t>(s * 1e9); }
 struct Doing {
   simulation::Reply reply;
   std::optional<double> setting;
-  double done_s = 0;  ///< for a setting
+  simulation::Setting made;  ///< for a setting
 };
 
 /// Runs one trial on a simulated clock, which advances to each event of the trial's state machine. Intervals
@@ -40,7 +40,8 @@ class Bench {
         std::int64_t now_ns)
       : protocol_(protocol),
         spec_(spec),
-        machine_(trial::timing_of(protocol, block, spec)),
+        parts_(trial::parts_of(protocol, spec)),
+        machine_(trial::timing_of(protocol, block, spec, parts_)),
         now_ns_(now_ns) {}
 
   const trial::Result& run(const Doing& doing) {
@@ -72,22 +73,20 @@ class Bench {
     for (const auto& action : actions) {
       if (action.kind != trial::ActionKind::present) continue;
       const auto onset_ns = present(std::max(now_ns_, action.time_ns), doing);
-      const auto times = trial::simulated_times(protocol_, spec_, onset_ns);
-      const auto events = trial::simulated_events(times, doing.setting ? simulation::Reply{} : doing.reply);
+      const auto times = trial::simulated_times(protocol_, spec_, parts_.back(), onset_ns);
+      const int again = machine_.result().again;
+      const auto events = doing.setting ? trial::simulated_events(times, spec_, doing.made, again)
+                                        : trial::simulated_events(times, doing.reply, again);
       answers_.assign(events.begin(), events.end());
-      if (doing.setting)
-        answers_.push_back(
-            {trial::simulated_done_ns(times, spec_, doing.done_s), trial::EventKind::answer, 0});
       for (auto& answer : answers_) answer.time_ns = std::max(now_ns_, answer.time_ns);
     }
   }
 
   /// Presents all parts without any fault. Returns the onset of the last one.
   std::int64_t present(std::int64_t onset_ns, const Doing& doing) {
-    const auto parts = trial::parts_of(protocol_, spec_);
-    for (int i = 0; i < static_cast<int>(parts.size()); ++i) {
+    for (int i = 0; i < static_cast<int>(parts_.size()); ++i) {
       const auto at = static_cast<std::size_t>(i);
-      if (i > 0) onset_ns += ns(parts[at - 1].length_s + parts[at].silence_s);
+      if (i > 0) onset_ns += ns(parts_[at - 1].length_s + parts_[at].silence_s);
       perform(machine_.handle({onset_ns, trial::EventKind::onset, i}), doing);
       perform(machine_.handle({now_ns_, trial::EventKind::heard, i}), doing);
     }
@@ -96,6 +95,7 @@ class Bench {
 
   const protocol::Protocol& protocol_;
   const TrialSpec& spec_;
+  std::vector<trial::Part> parts_;
   trial::Machine machine_;
   std::int64_t now_ns_;
   std::deque<trial::Event> answers_;  ///< what the participant will do, in order of time
@@ -108,16 +108,17 @@ Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol:
     doing.reply.choice = 0;  // 0: the finger moves as the protocol asks
     return doing;
   }
-  if (!spec.slider) return {rehearser.answer(spec, trial::question_of(spec, protocol, seed)), {}};
+  if (!spec.slider) return {rehearser.answer(spec, trial::question_of(spec, protocol, seed)), {}, {}};
   const auto set = rehearser.adjust(spec, trial::adjustment_of(spec, protocol, seed));
   trial::Slider slider(*spec.slider, spec.level.value_or(spec.slider->low));
   // Ignore slider movements after the tones have ended: the participant could not feel their effect.
-  const double sounds_s = trial::parts_of(protocol, spec).back().length_s -
-                          1e-9 * static_cast<double>(trial::simulated_times(protocol, spec, 0).slider_ns);
+  const auto last = trial::parts_of(protocol, spec).back();
+  const double sounds_s =
+      last.length_s - 1e-9 * static_cast<double>(trial::simulated_times(protocol, spec, last, 0).slider_ns);
   for (const auto& move : set.moves)
     if (move.time_s < sounds_s) slider.move(move.value);
   Doing doing;
-  doing.reply.choice = 0, doing.done_s = set.done_s;
+  doing.reply.choice = 0, doing.made = set;
   doing.setting = slider.setting();
   return doing;
 }

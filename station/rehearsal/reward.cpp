@@ -111,6 +111,9 @@ double vertex_of(const std::vector<double>& rates, int first, int last) {
 void require_possible(const protocol::Protocol& protocol) {
   if (!protocol.payoff)
     throw core::UsageError(protocol.path + ": --reward: the protocol gives no points; [payoff] does");
+  if (!protocol.by_task.empty())
+    throw core::UsageError(
+        protocol.path + ": --reward: the protocol has several tasks, and a block can have only one boundary");
   trial::TrialSpec trial;
   trial.level = 0;
   if (!protocol.procedures.empty()) trial.procedure = protocol.procedures.front().name;

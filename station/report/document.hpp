@@ -130,6 +130,8 @@ struct Document {
 };
 
 Document document(const Summary& summary);
+/// The report of a session with a part for each of its tasks; what is about the whole session comes once.
+Document document(const std::vector<Summary>& of_tasks);
 Document document(const Study& study);
 /// The figures of a document, in its order.
 std::vector<NamedFigure> figures_of(const Document& document);

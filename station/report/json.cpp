@@ -344,14 +344,18 @@ Json facts_json(const std::vector<Fact>& facts) {
   return json;
 }
 
-}  // namespace
-
-std::string to_json(const Summary& summary) {
+/// The report of one task.
+Json task_json(const Summary& summary) {
   const auto& data = summary.data;
-  Json json{{"session_id", data.session_id}, {"participant", data.participant},
-            {"title", data.title},           {"run_mode", data.run_mode},
-            {"status", data.status},         {"level", core::say(data.level_label, "en")},
-            {"level_unit", data.level_unit}, {"choices", data.choices}};
+  Json json{{"session_id", data.session_id},
+            {"participant", data.participant},
+            {"title", data.title},
+            {"run_mode", data.run_mode},
+            {"task", data.task.empty() ? Json(nullptr) : Json(data.task)},
+            {"status", data.status},
+            {"level", core::say(data.level_label, "en")},
+            {"level_unit", data.level_unit},
+            {"choices", data.choices}};
   json["measures"] = meanings_json(data);
   json["facts"] = facts_json(data.facts);
   json["station"] = facts_json(data.health);
@@ -429,7 +433,29 @@ std::string to_json(const Summary& summary) {
   auto statements = summary.trade.statements;
   statements.insert(statements.end(), summary.fatigue.statements.begin(), summary.fatigue.statements.end());
   json["statements"] = value(statements);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+  return json;
+}
+
+std::string dumped(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
+
+}  // namespace
+
+std::string to_json(const Summary& summary) { return dumped(task_json(summary)); }
+
+std::string to_json(const std::vector<Summary>& of_tasks) {
+  if (of_tasks.size() == 1) return to_json(of_tasks.front());
+  // what is about the whole session is not repeated with each task
+  Json whole, tasks = Json::array();
+  for (const auto& summary : of_tasks) {
+    auto one = task_json(summary);
+    for (const auto* key : {"session_id", "participant", "title", "run_mode", "status", "facts", "station"}) {
+      whole[key] = one[key];
+      one.erase(key);
+    }
+    tasks.push_back(std::move(one));
+  }
+  whole["tasks"] = std::move(tasks);
+  return dumped(whole);
 }
 
 }  // namespace turnpoint::report

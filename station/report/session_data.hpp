@@ -111,6 +111,7 @@ struct SessionData : LevelAnalysis {
   /// itself inherits is then that of the first one, with all conditions.
   std::vector<LevelAnalysis> parts;
   std::string title;  ///< title of the protocol
+  std::string task;   ///< "" if the file has one task; otherwise all data are about this one
   std::string participant, session_id, run_mode, status;
   std::string language = "en";  ///< the language of the figures, such as "de"
   std::vector<Fact> facts;      ///< rows for the head of the report: protocol, date, rig, ...
@@ -132,6 +133,9 @@ struct SessionData : LevelAnalysis {
   std::vector<EarlyEnd> early_ends;
   std::vector<ThresholdCurve> threshold_curves;  ///< empty if no procedure has a second dimension
   std::vector<analysis::TrialRecord> trials;
+  /// of a study with several tasks: the trials of the others, by which the rules of exclusion judge the
+  /// person
+  std::vector<analysis::TrialRecord> other_trials;
   /// answered trials, without practice, in which force cells recorded data; empty if the rig has no force
   /// cells
   std::vector<analysis::FingerTrial> finger;

@@ -840,7 +840,25 @@ void add_finger(const Summary& summary, Document& document) {
       "Student\u2019s t over trials; for a single trial, 1.96 standard errors.");
 }
 
+void add_station(const SessionData& data, Document& document) {
+  if (data.health.empty()) return;
+  document.heading(phrase("report.station"));
+  document.facts(data.health);
+}
+
 }  // namespace
+
+Document document(const std::vector<Summary>& of_tasks) {
+  auto whole = document(of_tasks.front());
+  if (of_tasks.size() == 1) return whole;
+  Document all = whole;
+  all.parts.clear();
+  all.facts(of_tasks.front().data.facts);
+  for (const auto& summary : of_tasks)
+    for (auto& part : document(summary).parts) all.parts.push_back(std::move(part));
+  add_station(of_tasks.front().data, all);
+  return all;
+}
 
 Document document(const Summary& summary) {
   const auto& data = summary.data;
@@ -851,7 +869,8 @@ Document document(const Summary& summary) {
   document.language = data.language;
   document.about = "Participant " + Text(data.participant, Look::strong) + ", session " + data.session_id +
                    ", " + data.status;
-  document.facts(data.facts);
+  if (data.task.empty()) document.facts(data.facts);
+  if (!data.task.empty()) document.heading(Text(phrase("design.keys.task"), Look::label) + ": " + data.task);
   add_meanings(data, document);
   if (judges(data.design)) {
     add_judgements(summary, document);
@@ -880,10 +899,10 @@ Document document(const Summary& summary) {
     document.explain("Open markers: void, because the vibration was too far from the plan.");
     document.figure("vibration", vibration_figure(summary));
   }
-  if (!data.health.empty()) {
-    document.heading(phrase("report.station"));
-    document.facts(data.health);
-  }
+  if (data.task.empty()) add_station(data, document);
+  for (auto& part : document.parts)
+    if (auto* figure = std::get_if<NamedFigure>(&part); figure && !data.task.empty())
+      figure->name = data.task + "-" + figure->name;
   return document;
 }
 

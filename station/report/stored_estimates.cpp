@@ -12,6 +12,7 @@
 #include "station/protocol/answers.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/report/words.hpp"
 
@@ -90,11 +91,12 @@ std::string unit_of_program(const std::string& parameter, const std::string& lev
 void add_estimates(const std::vector<core::BlockRecord>& blocks, const protocol::Protocol& protocol,
                    std::uint64_t seed, const procedure::EarlierTrials& earlier, SessionData& data) {
   const auto counted = last_attempts(blocks);
-  const auto choices = std::max<std::size_t>(2, protocol.task.choices.size());
   for (const auto& spec : protocol.procedures) {
     if (!procedure::follows_answers(spec) || spec.kind == procedure::Kind::program) continue;
     const auto& kind = procedure::description(spec.kind);
     const bool posterior = kind.choice == procedure::Choice::posterior;
+    const auto& task = protocol::of_task(protocol, protocol::task_of(protocol, spec.name, "")).task;
+    const auto choices = std::max<std::size_t>(2, task.choices.size());
     const double least = spec.tracks.empty() ? 1.0 / static_cast<double>(choices) : 0;
     for (const auto* block : counted) {
       if (block->start.practice) continue;
@@ -178,6 +180,14 @@ std::string unit_of(const std::string& parameter, const procedure::Spec& spec) {
     return (rise.empty() ? "1" : rise) + "/" + second;
   }
   return parameter.starts_with("threshold") || parameter == "pse" || parameter == "floor" ? level : "";
+}
+
+void keep_estimates_of(const protocol::Protocol& protocol, SessionData& data) {
+  const auto other = [&](const auto& of) { return !protocol::find_procedure(protocol, of.procedure); };
+  if (protocol.task.name.empty()) return;
+  std::erase_if(data.estimates, other);
+  std::erase_if(data.early_ends, other);
+  std::erase_if(data.threshold_curves, other);
 }
 
 }  // namespace turnpoint::report

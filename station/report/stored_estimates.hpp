@@ -33,4 +33,8 @@ core::Phrase axis_label(std::string name, const std::string& unit);
 /// a gradient; "" if it has none.
 std::string unit_of(const std::string& parameter, const procedure::Spec& spec);
 
+/// Leaves out the estimates of procedures that ask other tasks than this one of several. `protocol` is as the
+/// task sees it.
+void keep_estimates_of(const protocol::Protocol& protocol, SessionData& data);
+
 }  // namespace turnpoint::report

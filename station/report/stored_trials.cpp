@@ -14,6 +14,7 @@
 #include "station/protocol/answers.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/report/stored_estimates.hpp"
 #include "station/report/words.hpp"
 
@@ -253,6 +254,16 @@ std::vector<const core::BlockRecord*> last_attempts(const std::vector<core::Bloc
   return result;
 }
 
+std::vector<core::BlockRecord> of_task(std::vector<core::BlockRecord> blocks,
+                                       const protocol::Protocol& protocol, std::size_t task) {
+  if (protocol.by_task.empty()) return blocks;
+  for (auto& block : blocks)
+    std::erase_if(block.trials, [&](const auto& row) {
+      return protocol::task_of(protocol, row.procedure, block.start.name) != task;
+    });
+  return blocks;
+}
+
 std::vector<analysis::Deciding> deciding_in(protocol::TaskKind kind) {
   using analysis::Deciding;
   if (kind == protocol::TaskKind::several_intervals) return {Deciding::largest};
@@ -281,6 +292,7 @@ void add_trials(const std::vector<core::BlockRecord>& blocks, const protocol::Pr
   }
   for (const auto& [level, at] : repeats) data.repeats.push_back(at);
   set_analyses(protocol, data);
+  data.task = protocol.task.name;
   data.scored = protocol::scored(protocol.task);
   data.alternatives = std::max(2, static_cast<int>(protocol.task.choices.size()));
   data.deciding = deciding_in(protocol.task.kind);
@@ -291,6 +303,16 @@ void add_trials(const std::vector<core::BlockRecord>& blocks, const protocol::Pr
   data.show = protocol.analysis.show;
   data.holm = protocol.analysis.holm;
   data.exclusion = {protocol.analysis.exclude_below_s, protocol.analysis.exclude_mad};
+}
+
+void add_other_trials(const std::vector<core::BlockRecord>& blocks, const protocol::Protocol& protocol,
+                      std::size_t task, SessionData& data) {
+  for (std::size_t other = 0; other < protocol.by_task.size(); ++other) {
+    if (other == task) continue;
+    SessionData more;
+    add_trials(of_task(blocks, protocol, other), protocol.by_task[other], more);
+    data.other_trials.insert(data.other_trials.end(), more.trials.begin(), more.trials.end());
+  }
 }
 
 }  // namespace turnpoint::report

@@ -278,7 +278,16 @@ StudyPerson study_person(const SessionData& data, const protocol::Exclusion& rul
     named.intervals.band_level.clear(), named.intervals.band_low.clear(), named.intervals.band_high.clear();
     person.fits.push_back(std::move(named));
   }
-  for (const auto& rule : applied(rules, person))
+  auto judged = person;
+  if (!data.other_trials.empty()) {  // rules are about the person, not about one of the tasks
+    SessionData all;
+    all.trials = data.trials;
+    all.trials.insert(all.trials.end(), data.other_trials.begin(), data.other_trials.end());
+    judged = {};
+    judged.incomplete = incomplete;
+    count_trials(all, judged);
+  }
+  for (const auto& rule : applied(rules, judged))
     if (!rule.broken.empty()) person.excluded.push_back(rule.broken);
   return person;
 }
@@ -303,7 +312,9 @@ protocol::Protocol by_group(protocol::Protocol protocol) {
       std::find(groups.begin(), groups.end(), "instruction") == groups.end())
     by.push_back("instruction");
   by.insert(by.begin(), groups.begin(), groups.end());
-  protocol.meanings = protocol::meanings_of(protocol);
+  for (auto& one : protocol.by_task) one = by_group(std::move(one));
+  protocol.meanings =
+      protocol.by_task.empty() ? protocol::meanings_of(protocol) : protocol::meanings_of_tasks(protocol);
   return protocol;
 }
 

@@ -97,7 +97,7 @@ inline const LevelAnalysis& analysis_of(const GroupFit& group, const SessionData
 protocol::Protocol by_group(protocol::Protocol protocol);
 
 /// Analyses the trials of one participant, from all sessions together, with data.replicates bootstrap
-/// replicates (kStudyReplicates in the report of a study), and applies the rules.
+/// replicates (kStudyReplicates in the report of a study), and applies the rules, to all tasks together.
 StudyPerson study_person(const SessionData& data, const protocol::Exclusion& rules, bool incomplete);
 
 /// Returns the rules as sentences, in the order in which the manual lists them.

@@ -118,5 +118,8 @@ Summary summarise(const SessionData& data, int scale_sessions = kScaleSessions);
 
 /// Returns the content of the report as one JSON document. Missing values are null.
 std::string to_json(const Summary& summary);
+/// The same for a session with several tasks: `tasks` is the list of their reports, without the keys that are
+/// about the whole session, which stand beside it.
+std::string to_json(const std::vector<Summary>& of_tasks);
 
 }  // namespace turnpoint::report

@@ -220,6 +220,7 @@ void read_finger(TableReader& file, Rig& rig) {
   finger.phase_rad = degree * reader.number("phase_deg");
   finger.phase_sd_rad = degree * reader.number("phase_sd_deg");
   finger.contact_m = 1e-3 * reader.number("contact_mm");
+  finger.skin_m_per_N = 1e-3 * reader.number("skin_mm_per_N");
   reader.finish();
 }
 

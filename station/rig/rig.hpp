@@ -180,6 +180,10 @@ struct Capture {
   /// force cells that are not captured by the card; `bridges` is then empty
   std::optional<CellConverter> converter = {};
   std::optional<ForceCells> forces = {};  ///< empty without a calibration of the force cells
+  /// lowest resonance of the plate on its captured cells, and its damping ratio: how late they are. The
+  /// resonance that the calibration measured goes before.
+  std::optional<double> cells_resonance_Hz = {};
+  double cells_damping = 0.05;
 };
 
 /// Where the temperatures of the surface and of the frame that clamps it are read: hwmon:NAME/tempN or
@@ -231,6 +235,8 @@ struct Finger {
   /// a phase above zero means that force leads velocity, as for a mass
   double phase_rad = 0, phase_sd_rad = 0;
   double contact_m = 0.008;  ///< diameter of the contact between finger and surface
+  /// how far a lateral force stretches the skin, so that the contact stays behind the finger
+  double skin_m_per_N = 1e-3;
 };
 
 /// Limits for driving the surface, which must never be exceeded.

@@ -170,6 +170,13 @@ Keys capture() {
       integers("bridges", 0, 31,
                "captured channels of the force cells: two below the surface, and the lateral one")
           .holding(3, 3),
+      number("cells_resonance_Hz", {10, 1e5, Ends::closed, "Hz"},
+             "lowest resonance of the plate on its cells, for scenes that follow the finger")
+          .without_it("as the calibration measured it")
+          .only_with("bridges"),
+      number("cells_damping", {0, 1, Ends::open_high}, "damping ratio of this resonance")
+          .by_default("0.05")
+          .only_with("cells_resonance_Hz"),
       integer("marker_channel", 0, 31, "captured channel to which a marker with codes is wired"),
   };
 }
@@ -258,7 +265,10 @@ const Keys& all() {
                  .by_default("0"),
              number("phase_sd_deg", {0, 90, Ends::closed, "degrees"}, "standard deviation of `phase_deg`")
                  .by_default("20"),
-             number("contact_mm", {1, 30, Ends::closed, "mm"}, "diameter of the contact").by_default("8")},
+             number("contact_mm", {1, 30, Ends::closed, "mm"}, "diameter of the contact").by_default("8"),
+             number("skin_mm_per_N", {0, 10, Ends::closed, "mm/N"},
+                    "how far a lateral force stretches the skin, for scenes that follow the finger")
+                 .by_default("1")},
             "the mechanical impedance of a finger"),
       table("limits",
             {number("displacement_um", {0, 1000, Ends::open_low, "um"}, "largest displacement").required(),

@@ -113,6 +113,8 @@ void read_bridges(TableReader& reader, Capture& capture) {
     check_captured(reader, "bridges", channel, capture);
     capture.bridges.push_back(channel);
   }
+  capture.cells_resonance_Hz = reader.maybe_number("cells_resonance_Hz");
+  if (capture.cells_resonance_Hz) capture.cells_damping = reader.number("cells_damping");
 }
 
 void read_marker_channel(TableReader& reader, const Rig& rig, Capture& capture) {

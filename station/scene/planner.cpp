@@ -18,6 +18,7 @@
 #include "physics/warning.hpp"
 #include "station/core/limits.hpp"
 #include "station/core/number.hpp"
+#include "station/scene/following.hpp"
 #include "station/scene/measures.hpp"
 #include "station/scene/tone_designer.hpp"
 #include "station/scene/transducer.hpp"
@@ -37,7 +38,29 @@ namespace {
 constexpr double kMostDrive_m = 1e-3;
 
 constexpr std::size_t kRemembered = 512, kSolutions = 128;
-constexpr double kLevelStep = 0.005;  // ratio of frequencies for which levels are equally uncertain, less 1
+constexpr std::size_t kFollowing = 32;  // a plan that follows has 80 kB
+constexpr double kLevelStep = 0.005;    // ratio of frequencies for which levels are equally uncertain, less 1
+
+/// Everything of what a scene follows that affects its plan.
+std::string key_of(const FollowTarget& target) {
+  auto key =
+      fmt::format(" follow {} {} {} {} {}", static_cast<int>(target.unit), static_cast<int>(target.control),
+                  target.resting_friction.value_or(0), target.resting_gain, target.pattern.base);
+  if (target.speeds_m_s) key += fmt::format(" at {} {}", target.speeds_m_s->first, target.speeds_m_s->second);
+  for (int i = 0; i < target.pattern.part_count; ++i) {
+    const auto& part = target.pattern.parts[static_cast<std::size_t>(i)];
+    const auto& trigger = part.trigger;
+    key +=
+        fmt::format(" / {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", static_cast<int>(part.shape),
+                    static_cast<int>(part.combine), part.from, part.to, part.begin_m, part.end_m,
+                    part.cycles_per_m, part.cycles_per_s, part.phase_cycles, part.place_m, part.width_m,
+                    part.table_first, part.table_count, static_cast<int>(trigger.event), trigger.threshold,
+                    static_cast<int>(trigger.until), trigger.delay_s, trigger.lasts_s);
+  }
+  for (int i = 0; i < target.pattern.table_used; ++i)
+    key += fmt::format(" {}", target.pattern.table[static_cast<std::size_t>(i)]);
+  return key;
+}
 
 /// Returns a text that contains everything in a scene that affects its plan. It is the key of the cache.
 std::string key_of(const Scene& scene) {
@@ -56,6 +79,7 @@ std::string key_of(const Scene& scene) {
   if (scene.zone)
     key += fmt::format(" zone {} {} {} {}", scene.zone->from_m, scene.zone->friction, scene.zone->tones,
                        maybe(scene.zone->design_friction));
+  if (scene.follow) key += key_of(*scene.follow);
   return key;
 }
 
@@ -85,6 +109,7 @@ struct Planner::State : ToneDesigner {
   /// uncertainty of the level at a tone's last maximum, by the number of steps of the tone's frequency from 1
   /// Hz
   std::map<int, std::optional<double>> level_sd_dB;
+  FingerFigures finger_figures;
 
   using ToneDesigner::ToneDesigner;
 
@@ -96,11 +121,15 @@ struct Planner::State : ToneDesigner {
   const Solution& solution_for(const Scene& scene, const std::vector<ToneTarget>& wanted);
   void drive(DrivePlan& plan, const std::vector<Tone>& tones, const Solution& solution) const;
   double drive_under_finger_m(const Scene& scene, double frequency_Hz);
+  void follow_finger(DrivePlan& plan);
 
  private:
   /// displacement under a finger divided by that of the drive edge, by frequency (Hz) and position of the
   /// finger (m)
   std::map<std::pair<double, double>, double> moved_under_finger_;
+  /// by frequency (Hz) and model
+  std::map<std::pair<double, Model>, ToneUnderFinger> under_finger_;
+  std::map<double, std::optional<double>> resonances_Hz_;  ///< the nearest one to a frequency
 };
 
 physics::Tolerance Planner::State::tolerance_of(const Scene& scene) const {
@@ -238,6 +267,38 @@ double Planner::State::drive_under_finger_m(const Scene& scene, double frequency
   return wanted_m / found->second;
 }
 
+/// Prepares how the gain follows the finger, and takes the cues at the gains that are used.
+void Planner::State::follow_finger(DrivePlan& plan) {
+  const auto model = at_least_mode(plan.model);
+  FingerField field;
+  std::vector<Detuning> detunings;
+  for (const auto& tone : plan.tones) {
+    if (under_finger_.size() >= kRemembered) under_finger_.clear(), resonances_Hz_.clear();
+    auto found = under_finger_.find({tone.frequency_Hz, model});
+    if (found == under_finger_.end())
+      found = under_finger_
+                  .emplace(std::pair{tone.frequency_Hz, model},
+                           tone_under_finger(surface, rig, model, tone.frequency_Hz))
+                  .first;
+    const auto& of_tone = found->second;
+    field.x_m = of_tone.x_m;
+    field.displacement_m.resize(field.x_m.size());
+    for (std::size_t i = 0; i < field.x_m.size(); ++i)
+      field.displacement_m[i] =
+          std::hypot(field.displacement_m[i], tone.amplitude_m * of_tone.displacement[i]);
+    const auto [resonance, is_new] = resonances_Hz_.try_emplace(tone.frequency_Hz);
+    if (is_new) resonance->second = physics::nearest_resonance_Hz(surface, tone.frequency_Hz);
+    detunings.push_back({tone.frequency_Hz, resonance->second});
+  }
+  plan.follow = follow_plan(rig, friction, plan, field, detunings);
+  const auto gains = followed_gains(*plan.follow);
+  if (plan.cues.pitch_Hz > 0 && gains.rms > 0) plan.cues.loudness_dB += 20 * std::log10(gains.rms);
+  if (gains.rms == 0) plan.cues.pitch_Hz = plan.cues.loudness_dB = 0;
+  plan.cues.wide_end_amplitude_m *= gains.rms;
+  plan.cues.displacement_m *= gains.most;
+  plan.cues.friction = gains.lowest_friction;
+}
+
 /// Says which error bounds of a model are beyond the tolerance of the scene: `friction` as the scene states
 /// it, `tolerance` as the physics library takes it.
 core::Phrase beyond_tolerance(const physics::RungEstimate& model, const physics::Tolerance& tolerance,
@@ -297,7 +358,7 @@ DrivePlan Planner::plan(const Scene& scene) {
   if (const auto found = plans.find(key); found != plans.end()) return found->second;
   // With roving, each trial has another strength, so almost every scene is new. Clear the cache when it is
   // full, because it would otherwise grow during the session.
-  if (plans.size() >= kRemembered) plans.clear();
+  if (plans.size() >= (scene.follow ? kFollowing : kRemembered)) plans.clear();
   // These errors of the physics library mean that the rig cannot present the scene: the surface does not have
   // this edge, or the zone lies beyond the strip.
   try {
@@ -360,6 +421,7 @@ DrivePlan Planner::make(const Scene& scene) {
     for (auto& v : fields[i].v) v *= tones[i].amplitude_m;
   measure(state_->surface, state_->friction, state_->rig, tones, fields, plan);
   refuse_beyond_limits(state_->rig, plan);
+  if (scene.follow) state_->follow_finger(plan);
   return plan;
 }
 
@@ -411,7 +473,8 @@ void Planner::add_level_uncertainty(DrivePlan& plan) {
 UnderFinger Planner::under_finger(const DrivePlan& plan) {
   if (state_->rig.surface.plate_theory == rig::PlateTheory::automatic)
     return by_theory(plan.theory).under_finger(plan);
-  return finger_figures(state_->surface, state_->friction, state_->rig, at_least_mode(plan.model), plan);
+  return state_->finger_figures.of(state_->surface, state_->friction, state_->rig, at_least_mode(plan.model),
+                                   plan);
 }
 
 }  // namespace turnpoint::scene

@@ -15,6 +15,7 @@
 #include "physics/tone.hpp"
 #include "physics/warning.hpp"
 #include "station/core/texts.hpp"
+#include "station/follow/follower.hpp"
 #include "station/rig/physical.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/cues.hpp"
@@ -76,6 +77,8 @@ struct DrivePlan {
   std::vector<physics::Product> audible_products;
   Cues cues;
   std::vector<physics::Warning> warnings;
+  /// how the gain follows the finger; empty if the scene does not ask for it
+  std::shared_ptr<const follow::Plan> follow;
 };
 
 /// A planned scene under the rig's finger. The drive is the same as without a finger. Displacements are means

@@ -1,9 +1,12 @@
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "physics/edge.hpp"
+#include "station/follow/follower.hpp"
 
 namespace turnpoint::scene {
 
@@ -38,6 +41,25 @@ struct Tolerance {
   std::optional<double> boundary_m, level_dB, friction;
 };
 
+/// In which unit a scene states what the gain is to follow: friction relative to that of the surface at rest,
+/// the coefficient of friction, or displacement under the finger.
+enum class FollowUnit { relative, coefficient, displacement };
+
+/// What the gain of all tones is to follow. A gain of 1 is the strength that the scene states, and the
+/// largest that is used.
+struct FollowTarget {
+  /// in SI units; friction as its coefficient, also if `unit` is `relative` (then times `resting_friction`)
+  follow::Pattern pattern;
+  FollowUnit unit = FollowUnit::relative;
+  follow::Control control = follow::Control::open;
+  /// coefficient of friction of the surface at rest; empty if the protocol does not state it, and then all
+  /// values of friction are relative to it
+  std::optional<double> resting_friction;
+  double resting_gain = 0;      ///< without a finger, and after a fault
+  /// the range of speeds that the protocol asks for; empty if it asks for none
+  std::optional<std::pair<double, double>> speeds_m_s;
+};
+
 /// What one interval presents on the surface, in SI units: either a boundary alone, or explicit tones, or a
 /// zone (which also has a boundary).
 struct Scene {
@@ -53,6 +75,7 @@ struct Scene {
   double rove_dB = 0;  ///< random change of all displacements, drawn for this trial
   double ramp_s = 0.050;
   Tolerance tolerance;
+  std::shared_ptr<const FollowTarget> follow;  ///< empty if the strength stays as it is
 };
 
 }  // namespace turnpoint::scene

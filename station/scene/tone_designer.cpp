@@ -50,11 +50,12 @@ double ToneDesigner::frequency_for(double boundary_m, const physics::Edge& edge,
   } else if (const auto frequency = map_for(edge).frequency_Hz(boundary_m)) {
     return *frequency;
   }
-  // No frequency that the rig can play puts the edge at `boundary_m`. Use a map over all frequencies, so that
-  // the message can say whether any other frequency does.
-  const physics::BoundaryMap whole(surface, options);
-  if (const auto frequency = whole.frequency_Hz(boundary_m)) return *frequency;
-  const auto reach = whole.reach_m();
+  // No frequency that the rig can play puts the edge at `boundary_m`. Look at all frequencies, so that the
+  // message can say whether any other does.
+  const auto reach = physics::boundary_reach_m(surface, options);
+  if (reach.contains(boundary_m))
+    if (const auto frequency = physics::BoundaryMap(surface, options).frequency_Hz(boundary_m))
+      return *frequency;
   throw Unreachable(phrase("problem.no_frequency",
                            {plain(physics::format(edge)), plain(number(1e3 * boundary_m)),
                             plain(number(1e3 * reach.first_m)), plain(number(1e3 * reach.last_m))}));
@@ -122,7 +123,16 @@ std::vector<ToneTarget> ToneDesigner::zone(const Scene& scene, DrivePlan& plan) 
     request.fingertip_m = rig.friction.fingertip_m;
     request.band.low_Hz = lowest_frequency(rig, core::kAudible_Hz);
     request.band.high_Hz = highest_frequency(rig, core::kHighestShareOfRate * rig.output.rate_Hz);
-    DesignedZone designed{zones_.design(request), {}, {}};
+    if (const auto refused = refused_.find(key); refused != refused_.end()) throw refused->second;
+    const auto design = [&] {
+      try {
+        return zones_.design(request);
+      } catch (const physics::Refused& refused) {
+        refused_.emplace(key, refused);
+        throw;
+      }
+    };
+    DesignedZone designed{design(), {}, {}};
     for (const auto& tone : designed.design.tones) designed.unit_drive_m.push_back(unit_drive_m(tone));
     found = designs_.emplace(key, std::move(designed)).first;
   }

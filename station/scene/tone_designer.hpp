@@ -33,6 +33,7 @@ class ToneDesigner {
         friction(other.friction),
         maps_(other.maps_),
         designs_(other.designs_),
+        refused_(other.refused_),
         unit_drive_m_(other.unit_drive_m_),
         lines_(other.lines_) {}
 
@@ -68,7 +69,8 @@ class ToneDesigner {
     std::vector<double> unit_drive_m, amplitude_m;
   };
   std::map<std::string, DesignedZone> designs_;
-  std::map<double, double> unit_drive_m_;  ///< by frequency
+  std::map<std::string, physics::Refused> refused_;  ///< why the other zones cannot be designed
+  std::map<double, double> unit_drive_m_;            ///< by frequency
   /// the solutions of the first mode for the tones of the last zones, by frequency
   std::map<double, std::shared_ptr<const physics::CentreLine>> lines_;
 };

@@ -1,5 +1,8 @@
 #pragma once
+#include <map>
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "physics/finger.hpp"
@@ -16,6 +19,15 @@ physics::Finger finger_of(const rig::Rig& rig);
 /// Returns the rig's finger, followed by fingers that differ from it by one standard deviation in impedance
 /// and phase.
 std::vector<physics::Finger> fingers_of(const rig::Rig& rig);
+
+/// For a tone with an amplitude of 1 at the drive edge: the displacement under the rig's finger at evenly
+/// spaced points along the surface, ends included, as finger_figures() takes it for friction. Takes some 0.1
+/// s.
+struct ToneUnderFinger {
+  std::vector<double> x_m, displacement;
+};
+ToneUnderFinger tone_under_finger(const physics::Surface& surface, const rig::Rig& rig, physics::Model model,
+                                  double frequency_Hz);
 
 /// How far a moving finger shifts an edge, positive towards the narrow tip of the surface, and the range of
 /// this shift over all fingers from fingers_of().
@@ -34,9 +46,18 @@ enum class Parts { left_out, wanted };
 std::optional<physics::LevelBudget> level_of(const physics::Surface& surface, double frequency_Hz,
                                              double at_m, Parts parts);
 
-/// Computes the result of Planner::under_finger() for a surface whose plate theory is already chosen.
-UnderFinger finger_figures(const physics::Surface& surface, const physics::FrictionMap& friction,
-                           const rig::Rig& rig, physics::Model field_model, const DrivePlan& plan);
+struct FingerSolution;
+
+/// Computes the result of Planner::under_finger() for a surface whose plate theory is already chosen. Plans
+/// that differ only in the amplitude of their tones have the same solution, which is kept.
+class FingerFigures {
+ public:
+  UnderFinger of(const physics::Surface& surface, const physics::FrictionMap& friction, const rig::Rig& rig,
+                 physics::Model field_model, const DrivePlan& plan);
+
+ private:
+  std::map<std::string, std::shared_ptr<const FingerSolution>> known_;
+};
 
 /// The fraction of a tone's displacement that is left under the rig's finger, when the finger is at the
 /// tone's last maximum along the surface. The two values are the smallest and the largest over the tones.

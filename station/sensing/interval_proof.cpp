@@ -491,6 +491,7 @@ void IntervalProof::changed(const audio::Change& change, const audio::Format& fo
 bool IntervalProof::complete() const noexcept { return state_->next_ >= state_->needed_until(); }
 
 const IntervalResult& IntervalProof::result(std::optional<bool> in_contact) {
+  if (state_->plan_.burst.following.follows()) return state_->result_ = {};
   state_->conclude(in_contact);
   return state_->result_;
 }

@@ -29,7 +29,8 @@ struct IntervalPlan {
 ///
 /// Not measured: the ramps and the 5 ms after each, in which the plate settles; the residual in a glide,
 /// masking noise and markers. Tones of equal frequency on several output channels are measured as one. If
-/// tones are less than about 10 Hz apart, the interval stays unproven.
+/// tones are less than about 10 Hz apart, the interval stays unproven. So does a burst that follows gains:
+/// FollowProof judges it.
 class IntervalProof {
  public:
   /// Throws std::logic_error if there is no pick-up, or if a pick-up's channel is not captured.

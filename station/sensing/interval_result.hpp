@@ -24,9 +24,13 @@ struct ProofLimits {
   /// limits for the part of the vibration that the tones do not explain, and for each distortion product,
   /// relative to the planned vibration
   Limits residual_dB{-40, -30, -20};
-  Limits onset_us{200, 1000, 1e9};  ///< limits for the error of the onset and of the offset (time at half level)
+  Limits onset_us{200, 1000,
+                  1e9};  ///< limits for the error of the onset and of the offset (time at half level)
   /// limits for the vibration between trials, relative to the planned vibration
   Limits silence_dB{-70, -50, 1e9};
+  /// for a burst that follows gains: limits of the envelope's error relative to what was commanded, and of
+  /// its lag
+  Limits envelope_error_dB{-20, -12, 1e9}, envelope_lag_us{300, 1000, 1e9};
   double clipped = 0.98;  ///< a trial is refused if a sample reaches this fraction of full scale
   double dead_dB = -40;   ///< a tone below this level, relative to the plan, counts as missing
   /// If all tones of a channel are between these levels, one of its two transducers is dead.
@@ -60,8 +64,8 @@ struct GlideToneProof {
   double phase_error_deg = 0;
 };
 
-/// Limits for the loudest millisecond of what should not be there: 6 dB above those of the rms over 50 ms (in a
-/// silence) or 0.2 s (in an interval). One click never stops a session.
+/// Limits for the loudest millisecond of what should not be there: 6 dB above those of the rms over 50 ms (in
+/// a silence) or 0.2 s (in an interval). One click never stops a session.
 inline Limits brief_limits(const ProofLimits& limits) {
   return {limits.residual_dB.flag + 6, limits.residual_dB.refuse + 6, 1e9};
 }
@@ -92,13 +96,17 @@ struct IntervalResult {
   /// rms of everything that the tones do not explain, relative to the plan, in the worst window of 0.2 s. A
   /// high-pass filter (high_pass_gain()) comes first, so hum and friction noise hardly count.
   double residual_dB = kNothing_dB;
-  double brief_dB = kNothing_dB;  ///< the same in the loudest millisecond of the window with the largest residual
+  double brief_dB =
+      kNothing_dB;  ///< the same in the loudest millisecond of the window with the largest residual
   /// the strongest distortion product, in the window with the largest residual
   std::optional<Product> product;
   /// time at which the envelope reaches half its level, measured minus planned
   std::optional<double> onset_error_us;
   /// the same on the ramp at the end; empty if the burst was stopped or the last tones are too short
   std::optional<double> offset_error_us;
+  /// Of a burst that follows gains (FollowProof): what the commanded envelope does not explain, relative to
+  /// it; and its lag, empty if it is not known well enough.
+  std::optional<double> envelope_error_dB, envelope_lag_us;
   std::optional<double> found_Hz;        ///< if the cause is `frequency`: the frequency of the vibration
   double largest_sample = 0;             ///< largest sample of the pick-ups, as a fraction of full scale
   std::int64_t lost_frames = 0;          ///< lost frames within the interval, rounded up to blocks of 1 ms

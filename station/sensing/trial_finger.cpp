@@ -146,6 +146,11 @@ void TrialFinger::push(const BridgePoint& point) {
   keep_from(point.index - points_in(intervals_.empty() ? idle_s : longest_s));
 }
 
+std::optional<Readings> TrialFinger::zero() {
+  take_tare();
+  return zero_;
+}
+
 std::int64_t TrialFinger::known_at() const {
   if (intervals_.empty()) return std::numeric_limits<std::int64_t>::min();
   return intervals_.back().end_frame + static_cast<std::int64_t>(tail_s * setup_.bridges.rate_Hz);

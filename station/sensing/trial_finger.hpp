@@ -129,6 +129,11 @@ class TrialFinger {
   /// that were already received are ignored.
   void push(const BridgePoint& point);
 
+  /// Readings of the cells without a finger: those before the expected trial, or the newest before them if
+  /// something lay on the surface. Empty if there are none. Call it once what was captured before
+  /// `quiet_until` has been pushed.
+  std::optional<Readings> zero();
+
   /// The result of the expected trial is known once all playback frames before this one have been captured.
   std::int64_t known_at() const;
   /// True if a finger touched the surface in this interval; empty if that is not known.

@@ -29,7 +29,14 @@ audio::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::ve
   if (scenes.size() - 1 > static_cast<std::size_t>(audio::max_changes))
     throw std::length_error("an interval has more changes of scene than the drive supports");
   const auto frames = [rate_Hz](double s) { return static_cast<std::int64_t>(std::llround(s * rate_Hz)); };
+  if (scenes.size() > 1 &&
+      std::any_of(scenes.begin(), scenes.end(), [](const auto& scene) { return scene.follow != nullptr; }))
+    throw std::length_error("a scene that follows the finger is the only one of its interval");
   audio::Burst burst;
+  if (const auto& plan = scenes.front().follow)
+    burst.following = {
+        plan->map.most_gain(), plan->resting_gain, std::max<std::int64_t>(1, frames(plan->ramp_s)),
+        std::max<std::int64_t>(1, frames(plan->steady_s)), std::max<std::int64_t>(1, frames(plan->resume_s))};
   burst.length_frames = frames(length_s);
   burst.ramp.frames = std::min(frames(scenes.front().scene.ramp_s), burst.length_frames / 2);
   burst.tones = tones_of(scenes.front());

@@ -18,8 +18,8 @@ audio::ToneSet tones_of(const scene::DrivePlan& plan);
 /// Converts one interval to a burst of the drive. The burst plays the plans of the interval's scenes one
 /// after the other. The second and later plans begin at `starts_s` from the onset, each with a transition
 /// of one of `transitions_s`, in which tone i of one scene glides to tone i of the next. The burst lasts
-/// `length_s`, including both ramps. Throws std::length_error if a burst cannot hold that many tones or
-/// scenes.
+/// `length_s`, including both ramps. A scene that follows the finger must be the only one of its burst.
+/// Throws std::length_error if a burst cannot hold that many tones or scenes.
 audio::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::vector<double>& starts_s,
                       const std::vector<double>& transitions_s, double length_s, int rate_Hz);
 

@@ -62,6 +62,11 @@ bool CaptureFeed::aligned() const {
   return aligned_;
 }
 
+std::optional<Alignment> CaptureFeed::alignment() const {
+  const std::lock_guard lock(mutex_);
+  return aligned_ ? std::optional(Alignment{shift_, numbering_}) : std::nullopt;
+}
+
 void CaptureFeed::misalign() {
   const std::lock_guard lock(mutex_);
   aligned_ = false;

@@ -10,6 +10,7 @@
 #include "station/sensing/pilot.hpp"
 #include "station/sensing/stillness_watch.hpp"
 #include "station/session/cell_feed.hpp"
+#include "station/session/follow_loop.hpp"
 #include "station/session/triggers.hpp"
 #include "station/session/vibration_watch.hpp"
 
@@ -41,6 +42,10 @@ class CaptureFeed {
   TriggerCapture& triggers() { return triggers_; }
 
   bool aligned() const;
+  /// How captured frames are numbered, if that is known.
+  std::optional<Alignment> alignment() const;
+  /// Calls the listener with everything that is captured from now on; it must outlive the feed.
+  void set_listener(audio::CaptureListener& listener) { capture_->listen(listener); }
   /// Call this after the playback was restarted: the delay from playback to capture is then unknown until the
   /// next pilot.
   void misalign();

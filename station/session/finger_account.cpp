@@ -144,7 +144,7 @@ void FingerAccount::add(std::int64_t on_ns, std::int64_t off_ns) {
 
 std::vector<Exposed> stimuli_of(const protocol::Protocol& protocol, const trial::TrialSpec& trial) {
   std::vector<Exposed> stimuli;
-  double at_s = protocol::kCue_s;
+  double at_s = trial::cue_s(protocol, trial);
   for (const auto& part : trial::parts_of(protocol, trial)) {
     at_s += part.silence_s;
     stimuli.push_back({at_s, at_s + part.length_s});

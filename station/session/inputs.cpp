@@ -29,6 +29,7 @@ struct ToEvent {
   Event event(Kind kind, int value = 0) const { return trial::Event{time_ns, kind, value}; }
 
   Event operator()(const input::Answer& answer) const { return event(Kind::answer, answer.index); }
+  Event operator()(const input::Again&) const { return event(Kind::again); }
   Event operator()(const input::Touch&) const { return event(Kind::touch); }
   Event operator()(const input::Contact& contact) const { return event(Kind::contact, contact.on ? 1 : 0); }
   Event operator()(const input::Xrun& xrun) const { return event(Kind::xrun, xrun.in_stimulus ? 1 : 0); }

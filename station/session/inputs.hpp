@@ -28,8 +28,9 @@ struct Answer {
 struct Value {
   double number = 0;  ///< the number that was typed, or marked on a line, as the answer
 };
-struct Next {};  ///< Continue or Done on a page
-struct Back {};  ///< Back on a question or an explanation
+struct Next {};   ///< Continue or Done on a page
+struct Back {};   ///< Back on a question or an explanation
+struct Again {};  ///< the participant asks for the intervals of the trial again
 struct Slider {
   double value = 0;
 };
@@ -97,7 +98,7 @@ struct SignalShown {
 
 using Any = std::variant<Next, Answer, Value, Back, Slider, Touch, Button, Contact, Stop, Pause, Xrun, Heard,
                          Measured, Fault, Failure, Glitch, Sync, Notice, Arm, Disarm, Repeat, Note,
-                         FramesLost, SignalShown>;
+                         FramesLost, SignalShown, Again>;
 
 }  // namespace input
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "station/protocol/answers.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/session/rows.hpp"
 #include "station/store/error.hpp"
 
@@ -25,6 +26,11 @@ std::optional<int> answer_of(const std::string& button, const protocol::Task& ta
   if (const auto named = protocol::answer_index(task, button)) return named;
   const int place = button == "left" ? 0 : button == "right" ? 1 : button == "third" ? 2 : -1;
   return place >= 0 && place < protocol::answer_count(task) ? std::optional(place) : std::nullopt;
+}
+
+/// True if the button asks for the intervals again: the third one, if it is no answer.
+bool asks_again(const std::string& button, const protocol::Task& task) {
+  return task.again > 0 && button == "third" && !answer_of(button, task);
 }
 
 }  // namespace
@@ -50,11 +56,13 @@ Input OperatorGate::received(Input input) {
   if (!button) return input;
   const auto& names = stage_.buttons();
   const auto index = static_cast<std::size_t>(button->index);
-  const auto answer = setup_.protocol.task.device != protocol::Device::touch && index < names.size()
-                          ? answer_of(names[index], setup_.protocol.task)
-                          : std::nullopt;
+  const auto& task = protocol::of_task(setup_.protocol, director_.task()).task;
+  const bool counts = task.device != protocol::Device::touch && index < names.size();
+  const auto answer = counts ? answer_of(names[index], task) : std::nullopt;
   if (answer)
     input.content = input::Answer{*answer};
+  else if (counts && asks_again(names[index], task))
+    input.content = input::Again{};
   else
     input.content = input::Touch{};
   return input;

@@ -95,6 +95,7 @@ struct SummaryLine {
 /// For an adjustment: position, limits and step of the slider.
 struct SliderEntry {
   double setting = 0, low = 0, high = 1, step = 0;
+  bool moved = false;  ///< the slider is no longer where the trial began, so there is something to confirm
 };
 
 /// Which interval of a trial the page belongs to.
@@ -108,12 +109,15 @@ struct Page {
   PageKind kind = PageKind::interval;
   std::string title;  ///< title of the block, or headline of the page
   std::string text;   ///< the question, instruction or message, in the session's language
+  std::string cue;    ///< cue: what the task says instead of the station's own words; may be ""
   std::vector<AnswerButton> answers;
   bool answers_open = false;
-  bool back = false;        ///< the participant can return to the previous question or page
-  bool playing = false;     ///< true while an example is being presented
-  std::string picture;      ///< path of an explanation's picture; "" if there is none
-  bool answer_now = false;  ///< true once the response signal has been given
+  bool back = false;          ///< the participant can return to the previous question or page
+  bool playing = false;       ///< true while an example is being presented
+  std::string picture;        ///< path of an explanation's picture; "" if there is none
+  bool again = false;         ///< the participant may ask for the intervals of the trial again
+  bool offers_again = false;  ///< the task lets participants ask for intervals again, at least on other pages
+  bool answer_now = false;    ///< true once the response signal has been given
   /// when the response signal was due, if it begins with a flash of the whole page
   std::optional<std::int64_t> flash_ns;
   std::optional<bool> correct;  ///< whether the answer was right; used only for feedback

@@ -11,6 +11,7 @@
 #include "station/procedure/procedure.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/interludes.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/scene/planner.hpp"
 #include "station/trial/timing.hpp"
 
@@ -111,6 +112,7 @@ std::string Pages::text(const protocol::Localised& localised) const {
 
 Page Pages::blank(PageKind kind, const protocol::Block* block, const trial::Director* director) const {
   Page page;
+  page.offers_again = setup_.protocol.task.again > 0;
   page.kind = kind;
   page.language = setup_.language;
   page.run_mode = store::name(setup_.run_mode);
@@ -134,15 +136,15 @@ Page Pages::instructions(const protocol::Block& block, const trial::Director& di
     page.text = core::text(training ? "training_text" : "measuring_text", setup_.language);
     return page;
   }
-  const auto question = question_in(nullptr);
-  page.text += (page.text.empty() ? "" : "\n\n") + question;
+  for (const auto task : protocol::tasks_in(setup_.protocol, block))
+    page.text += (page.text.empty() ? "" : "\n\n") + question_in(task, nullptr);
   if (const auto* goal = goal_of(block)) page.text += "\n\n" + in_words(*goal, setup_.language);
   return page;
 }
 
-/// The question of a trial; without one, an ellipsis stands for the value that it shows.
-std::string Pages::question_in(const trial::TrialSpec* spec) const {
-  const auto& task = setup_.protocol.task;
+/// The question of a task in a trial; without one, an ellipsis stands for the value that it shows.
+std::string Pages::question_in(std::size_t of_task, const trial::TrialSpec* spec) const {
+  const auto& task = protocol::of_task(setup_.protocol, of_task).task;
   auto question = text(task.question);
   if (task.question_shows.empty()) return question;
   std::string value = "\u2026";
@@ -212,7 +214,7 @@ Page Pages::of_phase(Phase phase, int part, const trial::TrialSpec& spec, const 
   const bool last = at + 1 == parts.size();
   const bool within = phase == Phase::gap && !last && parts[at + 1].interval == interval;
   auto page = blank(kind_of(within ? Phase::stimulus : phase), &block, &director);
-  const auto& task = setup_.protocol.task;
+  const auto& task = protocol::of_task(setup_.protocol, spec.task).task;
   const bool explored = task.kind == protocol::TaskKind::single_interval && protocol::explored(task);
   if (spec.strokes) {
     const bool hush = phase == Phase::interval;
@@ -222,7 +224,8 @@ Page Pages::of_phase(Phase phase, int part, const trial::TrialSpec& spec, const 
   }
   page.mark_mm = mark_of(spec);
   page.interval = {interval + 1, static_cast<int>(spec.intervals.size()), interval_names(task.kind)};
-  page.text = question_in(&spec);
+  page.text = question_in(spec.task, &spec);
+  if (phase == Phase::cue) page.cue = text(task.cue);
   page.answers_open = phase == Phase::response || (phase == Phase::stimulus && explored && last);
   for (const auto& choice : task.choices)
     page.answers.push_back({choice.id, task.rating ? choice.id : text(choice.label)});
@@ -301,10 +304,10 @@ Page Pages::farewell(const protocol::Localised& words, const trial::Director& di
   return page;
 }
 
-void Pages::add_slider(Page& page, const trial::SliderSpan& span, double setting) const {
+void Pages::add_slider(Page& page, const trial::SliderSpan& span, double setting, bool moved) const {
   page.kind = PageKind::adjust;
   page.answers.clear();
-  page.slider = {setting, span.shown_low, span.shown_high, span.step};
+  page.slider = {setting, span.shown_low, span.shown_high, span.step, moved};
 }
 
 Page Pages::between_trials(const protocol::Block* block, const trial::Director& director) const {

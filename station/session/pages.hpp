@@ -30,8 +30,9 @@ class Pages {
   /// Returns the text that tells the participant what to change after a wrong movement. `word` is the name of
   /// the wrong movement in the trial's row, such as "light".
   std::string movement(const std::string& word) const;
-  /// Adds the slider of an adjustment to the page of a phase.
-  void add_slider(Page& page, const trial::SliderSpan& span, double setting) const;
+  /// Adds the slider of an adjustment to the page of a phase. `moved` says that it has been moved in this
+  /// trial.
+  void add_slider(Page& page, const trial::SliderSpan& span, double setting, bool moved) const;
   /// Makes the page between two trials, which shows only the progress.
   Page between_trials(const protocol::Block* block, const trial::Director& director) const;
   /// Makes the page with a question of a questionnaire or with a consent form.
@@ -55,7 +56,7 @@ class Pages {
  private:
   Page blank(PageKind kind, const protocol::Block* block, const trial::Director* director) const;
   std::string text(const protocol::Localised& localised) const;
-  std::string question_in(const trial::TrialSpec* spec) const;
+  std::string question_in(std::size_t of_task, const trial::TrialSpec* spec) const;
   const protocol::Goal* goal_of(const protocol::Block& block) const;
   std::string score_in_words(double points) const;
   void add_value(Page& page, const protocol::ValueAnswer& value) const;

@@ -5,6 +5,7 @@
 
 #include "station/core/draws.hpp"
 #include "station/protocol/resolve.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/protocol/triggers.hpp"
 #include "station/scene/measures.hpp"
 #include "station/scene/scaled.hpp"
@@ -133,7 +134,7 @@ std::vector<audio::PreparedBurst> PlanAhead::bursts_of(const trial::TrialSpec& t
   const auto stream = stream_of(rig_);
   const int rate_Hz = stream.output.rate_Hz;
   const auto parts = trial::parts_of(protocol_, trial);
-  const auto& task = protocol_.task;
+  const auto& task = protocol::of_task(protocol_, trial.task).task;
   core::Draws noise(
       {seed_, core::Stream::masking_noise, trial.block_index, trial.attempt, trial.trial_in_block});
   MarkerCodes codes{protocol::trigger_code(protocol_, protocol::TriggerEvent::onset, trial.factors),

@@ -13,6 +13,7 @@
 #include "station/core/usage_error.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/protocol/survey.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/rig/apply.hpp"
 #include "station/scene/sound.hpp"
 #include "station/session/exposure.hpp"
@@ -102,12 +103,12 @@ std::vector<Problem> check_live(const Setup& setup, const protocol::Survey& surv
 }
 
 void check_buttons_only(const Setup& setup, std::vector<Problem>& problems) {
-  const auto& task = setup.protocol.task;
   if (!setup.rig.buttons_uri)
     problems.push_back(
         {{setup.rig.path, 0, 0}, phrase("refusal.no_buttons"), phrase("refusal.need_buttons")});
-  if (task.device == protocol::Device::touch)
-    problems.push_back({task.device_place, phrase("refusal.by_touch"), phrase("refusal.set_device")});
+  for (const auto* one : protocol::tasks_of(setup.protocol))
+    if (const auto& task = one->task; task.device == protocol::Device::touch)
+      problems.push_back({task.device_place, phrase("refusal.by_touch"), phrase("refusal.set_device")});
   if (const auto& signal = setup.protocol.timing.signal; signal && !protocol::in_stimulus(*signal))
     problems.push_back(
         {signal->by_place, phrase("refusal.signal_on_screen"), phrase("refusal.signal_elsewhere")});

@@ -56,6 +56,13 @@ inline std::vector<audio::PreparedBurst> scheduled(std::span<const audio::Prepar
   return bursts;
 }
 
+/// The numbers and frames of the intervals, as the loop that follows the finger needs them.
+inline std::vector<FollowLoop::Burst> followed_of(const std::vector<Presented>& presented) {
+  std::vector<FollowLoop::Burst> bursts;
+  for (const auto& one : presented) bursts.push_back({one.burst, one.start_frame, one.end_frame});
+  return bursts;
+}
+
 /// Makes the last interval glide to other tones. Returns the change that was sent; empty if it is too late
 /// for one.
 inline std::optional<audio::Change> glide_to(audio::Stream& stream, const std::vector<Presented>& presented,

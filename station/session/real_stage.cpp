@@ -35,10 +35,14 @@ class RealStage : public Stage {
     config.amplifier = devices_.amplifier.get();
     stream_ = devices_.open_stream(config);
     triggers_.emplace(triggers, *stream_, devices_.triggers.get());
-    if (capture)
+    if (capture) {
+      loop_.emplace(*stream_, capture->device.channels);
+      finger_ = capture->setup.finger;
       capture_ =
           std::make_unique<TrialCapture>(*capture, devices_, *stream_, inputs_,
                                          [this](const std::function<bool()>& ready) { wait_for(ready); });
+      capture_->feed().set_listener(*loop_);
+    }
   }
 
   std::int64_t now_ns() override { return system::monotonic_ns(); }
@@ -59,6 +63,7 @@ class RealStage : public Stage {
     presented_.clear();
     unheard_ = 0;
     if (capture_) capture_->forget();
+    if (loop_) loop_->end();
     lost_ns_.reset();
     std::vector<Input> gathered;
     for (auto& input : inputs_.drain()) gathered.push_back(with_frame(std::move(input)));
@@ -83,9 +88,20 @@ class RealStage : public Stage {
     if (triggers_->active())
       earliest_ns = std::max(earliest_ns, stream_->time_of(triggers_->free_from()).value_or(earliest_ns));
     auto onsets = schedule(*stream_, intervals, earliest_ns, presented_);
-    if (capture_ && !onsets.empty())
-      capture_->feed().watch().expect(scheduled(intervals, presented_),
-                                      stream_->frame_at(now_ns()).value_or(0));
+    if (capture_ && !onsets.empty()) {
+      auto& watch = capture_->feed().watch();
+      watch.expect(scheduled(intervals, presented_), stream_->frame_at(now_ns()).value_or(0),
+                   [this](std::size_t i) { return loop_->commanded(i); });
+      if (loop_->prepared()) {
+        const auto alignment = capture_->feed().alignment();
+        const auto zero = alignment ? watch.zero() : std::nullopt;
+        loop_->begin(followed_of(presented_), zero, alignment.value_or(Alignment{}));
+        if (!zero)
+          inputs_.push({now_ns(), Fault{FaultKind::capture,
+                                        "the surface cannot follow the finger: the force cells were not read "
+                                        "without a finger"}});
+      }
+    }
     if (onsets.empty())
       miss(now_ns(), "the converter does not report which frame it is playing");
     else
@@ -94,6 +110,12 @@ class RealStage : public Stage {
     unheard_ = onsets.size();
     return onsets;
   }
+
+  void follow(const FollowPlans& plans, std::span<const audio::PreparedBurst> intervals) override {
+    if (!loop_) return Stage::follow(plans, intervals);
+    loop_->prepare(plans, intervals, finger_);
+  }
+  Followed followed() override { return loop_ ? loop_->take() : Followed{}; }
 
   std::optional<std::int64_t> glide(const audio::ToneSet& to, double seconds) override {
     const auto change = glide_to(*stream_, presented_, to, seconds);
@@ -114,6 +136,7 @@ class RealStage : public Stage {
       if (awaits_heard) miss(now_ns(), "the trial was answered before the drive had begun the stimulus");
     }
     if (capture_) capture_->feed().watch().cut(stream_->counters().frames);
+    if (loop_) loop_->cut(from);
     const auto silent_ns = ramp_down(*stream_, presented_, now_ns());
     triggers_->cut(from, stream_->frame_at(silent_ns).value_or(from), now_ns());
     return quiet_ns_ = lost_ns_.value_or(silent_ns);
@@ -207,6 +230,7 @@ class RealStage : public Stage {
       closing_ = false;
     }
     while (const auto event = stream_->poll()) hear(*event, now);
+    if (loop_) loop_->gather();
     if (capture_) {
       capture_->attend(now);
       take_captured();
@@ -312,6 +336,10 @@ class RealStage : public Stage {
       case audio::EventKind::burst_started:
       case audio::EventKind::burst_ended:
         return;
+      case audio::EventKind::burst_unfollowed:
+      case audio::EventKind::burst_follows:
+        if (loop_) loop_->note(event);
+        return;
       case audio::EventKind::burst_heard:
         if (!interval) return;
         if (unheard_ > 0) --unheard_;
@@ -338,6 +366,8 @@ class RealStage : public Stage {
   Inputs& inputs_;
   std::unique_ptr<audio::Stream> stream_;
   std::optional<Triggers> triggers_;
+  std::optional<FollowLoop> loop_;  ///< empty if nothing is captured; outlives the capture, which calls it
+  std::optional<sensing::FingerSetup> finger_;
   std::unique_ptr<TrialCapture> capture_;  ///< null if nothing is captured
   std::vector<Presented> presented_;
   Onset first_onset_;        ///< onset of the trial's first interval

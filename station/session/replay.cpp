@@ -8,6 +8,7 @@
 #include "station/core/texts.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/session/planned_session.hpp"
 #include "station/trial/question.hpp"
 #include "station/trial/rows.hpp"
@@ -77,8 +78,9 @@ void replay(trial::Director& director, const core::TrialRow& trial, const protoc
   end.outcome = trial.outcome;
   end.correct = trial.given.correct;
   end.friction = trial.finger.mu;
-  if (trial.given.response) end.response = protocol::answer_index(protocol.task, *trial.given.response);
-  if ((spec->slider || protocol.task.value) && trial.given.response) {
+  const auto& task = protocol::of_task(protocol, spec->task).task;
+  if (trial.given.response) end.response = protocol::answer_index(task, *trial.given.response);
+  if ((spec->slider || task.value) && trial.given.response) {
     const auto value = core::read_number(*trial.given.response);
     if (!value) mismatch("resume.no_number", {plain(*trial.given.response)});
     end.response = 0;
@@ -101,7 +103,8 @@ void check_observer(const Setup& setup, const simulation::Respondent& observer,
     return;
   const auto reply = observer.answer(trial::question_of(spec, setup.protocol, stored.session.start.seed));
   const auto answer = reply.value    ? std::optional(core::exact(*reply.value))
-                      : reply.choice ? std::optional(protocol::answer_id(setup.protocol.task, *reply.choice))
+                      : reply.choice ? std::optional(protocol::answer_id(
+                                           protocol::of_task(setup.protocol, spec.task).task, *reply.choice))
                                      : std::nullopt;
   if (answer == trial.given.response && reply.confidence == trial.given.confidence &&
       std::fabs(reply.response_time_s - *trial.timing.response_time_s) < tolerance_s)

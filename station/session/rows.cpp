@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -36,6 +37,7 @@ struct Log {
   void operator()(const input::Value& value) const { say("value", core::exact(value.number)); }
   void operator()(const input::Next&) const { say("next", ""); }
   void operator()(const input::Back&) const { say("back", ""); }
+  void operator()(const input::Again&) const { say("again", ""); }
   void operator()(const input::Slider& slider) const { say("slider", core::exact(slider.value)); }
   void operator()(const input::Touch&) const { say("touch", ""); }
   void operator()(const input::Button& button) const { say("button", std::to_string(button.index)); }
@@ -166,12 +168,16 @@ void add_measured(core::TrialRow& row, const sensing::IntervalResult& measured, 
   for (const auto& tone : measured.glides)
     if (tone.seen) further(surface.drive_ratio_dB, tone.worst_ratio_dB);
   if (measured.onset_error_us) further(surface.onset_error_us, *measured.onset_error_us);
-  if (!measured.tones.empty())
+  if (!measured.tones.empty() && !measured.envelope_error_dB)
     surface.drive_residual_dB = std::max(surface.drive_residual_dB.value_or(-1e9), measured.residual_dB);
   if (const auto& silence = measured.silence; silence && silence->rms_dB > sensing::kNothing_dB) {
     surface.silence_dB = silence->rms_dB;
     if (silence->level_dB > sensing::kNothing_dB) surface.silence_tone_dB = silence->level_dB;
   }
+  if (measured.envelope_error_dB)
+    row.follow.envelope_error_dB =
+        std::max(row.follow.envelope_error_dB.value_or(-1e9), *measured.envelope_error_dB);
+  if (measured.envelope_lag_us) further(row.follow.envelope_lag_us, *measured.envelope_lag_us);
   const sensing::Finding now{measured.cause, measured.verdict};
   const auto all = first ? now : sensing::concluded({{surface.proof_cause, surface.proof}, now});
   surface.proof = all.verdict;
@@ -224,7 +230,7 @@ void add_forces(core::TrialRow& row, const sensing::TrialForces& forces, const A
   finger.tare_mN = 1e3 * forces.tare_moved_N;
   if (forces.track.empty()) return;
   core::SignalRow signal;
-  signal.stream = "finger";
+  signal.stream = kFingerStream;
   signal.start_frame = forces.track.front().index * forces.frames_per_point;
   signal.start_s = at.time_s + static_cast<double>(signal.start_frame - at.frame) / rate_Hz;
   signal.rate_Hz = static_cast<double>(rate_Hz) / static_cast<double>(forces.frames_per_point);
@@ -239,6 +245,106 @@ void add_forces(core::TrialRow& row, const sensing::TrialForces& forces, const A
   }
   store::encode(signal, values);
   row.signal_rows.push_back(std::move(signal));
+}
+
+namespace {
+
+/// Makes a signal whose points are `step` frames apart, with missing values where nothing was recorded.
+class FollowSignal {
+ public:
+  FollowSignal(const char* stream, std::vector<core::SignalChannel> channels, std::int64_t start_frame,
+               std::int64_t step, std::size_t points)
+      : step_(step), values_(channels.size(), std::vector<double>(points, std::nan(""))) {
+    signal_.stream = stream;
+    signal_.start_frame = start_frame;
+    signal_.channels = std::move(channels);
+  }
+
+  void set(std::size_t channel, std::int64_t frame, double value) {
+    values_[channel][static_cast<std::size_t>((frame - signal_.start_frame) / step_)] = value;
+  }
+  core::SignalRow made(int rate_Hz, const FrameTime& at) {
+    signal_.rate_Hz = static_cast<double>(rate_Hz) / static_cast<double>(step_);
+    signal_.start_s = at.time_s + static_cast<double>(signal_.start_frame - at.frame) / rate_Hz;
+    store::encode(signal_, values_);
+    return std::move(signal_);
+  }
+
+ private:
+  core::SignalRow signal_;
+  std::int64_t step_;
+  std::vector<std::vector<double>> values_;
+};
+
+void add_signals(core::TrialRow& row, const std::vector<follow::Recorded>& periods, const follow::Plan& plan,
+                 int rate_Hz, const FrameTime& at) {
+  const std::int64_t period = plan.timing.period_frames, eighth = period / follow::kGains;
+  const auto first = periods.front().frame;
+  const auto count = static_cast<std::size_t>((periods.back().frame - first) / period + 1);
+  const bool friction = plan.pattern.asked == follow::Asked::friction;
+  // The values of an update are those of the middle of its period.
+  FollowSignal updates(core::kFollowStream,
+                       {{"place", "mm", 0.01},
+                        {"speed", "mm/s", 0.1},
+                        {"asked", friction ? "" : "um", 1e-4},
+                        {"commanded", "", 1e-4},
+                        {"felt", "", 1e-4},
+                        {"age", "ms", 1e-3},
+                        {"at_rest", "", 1e-4},
+                        {"following", "", 1e-3},
+                        {"fault", "", 1}},
+                       first + period / 2, period, count);
+  FollowSignal envelope(core::kEnvelopeStream, {{"gain", "", 1e-5}}, first + eighth, eighth,
+                        count * follow::kGains);
+  for (const auto& one : periods) {
+    const auto& u = one.update;
+    const auto middle = one.frame + period / 2;
+    // Intervals need not be whole periods apart; in the later ones a point is less than a period early.
+    const bool placed = u.fault != follow::Fault::lifted && u.fault != follow::Fault::position;
+    const double none = std::nan("");
+    const double age_ms = 1e3 * static_cast<double>(middle - one.sample_frame) / rate_Hz;
+    const std::array values{placed ? 1e3 * u.place_m : none,
+                            placed ? 1e3 * u.speed_m_s : none,
+                            placed ? (friction ? u.asked : 1e6 * u.asked) : none,
+                            placed ? u.modelled : none,
+                            u.felt,
+                            age_ms,
+                            u.resting_friction,
+                            static_cast<double>(u.following),
+                            static_cast<double>(u.fault)};
+    for (std::size_t c = 0; c < values.size(); ++c) updates.set(c, middle, values[c]);
+    for (std::size_t k = 0; k < follow::kGains; ++k)
+      envelope.set(0, one.frame + static_cast<std::int64_t>(k + 1) * eighth, static_cast<double>(u.gain[k]));
+  }
+  row.signal_rows.push_back(updates.made(rate_Hz, at));
+  row.signal_rows.push_back(envelope.made(rate_Hz, at));
+}
+
+}  // namespace
+
+void add_followed(core::TrialRow& row, const Followed& followed, const FollowPlans& plans,
+                  const std::vector<FollowedRange>& ranges, int rate_Hz, const FrameTime& at) {
+  const auto last =
+      std::find_if(plans.rbegin(), plans.rend(), [](const auto& plan) { return plan != nullptr; });
+  if (last == plans.rend()) return;
+  row.follow.followed = follow::fault_names(followed.periods, !followed.late.empty());
+  if (followed.not_recorded > 0) row.follow.followed += " unrecorded";
+  if (followed.periods.empty()) return;
+  const auto interval = static_cast<std::size_t>(plans.rend() - last - 1);
+  std::vector<follow::Recorded> of_last;
+  for (const auto& one : followed.periods)
+    if (one.interval == static_cast<std::int32_t>(interval)) of_last.push_back(one);
+  if (interval < ranges.size()) {
+    const auto summary = follow::summarise(of_last, **last, ranges[interval].first_frame,
+                                           std::min(ranges[interval].end_frame, followed.cut_frame));
+    row.follow.mu_asked = summary.asked;
+    row.follow.mu_commanded = summary.commanded;
+    row.follow.mu_felt = summary.felt;
+    row.follow.inside = summary.inside;
+    row.follow.share = summary.share;
+    if (summary.lag_s) row.follow.lag_ms = 1e3 * *summary.lag_s;
+  }
+  add_signals(row, followed.periods, **last, rate_Hz, at);
 }
 
 std::string describe_proof(const core::SurfaceRow& surface) {

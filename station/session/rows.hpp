@@ -8,6 +8,7 @@
 #include "station/core/records.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/scene/planner.hpp"
+#include "station/session/follow_loop.hpp"
 #include "station/session/inputs.hpp"
 #include "station/simulation/observer.hpp"
 #include "station/trial/director.hpp"
@@ -48,6 +49,8 @@ struct Asked {
   std::optional<double> friction_level;
   sensing::StripPart part;  ///< the part of the surface in which friction is averaged
 };
+/// The stream of a trial's signal that add_forces() adds.
+inline constexpr const char* kFingerStream = "finger";
 /// Returns the part of the surface in which the trial's friction is averaged: in a trial for a friction
 /// table, the part that the table describes; otherwise the whole surface.
 sensing::StripPart part_of(const trial::TrialSpec& spec);
@@ -55,6 +58,15 @@ sensing::StripPart part_of(const trial::TrialSpec& spec);
 /// the finger.
 void add_forces(core::TrialRow& row, const sensing::TrialForces& forces, const Asked& asked, int rate_Hz,
                 const FrameTime& at);
+
+/// Adds what the intervals of a trial did that follow the finger: the summary of the interval presented last,
+/// the faults of all, and the signals of updates and gains. `plans` are those of the intervals, null for
+/// those that follow nothing; `ranges` are the frames in which they were presented.
+struct FollowedRange {
+  std::int64_t first_frame = 0, end_frame = 0;
+};
+void add_followed(core::TrialRow& row, const Followed& followed, const FollowPlans& plans,
+                  const std::vector<FollowedRange>& ranges, int rate_Hz, const FrameTime& at);
 
 /// Says what a pick-up found wrong with a trial, with figures: "the surface does not move (-62.1 dB)".
 std::string describe_proof(const core::SurfaceRow& surface);

@@ -17,6 +17,7 @@
 #include "station/core/usage_error.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/protocol/triggers.hpp"
 #include "station/session/burst.hpp"
 #include "station/session/rows.hpp"
@@ -168,6 +169,12 @@ constexpr int kRefusedBeforePage = 2;
 /// rest.
 constexpr double kLongStretch_s = 5;
 
+FollowPlans follow_plans_of(const PlanAhead::Plans& plans) {
+  FollowPlans follows;
+  for (const auto& scenes : plans) follows.push_back(scenes.front().follow);
+  return follows;
+}
+
 bool is_over(trial::Phase phase) {
   return phase == trial::Phase::feedback || phase == trial::Phase::late || phase == trial::Phase::interval ||
          phase == trial::Phase::done;
@@ -175,6 +182,16 @@ bool is_over(trial::Phase phase) {
 
 core::EventRow event(std::int64_t time_ns, const char* kind, double value, int trial_index) {
   return {time_ns, kind, core::number(value, 9), trial_index};
+}
+
+/// Shortens the scenes of a part that was cut off at `off_ns`, because the participant asked for the
+/// intervals again.
+void cut_tones(core::TrialRow& row, int part, const Onset& onset, std::int64_t off_ns, int rate_Hz) {
+  const std::int64_t end =
+      onset.frame + std::llround(1e-9 * static_cast<double>(off_ns - onset.time_ns) * rate_Hz);
+  for (auto& tone : row.tones)
+    if (tone.interval_index == part)
+      tone.length_frames = std::clamp(end - tone.onset_frame, std::int64_t{0}, tone.length_frames);
 }
 
 }  // namespace
@@ -190,7 +207,9 @@ Flow SessionRun::run_trial(trial::TrialSpec spec) {
   }
   drift_.log_temperature(trial_index());
   Running trial{spec,
-                trial::Machine(trial::timing_of(setup_.protocol, *director_.block(), spec)),
+                spec,
+                trial::Machine(trial::timing_of(setup_.protocol, *director_.block(), spec,
+                                                trial::parts_of(setup_.protocol, spec))),
                 trial::row_of(spec, setup_.protocol, trial_index()),
                 {},
                 {},
@@ -227,6 +246,8 @@ Flow SessionRun::prepare_trial(const trial::TrialSpec& spec) {
     if (keep_limits(spec) == Flow::stop) return Flow::stop;
     stage_->wait_for([&] { return plans_.ready(spec); });
     check_plans(spec);
+    const auto& planned = plans_.take(spec);
+    stage_->follow(follow_plans_of(planned.plans), planned.bursts);
   } catch (const scene::Unreachable& unreachable) {
     gate_.stop(unreachable.what());
   } catch (const LimitExceeded& limit) {
@@ -269,10 +290,12 @@ void SessionRun::check_plans(const trial::TrialSpec& spec) {
   const auto parts = trial::parts_of(setup_.protocol, spec);
   for (std::size_t i = 0; i < plans.size(); ++i)
     for (const auto& plan : plans[i]) {
-      account_.check(plan.peak_displacement_m, parts[i].length_s);
+      const double gain = plan.follow ? plan.follow->map.most_gain() : 1;
+      account_.check(gain * plan.peak_displacement_m, parts[i].length_s);
       if (setup_.run_mode != core::RunMode::live) continue;
       for (const auto& tone : plan.tones)
-        if (const auto problem = session::sound_problem(tone.frequency_Hz, tone.full_scale, setup_.sound))
+        if (const auto problem =
+                session::sound_problem(tone.frequency_Hz, gain * tone.full_scale, setup_.sound))
           throw LimitExceeded(core::say(*problem, "en"));
     }
 }
@@ -332,10 +355,14 @@ void SessionRun::handle_in_trial(Input raw, Running& trial) {
   gate_.note(input);
   const auto* measured = input.as<input::Measured>();
   if (measured) drift_.follow(*measured->result);
-  if (measured) add_measured(trial.row, *measured->result, measured->interval, trial.measured++ == 0);
+  if (measured)
+    add_measured(trial.row, *measured->result, static_cast<int>(trial.first) + measured->interval,
+                 trial.measured++ == 0);
   if (measured && measured->forces && !trial.onsets.empty()) {
     const auto& forces = *measured->forces;
     const auto& onset = trial.onsets.front();
+    // the row describes the finger in the last presentation
+    std::erase_if(trial.row.signal_rows, [](const auto& signal) { return signal.stream == kFingerStream; });
     add_forces(trial.row, forces, {trial.friction_level, part_of(trial.spec)}, setup_.rig.output.rate_Hz,
                {onset.frame, 1e-9 * static_cast<double>(onset.time_ns - started_ns_)});
     const bool asked = setup_.protocol.sensing && forces.state == sensing::ForcesState::ok;
@@ -397,7 +424,12 @@ void SessionRun::perform(const std::vector<trial::Action>& actions, Running& tri
 
 /// Presents all intervals with one call, so that the distances between them are exact numbers of frames.
 void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
-  const auto& bursts = plans_.take(trial.spec).bursts;
+  if (trial.machine.result().again > 0) {
+    const auto after_ns = prepare_again(earliest_ns, trial);
+    if (!after_ns) return;
+    earliest_ns = *after_ns;
+  }
+  const auto& bursts = plans_.take(trial.shown).bursts;
   try {
     trial.onsets = stage_->present(bursts, earliest_ns);
   } catch (const audio::BurstRefused& refused) {
@@ -405,9 +437,11 @@ void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
     return perform(trial.machine.handle({stage_->now_ns(), trial::EventKind::abort, 0}), trial);
   }
   if (trial.onsets.empty()) return;  // the stage has added a fault with the reason to the inputs
+  trial.follows = follow_plans_of(plans_.take(trial.spec).plans);
   const auto parts = trial::parts_of(setup_.protocol, trial.spec);
   for (std::size_t i = 0; i < bursts.size(); ++i) {
     const auto on_ns = trial.onsets[i].time_ns;
+    trial.presented.push_back({trial.onsets[i].frame, trial.onsets[i].frame + bursts[i].length_frames});
     surface_.push_back({on_ns, on_ns + static_cast<std::int64_t>(parts[i].length_s * 1e9)});
     perform(trial.machine.handle({on_ns, trial::EventKind::onset, static_cast<int>(i)}), trial);
   }
@@ -415,13 +449,52 @@ void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
   ask_observer(trial, trial.onsets.back().time_ns);
 }
 
+/// Does before the intervals are presented again what prepare_trial() does before a trial: records what the
+/// finger has felt, finds the time from which the rig's limits allow the intervals, and switches the
+/// amplifier on. Returns that time; nothing if the trial has ended instead.
+std::optional<std::int64_t> SessionRun::prepare_again(std::int64_t earliest_ns, Running& trial) {
+  stage_->close_amplifier();
+  if (trial.slider) {
+    trial.shown.factors[setup_.protocol.task.adjusts] = trial.slider->glide(stage_->now_ns());
+    trial.slider->followed();
+    plans_.begin(trial.shown);
+  }
+  cut_tones(trial.row, static_cast<int>(trial.begun) - 1, trial.onsets.back(), surface_.back().off_ns,
+            setup_.rig.output.rate_Hz);
+  trial.first = trial.begun;
+  leave_surface();
+  std::optional<trial::EventKind> cut_by;
+  try {
+    check_plans(trial.shown);
+    const auto now = stage_->now_ns();
+    const auto begin = account_.earliest_ns(now, session::stimuli_of(setup_.protocol, trial.spec));
+    if (begin > now) {
+      earliest_ns += begin - now;
+      const double stretch_s = static_cast<double>(begin - now) * 1e-9;
+      summary_.stretched_s += stretch_s;
+      log_.event(event(now, "interval_stretched", stretch_s, trial_index()));
+    }
+    // Write to the disk while the amplifier is off, as before the trial.
+    stage_->wait_for(
+        [&] { return stage_->amplifier() != audio::AmplifierState::enabled && plans_.ready(trial.shown); });
+    gate_.keep([&] { log_.presented(trial_index(), stage_->now_ns()); });
+    cut_by = open_amplifier();
+  } catch (const LimitExceeded& limit) {
+    gate_.stop(limit.what());
+    cut_by = trial::EventKind::abort;
+  }
+  if (!cut_by) return earliest_ns;
+  perform(trial.machine.handle({stage_->now_ns(), *cut_by, 0}), trial);
+  return std::nullopt;
+}
+
 /// Appends this part's tones to the row. This happens only when the part begins, so that parts that are
 /// cancelled do not appear in the row.
 void SessionRun::interval_begins(Running& trial) {
-  const auto i = trial.begun++;
-  const auto& planned = plans_.take(trial.spec);
+  const auto number = trial.begun++, i = number - trial.first;
+  const auto& planned = plans_.take(trial.shown);
   const auto interval = trial::parts_of(setup_.protocol, trial.spec)[i].interval;
-  add_tones(trial.row, planned.plans[i], static_cast<int>(i), interval, trial.onsets[i].frame,
+  add_tones(trial.row, planned.plans[i], static_cast<int>(number), interval, trial.onsets[i].frame,
             planned.bursts[i]);
   trial.friction_level = friction_level(planned.plans[i].back().scene);
 }
@@ -429,13 +502,15 @@ void SessionRun::interval_begins(Running& trial) {
 void SessionRun::ask_observer(const Running& trial, std::int64_t onset_ns) {
   if (!participant_ || trial.spec.strokes) return;
   const auto now_ns = stage_->now_ns();
-  const auto times = trial::simulated_times(setup_.protocol, trial.spec, onset_ns);
+  const auto times = trial::simulated_times(setup_.protocol, trial.spec,
+                                            trial::parts_of(setup_.protocol, trial.spec).back(), onset_ns);
   try {
     if (trial.slider)
       participant_->set(trial::adjustment_of(trial.spec, setup_.protocol, summary_.seed), trial.spec, times,
-                        now_ns);
+                        now_ns, trial.machine.result().again);
     else
-      participant_->answer(trial::question_of(trial.spec, setup_.protocol, summary_.seed), times, now_ns);
+      participant_->answer(trial::question_of(trial.spec, setup_.protocol, summary_.seed), times, now_ns,
+                           trial.machine.result().again);
   } catch (const core::ProgramFailed& failed) {
     // The trial ends without a result, and the session is interrupted.
     participant_->will({now_ns, input::Failure{failed.what()}}, now_ns);
@@ -473,6 +548,13 @@ void SessionRun::leave_surface() {
 
 void SessionRun::finish_row(Running& trial) {
   auto& row = trial.row;
+  const auto followed = stage_->followed();
+  if (!trial.onsets.empty()) {
+    const auto& onset = trial.onsets.front();
+    trial.follows.resize(std::min(trial.follows.size(), trial.begun));  // the others were not presented
+    add_followed(row, followed, trial.follows, trial.presented, setup_.rig.output.rate_Hz,
+                 {onset.frame, 1e-9 * static_cast<double>(onset.time_ns - started_ns_)});
+  }
   trial::fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_, trial.value);
   const bool good = row.surface.proof == core::Proof::ok || row.surface.proof == core::Proof::flagged;
   if (good && trial.measured < trial.begun) row.surface.proof = core::Proof::unproven;
@@ -523,7 +605,8 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
     page.flash_ns = *trial.machine.result().zero_ns + std::llround(1e9 * *trial.spec.signal_s);
   const bool before_last = phase == trial::Phase::stimulus && !trial.is_set();
   if (trial.slider && adjusting && !before_last)
-    pages_.add_slider(page, *trial.spec.slider, trial.slider->setting());
+    pages_.add_slider(page, *trial.spec.slider, trial.slider->setting(),
+                      trial.slider->setting() != trial.spec.level.value_or(trial.spec.slider->low));
   if (phase == trial::Phase::late && trial.machine.result().outcome == core::Outcome::fault)
     page.text = pages_.movement(trial.row.finger.sensing);
   const bool judged = phase == trial::Phase::feedback || phase == trial::Phase::late;
@@ -532,6 +615,8 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
       pages_.add_points(
           page, *points,
           director_.block()->practice ? std::nullopt : std::optional(scores_.points() + *points));
+  page.again =
+      (phase == trial::Phase::stimulus || phase == trial::Phase::response) && trial.machine.may_ask_again();
   if (trial.spec.strokes && phase == trial::Phase::feedback)
     page.text = pages_.movement(trial.row.finger.sensing);
   hold_bars(phase, trial);
@@ -542,7 +627,7 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
 std::optional<trial::Event> SessionRun::event_in_trial(const Input& input, Running& trial, bool by_button) {
   const trial::Event touch{input.time_ns, trial::EventKind::touch, 0};
   const bool confiding = trial.machine.phase() == trial::Phase::confidence;
-  const auto& answer = setup_.protocol.task.value;
+  const auto& answer = protocol::of_task(setup_.protocol, trial.spec.task).task.value;
   if (const auto* given = input.as<input::Value>()) {
     const auto value = answer ? protocol::accepted(*answer, given->number) : std::nullopt;
     if (!value || confiding) return touch;
@@ -570,7 +655,7 @@ void SessionRun::glide(Running& trial) {
   const double wanted = trial.slider->glide(stage_->now_ns());
   if (!trial.is_set()) return;
   auto spec = trial.spec;
-  spec.factors[setup_.protocol.task.adjusts] = wanted;
+  spec.factors[protocol::of_task(setup_.protocol, spec.task).task.adjusts] = wanted;
   plans_.begin(spec);
   stage_->wait_for([&] { return plans_.ready(spec); });
   const auto plan = plans_.take(spec).plans.back().back();
@@ -706,7 +791,7 @@ void SessionRun::trigger_intervals(const Running& trial) {
     trigger.time_ns = onset.time_ns + frames * 1'000'000'000 / setup_.rig.output.rate_Hz;
     if (trigger.code > 0) stage_->triggers().scheduled(std::move(trigger));
   };
-  const auto& bursts = plans_.take(trial.spec).bursts;
+  const auto& bursts = plans_.take(trial.shown).bursts;
   const auto parts = trial::parts_of(setup_.protocol, trial.spec);
   for (std::size_t i = 0; i < bursts.size(); ++i) {
     add(TriggerEvent::onset, trial.onsets[i], 0);

@@ -14,6 +14,7 @@
 #include "station/session/pages.hpp"
 #include "station/session/plan_ahead.hpp"
 #include "station/session/programs.hpp"
+#include "station/session/rows.hpp"
 #include "station/session/session.hpp"
 #include "station/session/stage.hpp"
 #include "station/store/session_log.hpp"
@@ -40,25 +41,33 @@ class SessionRun {
   /// The state of the trial that is running.
   struct Running {
     trial::TrialSpec spec;
+    /// what is presented: `spec` or, once the intervals of an adjustment are presented again, `spec` with the
+    /// slider's setting
+    trial::TrialSpec shown;
     trial::Machine machine;
     core::TrialRow row;
     std::optional<trial::Slider> slider;  ///< the slider of an adjustment
     std::optional<double> value;          ///< the participant's answer, if it is a number
-    std::vector<Onset> onsets;            ///< onsets of all intervals; set once the intervals are scheduled
-    std::size_t begun = 0;                ///< number of intervals whose presentation has begun
+    /// onsets of all intervals of the last presentation; set once the intervals are scheduled
+    std::vector<Onset> onsets;
+    std::size_t begun = 0;     ///< number of intervals whose presentation has begun, over all presentations
     std::size_t measured = 0;  ///< number of intervals for which pick-ups have reported a measurement
+    /// number of intervals in the presentations before the last one, from which those of the last one count
+    std::size_t first = 0;
     bool decided = false;
     bool outside = false;  ///< the finger did not move in the way that the protocol asks for
     /// True if something went wrong. A trial that is repeated because of the finger's movement is not void.
     bool is_void() const { return row.outcome == core::Outcome::fault && !outside; }
     /// True while the surface follows the slider: in the last part of the trial.
     bool is_set() const {
-      return machine.phase() == trial::Phase::stimulus && begun > 0 && begun == onsets.size();
+      return machine.phase() == trial::Phase::stimulus && begun > first && begun - first == onsets.size();
     }
     /// the boundary of the trial's last scene is where the relative friction has this value
     std::optional<double> friction_level = {};
     /// true if the answer came from a button, so that the touch panel's latency does not apply
     bool by_button = false;
+    FollowPlans follows = {};  ///< the plans of the scheduled intervals that follow the finger
+    std::vector<FollowedRange> presented = {};  ///< the frames of the scheduled intervals
   };
   /// Times at which one interval begins and ends on the surface.
   struct OnSurface {
@@ -94,6 +103,7 @@ class SessionRun {
   void handle_in_trial(Input raw, Running& trial);
   void perform(const std::vector<trial::Action>& actions, Running& trial);
   void present(std::int64_t earliest_ns, Running& trial);
+  std::optional<std::int64_t> prepare_again(std::int64_t earliest_ns, Running& trial);
   void interval_begins(Running& trial);
   void ask_observer(const Running& trial, std::int64_t onset_ns);
   void decide(Running& trial);

@@ -16,13 +16,16 @@ class SimulatedParticipant {
  public:
   explicit SimulatedParticipant(simulation::Respondent observer);
 
-  /// Answers this question; the finger touches and leaves the surface if the protocol asks for it. Throws
+  /// Answers this question, or asks for the intervals again, if they have been presented again fewer times
+  /// than the observer wants; the finger touches and leaves the surface if the protocol asks for it. Throws
   /// core::ProgramFailed if the observer is a program that fails.
-  void answer(const simulation::Question& question, const trial::SimulatedTimes& times, std::int64_t now_ns);
+  void answer(const simulation::Question& question, const trial::SimulatedTimes& times, std::int64_t now_ns,
+              int presented_again);
 
-  /// Sets the slider of this trial and presses Done. Throws like answer().
+  /// Sets the slider of this trial and presses Done, or asks for the intervals again before. Throws like
+  /// answer().
   void set(const simulation::Adjustment& adjustment, const trial::TrialSpec& spec,
-           const trial::SimulatedTimes& times, std::int64_t now_ns);
+           const trial::SimulatedTimes& times, std::int64_t now_ns, int presented_again);
 
   /// Gives this input at the time input.time_ns.
   void will(Input input, std::int64_t now_ns);

@@ -22,6 +22,8 @@ constexpr double kStep_Hz = 20;  // distance between two points of a pick-up's r
 // The buffer turns the station's carrier into this peak voltage on the bridges. The reference input takes
 // more, because the pilot is added to the carrier.
 constexpr double kExcitation_V = 2.5, kReference_V = 4.0;
+// windows in which the amplitudes of tones are found that the finger feels
+constexpr double kShortWindow_s = 1e-3, kLongWindow_s = 10e-3;
 constexpr double kHeight_m = 8e-3;  // height of the surface above the pivots of the force cells
 
 /// Returns the ratio of bridge signal to reference signal for a force of 1 N on a cell.
@@ -68,6 +70,9 @@ simulation::Setup laboratory_of(const rig::Rig& rig) {
   simulation::Setup room;
   room.rate_Hz = rig.output.rate_Hz;
   room.playback_channels = rig::channels(rig);
+  // What the rig states of its converters and cells is true of the simulated ones.
+  if (rig.output.converter_delay_s > 0)
+    room.loop_delay_frames = rig.output.converter_delay_s * rig.output.rate_Hz;
   room.transducers.clear();
   room.band_low_Hz = 1e9, room.band_high_Hz = 0;
   for (const auto& t : rig.transducers) {
@@ -85,6 +90,10 @@ simulation::Setup laboratory_of(const rig::Rig& rig) {
     room.capture.bridge_a = bridges[0], room.capture.bridge_b = bridges[1], room.capture.lateral = bridges[2];
     room.cells.span_m = rig.surface.length_m;
     room.cells.height_m = kHeight_m;
+    if (const auto resonance_Hz = rig.capture->cells_resonance_Hz) {
+      room.cells.normal_Hz = room.cells.lateral_Hz = *resonance_Hz;
+      room.cells.damping = rig.capture->cells_damping;
+    }
     room.finger.from_m = kStrokeFrom * rig.surface.length_m;
     room.finger.to_m = kStrokeTo * rig.surface.length_m;
     room.finger.stroke_s = (room.finger.to_m - room.finger.from_m) / kStroke_m_s;
@@ -127,7 +136,20 @@ void SimulatedRoom::expect(std::span<const audio::PreparedBurst> bursts) {
   }
   std::sort(frequencies.begin(), frequencies.end());
   frequencies.erase(std::unique(frequencies.begin(), frequencies.end()), frequencies.end());
-  plant_.set_tones(frequencies);
+  // The finger feels a gain that follows it as soon as the distance of the tones allows to tell them apart.
+  const bool follows =
+      std::any_of(bursts.begin(), bursts.end(), [](const auto& burst) { return burst.following.follows(); });
+  double window_s = follows ? kShortWindow_s : kLongWindow_s;
+  for (const auto& burst : bursts)
+    for (int a = 0; a < burst.tone_count; ++a)
+      for (int b = 0; b < a; ++b) {
+        const auto apart = static_cast<double>(static_cast<std::int64_t>(
+                               burst.tones[static_cast<std::size_t>(a)].increment -
+                               burst.tones[static_cast<std::size_t>(b)].increment)) *
+                           0x1p-64 * plant_.setup().rate_Hz;
+        if (apart != 0) window_s = std::max(window_s, std::min(kLongWindow_s, 10 / std::abs(apart)));
+      }
+  plant_.set_tones(frequencies, window_s);
 }
 
 void SimulatedRoom::touch(std::int64_t frames) {

@@ -14,6 +14,7 @@
 #include "station/rig/rig.hpp"
 #include "station/session/capture_feed.hpp"
 #include "station/session/devices.hpp"
+#include "station/session/follow_loop.hpp"
 #include "station/session/inputs.hpp"
 #include "station/session/simulated_participant.hpp"
 #include "station/session/simulated_room.hpp"
@@ -63,6 +64,13 @@ class Stage {
   /// report lost frames (input::Xrun), and each interval that was played completely (input::Heard).
   virtual std::vector<Onset> present(std::span<const audio::PreparedBurst> intervals,
                                      std::int64_t earliest_ns) = 0;
+
+  /// Prepares the intervals of the next call of present() that follow the finger; the bursts are those that
+  /// it will present. Call it before each trial; without plans it does nothing. Throws audio::BurstRefused if
+  /// the stage cannot follow a plan.
+  virtual void follow(const FollowPlans& plans, std::span<const audio::PreparedBurst> intervals);
+  /// What the intervals have done that were presented last and follow the finger.
+  virtual Followed followed() { return {}; }
 
   /// Makes the burst that is playing glide to other tones within `seconds`, beginning now. Returns the frame
   /// at which the glide begins. If no burst is playing, or the burst is about to end, does nothing and

@@ -106,8 +106,10 @@ void VibrationWatch::set_drift(double share) {
   setup_.pick_ups = sensing::scaled(calibrated_, share);
 }
 
-void VibrationWatch::expect(std::span<const audio::PreparedBurst> intervals, std::int64_t quiet_until) {
+void VibrationWatch::expect(std::span<const audio::PreparedBurst> intervals, std::int64_t quiet_until,
+                            Commanded commanded) {
   std::vector<std::unique_ptr<sensing::IntervalProof>> proofs;
+  std::vector<std::unique_ptr<sensing::FollowProof>> follow_proofs;
   std::vector<sensing::TrialFinger::Range> ranges;
   for (const auto& burst : intervals)
     ranges.push_back({burst.start_frame, burst.start_frame + burst.length_frames});
@@ -115,10 +117,15 @@ void VibrationWatch::expect(std::span<const audio::PreparedBurst> intervals, std
     return sensing::IntervalPlan{burst,           setup_.rate_Hz,      setup_.channels,
                                  setup_.pick_ups, setup_.delay_frames, setup_.limits};
   };
-  for (const auto& burst : intervals)
+  for (const auto& burst : intervals) {
     proofs.push_back(std::make_unique<sensing::IntervalProof>(plan_of(burst)));
+    follow_proofs.push_back(burst.following.follows() ? std::make_unique<sensing::FollowProof>(plan_of(burst))
+                                                      : nullptr);
+  }
   const std::lock_guard lock(mutex_);
   proofs_ = std::move(proofs);
+  follow_proofs_ = std::move(follow_proofs);
+  commanded_ = std::move(commanded);
   silence_.reset();
   if (!intervals.empty()) {
     silence_.emplace(plan_of(intervals.front()));
@@ -137,6 +144,8 @@ void VibrationWatch::expect(std::span<const audio::PreparedBurst> intervals, std
 void VibrationWatch::cut(std::int64_t from_frame) {
   const std::lock_guard lock(mutex_);
   for (auto& proof : proofs_) proof->stopped(from_frame);
+  for (auto& proof : follow_proofs_)
+    if (proof) proof->stopped(from_frame);
   if (finger_) finger_->cut(from_frame);
 }
 
@@ -156,6 +165,8 @@ bool VibrationWatch::needs(std::int64_t first_frame, std::int64_t end_frame) con
 void VibrationWatch::push(const sensing::CaptureBlock& block) {
   const std::lock_guard lock(mutex_);
   for (auto& proof : proofs_) proof->push(block);
+  for (auto& proof : follow_proofs_)
+    if (proof) proof->push(block);
   if (silence_)
     if (const auto part = part_of(block, silence_begin_, silence_end_); part.frames() > 0)
       silence_->push(part);
@@ -178,10 +189,16 @@ std::int64_t VibrationWatch::known_at(std::size_t interval) const {
 }
 
 std::shared_ptr<const sensing::IntervalResult> VibrationWatch::result(std::size_t interval) {
-  const std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
   if (interval >= proofs_.size()) return nullptr;
   const auto contact = finger_ ? finger_->contact(interval) : setup_.in_contact;
   auto result = std::make_shared<sensing::IntervalResult>(proofs_[interval]->result(contact));
+  if (const auto follows = std::move(follow_proofs_[interval]); follows && commanded_) {
+    // This takes a while. The thread that pushes samples must not wait for it.
+    lock.unlock();
+    *result = follows->result(commanded_(interval), contact);
+    lock.lock();
+  }
   if (interval == 0) add_silence(silence_->result(), *result);
   return result;
 }
@@ -194,6 +211,11 @@ sensing::RawCapture VibrationWatch::raw() const {
 std::optional<sensing::FingerNow> VibrationWatch::finger_now() {
   const std::lock_guard lock(mutex_);
   return finger_ ? finger_->now() : std::nullopt;
+}
+
+std::optional<sensing::Readings> VibrationWatch::zero() {
+  const std::lock_guard lock(mutex_);
+  return finger_ ? finger_->zero() : std::nullopt;
 }
 
 std::shared_ptr<const sensing::TrialForces> VibrationWatch::forces(std::size_t interval) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -7,6 +8,7 @@
 
 #include "station/audio/prepared_burst.hpp"
 #include "station/rig/rig.hpp"
+#include "station/sensing/follow_proof.hpp"
 #include "station/sensing/interval_proof.hpp"
 #include "station/sensing/raw_ring.hpp"
 #include "station/sensing/silence_proof.hpp"
@@ -59,7 +61,11 @@ class VibrationWatch {
   /// Announces the intervals of a trial, with absolute start frames, in order. They replace those of the
   /// previous trial. Nobody is asked to touch the surface before playback frame `quiet_until`. From then
   /// on, but at most for the last 80 ms before the first interval, the surface must be silent.
-  void expect(std::span<const audio::PreparedBurst> intervals, std::int64_t quiet_until);
+  /// `commanded` gives the gains that an interval has followed; result() calls it for intervals that follow
+  /// gains.
+  using Commanded = std::function<sensing::CommandedEnvelope(std::size_t interval)>;
+  void expect(std::span<const audio::PreparedBurst> intervals, std::int64_t quiet_until,
+              Commanded commanded = {});
   /// Tells the watch that all bursts ramp down from this playback frame on. Intervals that have not begun by
   /// then are dropped.
   void cut(std::int64_t from_frame);
@@ -85,6 +91,9 @@ class VibrationWatch {
   /// Returns force and movement of the finger at this moment. Empty if they are not known, and without force
   /// cells.
   std::optional<sensing::FingerNow> finger_now();
+  /// Readings of the force cells without a finger before the expected trial; see
+  /// sensing::TrialFinger::zero().
+  std::optional<sensing::Readings> zero();
   /// Returns what the force cells measured in the trial, if `interval` is its last interval. Null for other
   /// intervals, and without force cells.
   std::shared_ptr<const sensing::TrialForces> forces(std::size_t interval);
@@ -94,6 +103,9 @@ class VibrationWatch {
   const std::vector<sensing::PickUp> calibrated_;
   mutable std::mutex mutex_;
   std::vector<std::unique_ptr<sensing::IntervalProof>> proofs_;
+  std::vector<std::unique_ptr<sensing::FollowProof>>
+      follow_proofs_;  ///< null for intervals that follow nothing
+  Commanded commanded_;
   std::optional<sensing::SilenceProof> silence_;      ///< empty if no interval is expected
   std::int64_t silence_begin_ = 0, silence_end_ = 0;  ///< captured frames of the silence
   std::optional<sensing::TrialFinger> finger_;

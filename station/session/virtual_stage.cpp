@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "station/io/guard.hpp"
@@ -23,12 +24,15 @@ class VirtualStage : public Stage {
     if (room_) {
       watch_.emplace(room_->capture());
       capture_.emplace(triggers, room_->capture().delay_frames);
+      loop_.emplace(*stream_, room_->capture().channels);
       stream_->listen([this](std::int64_t first_frame, std::span<const std::int32_t> played) {
         const auto frames = static_cast<std::int64_t>(played.size()) / stream_->config().output.channels;
         const bool watched =
             touchable_ || watch_->needs(first_frame - kLead_frames, first_frame + frames + kLead_frames);
         if (!watched && !triggers_.needs(first_frame - kLead_frames, first_frame + frames)) return;
         const auto captured = room_->advance(first_frame, played);
+        loop_->captured(captured.first_frame, 0, captured.samples);
+        loop_->gather();
         if (watched) watch_->push(captured);
         capture_->push(captured);
       });
@@ -68,6 +72,7 @@ class VirtualStage : public Stage {
     unheard_.clear();
     measured_ = false;
     touchable_ = false;
+    if (loop_) loop_->end();
     std::vector<Input> stops;
     for (auto& input : inputs_.drain()) {
       if (!input.is<input::Stop>()) continue;
@@ -95,11 +100,21 @@ class VirtualStage : public Stage {
     if (watch_) {
       const auto bursts = scheduled(intervals, presented_);
       room_->expect(intervals);
-      watch_->expect(bursts, stream_->frame());
+      watch_->expect(bursts, stream_->frame(), [this](std::size_t i) { return loop_->commanded(i); });
       room_->touch(bursts.back().start_frame + bursts.back().length_frames - stream_->frame());
+      if (loop_->prepared()) {
+        const auto delay = static_cast<std::int64_t>(std::floor(room_->capture().delay_frames));
+        loop_->begin(followed_of(presented_), watch_->zero(), {-delay, 0});
+      }
     }
     return onsets;
   }
+
+  void follow(const FollowPlans& plans, std::span<const audio::PreparedBurst> intervals) override {
+    if (!loop_) return Stage::follow(plans, intervals);
+    loop_->prepare(plans, intervals, room_->capture().finger);
+  }
+  Followed followed() override { return loop_ ? loop_->take() : Followed{}; }
 
   std::optional<std::int64_t> glide(const audio::ToneSet& to, double seconds) override {
     const auto change = glide_to(*stream_, presented_, to, seconds);
@@ -116,6 +131,7 @@ class VirtualStage : public Stage {
     if (watch_) {
       watch_->cut(from);
       room_->lift(from - stream_->frame());
+      loop_->cut(from);
     }
     quiet_ns_ = ramp_down(*stream_, presented_, now_ns_);
     triggers_.cut(from, stream_->frame_at(quiet_ns_).value(), now_ns_);
@@ -191,8 +207,8 @@ class VirtualStage : public Stage {
     now_ns_ = std::max(now_ns_, time_ns);
     const auto frames = stream_->frame_at(now_ns_).value() - stream_->frame();
     if (frames > 0) stream_->advance(frames);
-    while (stream_->poll()) {
-    }
+    while (const auto event = stream_->poll())
+      if (loop_) loop_->note(*event);
   }
 
   /// Returns the amplifier guard's state machine, which works here without GPIO lines. All threads are
@@ -223,6 +239,7 @@ class VirtualStage : public Stage {
   static constexpr std::int64_t kLead_frames = 9600;
   std::unique_ptr<SimulatedRoom> room_;  ///< the simulated surface and finger; null if nothing is captured
   std::optional<VibrationWatch> watch_;
+  std::optional<FollowLoop> loop_;  ///< empty if nothing is captured
   /// true while the simulated participant touches the surface or may soon touch it; every frame must then be
   /// simulated
   bool touchable_ = false;
@@ -230,6 +247,11 @@ class VirtualStage : public Stage {
 };
 
 }  // namespace
+
+void Stage::follow(const FollowPlans& plans, std::span<const audio::PreparedBurst>) {
+  if (std::any_of(plans.begin(), plans.end(), [](const auto& plan) { return plan != nullptr; }))
+    throw audio::BurstRefused("the surface cannot follow the finger: nothing is captured here");
+}
 
 std::unique_ptr<Stage> virtual_stage(const audio::StreamConfig& stream, SimulatedParticipant& participant,
                                      Inputs& inputs, std::unique_ptr<SimulatedRoom> room,

@@ -335,6 +335,16 @@ double Observer::share(const Question& q, int choice) const {
   return (1 - p.lapse) * share + p.lapse * chance;
 }
 
+/// Draws how often the observer asks for the intervals again. The draws are its own, so that answers and
+/// settings are the same, however often it asks.
+int Observer::asks_again(core::DrawKey key, int most) const {
+  key.stream = core::Stream::asking_again;
+  core::Draws draws(key);
+  int times = 0;
+  while (times < most && draws.uniform() < parameters_.again) ++times;
+  return times;
+}
+
 Reply Observer::answer(const Question& q) const {
   const auto& p = parameters_;
   auto key = q.key;
@@ -388,6 +398,7 @@ Reply Observer::answer(const Question& q) const {
     reply.confidence = confidence(q, *reply.choice, draws);
     reply.confidence_time_s = std::max(p.residual_s + p.travel_s, core::kConfidenceGuard_s);
   }
+  if (!anticipates) reply.again = asks_again(q.key, q.again);
   return reply;
 }
 
@@ -411,8 +422,11 @@ Setting Observer::adjust(const Adjustment& a) const {
     setting.moves.push_back({time_s, std::clamp(wanted + overshoot, a.low, a.high)});
   }
   setting.done_s = time_s + parameters_.travel_s;
+  setting.again = asks_again(a.key, a.again);
+  setting.again_s = nondecision_s();
   if (a.within_s <= 0) return setting;
   const double share = std::min(1.0, 0.9 * a.within_s / setting.done_s);
+  setting.again_s = std::min(setting.again_s, 0.9 * a.within_s);
   for (auto& move : setting.moves) move.time_s *= share;
   setting.done_s *= share;
   return setting;
@@ -431,6 +445,7 @@ void check(const Parameters& p) {
   require(p.lapse >= 0 && p.lapse <= 1 && p.anticipation >= 0 && p.anticipation <= 1,
           "lapse and anticipation must be probabilities from 0 to 1");
   require(p.unsure >= 0 && p.unsure <= 1, "unsure must be a proportion from 0 to 1");
+  require(p.again >= 0 && p.again <= 1, "again must be a probability from 0 to 1");
   require(p.bound > 0 && p.residual_s >= 0 && p.travel_s >= 0,
           "bound must be above 0, and residual and travel 0 or more");
   require(p.drift_sd >= 0 && p.start_range >= 0 && p.start_range < 1,
@@ -459,6 +474,7 @@ constexpr Key kKeys[] = {{"threshold", nullptr, &Parameters::threshold, true},
                          {"criterion", &Parameters::criterion, nullptr, true},
                          {"scatter", &Parameters::scatter, nullptr, false},
                          {"unsure", &Parameters::unsure, nullptr, false},
+                         {"again", &Parameters::again, nullptr, false},
                          {"bound", &Parameters::bound, nullptr, false},
                          {"residual", &Parameters::residual_s, nullptr, false},
                          {"travel", &Parameters::travel_s, nullptr, false},

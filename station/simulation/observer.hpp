@@ -59,6 +59,10 @@ struct Parameters {
   /// fraction of the guesses that the observer admits, where a question allows it: answers that would be
   /// right only by chance
   double unsure = 0.5;
+  /// probability with which the observer asks for the intervals again instead of answering, each time that it
+  /// may. It judges all presentations together as it would judge one: asking again costs time and helps
+  /// nothing
+  double again = 0;
   double anticipation = 0;  ///< fraction of trials answered before anything can be felt
 };
 
@@ -133,6 +137,7 @@ struct Question {
   int answers = 2;
   /// for `right_answer`: true if the observer may say that it would guess; `choice` is then `answers`
   bool unsure = false;
+  int again = 0;        ///< how often the observer may ask for the intervals again
   bool rating = false;  ///< true if the answers are the points of a scale, from low to high levels
   Middle middle = Middle::criterion;
   std::optional<ValueQuestion> value;  ///< set if the answer is a number
@@ -161,6 +166,7 @@ struct Reply {
   double confidence_time_s = 0;  ///< time from the answer to the statement of confidence
   /// time for which the finger was away from the surface before the answer; 0 if that is not known
   double travel_s = 0;
+  int again = 0;  ///< how often the observer asks for the intervals again before it answers
 };
 
 /// A slider to be adjusted: its starting position and its range, and the setting at which the stimuli are
@@ -171,6 +177,7 @@ struct Adjustment {
   /// time from the onset of the scene that the slider changes until the setting must be made; 0: as long as
   /// the observer likes
   double within_s = 0;
+  int again = 0;  ///< how often the observer may ask for the standard again
   core::DrawKey key;
 };
 
@@ -182,6 +189,9 @@ struct Move {
 struct Setting {
   std::vector<Move> moves;  ///< in order of time; the last one is the setting
   double done_s = 0;        ///< time at which the participant presses Done
+  /// how often the participant asks for the standard again before it moves the slider, and at which time
+  int again = 0;
+  double again_s = 0;
 };
 
 /// A simulated participant. It keeps no state: it gives the same answer to the same question, on every
@@ -227,6 +237,7 @@ class Observer {
   double category_sd(const Question& question) const;
   double value(const Question& question, core::Draws& draws) const;
   int confidence(const Question& question, int choice, core::Draws& draws) const;
+  int asks_again(core::DrawKey key, int most) const;
   Parameters parameters_;
 };
 

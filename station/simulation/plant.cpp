@@ -112,12 +112,16 @@ void Plant::prepare() {
   }
 }
 
-void Plant::set_tones(std::vector<double> frequency_Hz) {
+void Plant::set_tones(std::vector<double> frequency_Hz, double window_s) {
+  const int window =
+      std::clamp(static_cast<int>(std::lround(window_s * setup_.rate_Hz / step_frames_)), 1, LockIn::kWindow);
   std::vector<Tone> tones;
   for (const double f : frequency_Hz) {
-    const auto old = std::find_if(tones_.begin(), tones_.end(),
-                                  [&](const Tone& t) { return t.lock_in.frequency_Hz() == f; });
-    tones.push_back(old != tones_.end() ? *old : Tone{LockIn(f, setup_.rate_Hz, step_frames_), nullptr});
+    const auto old = std::find_if(tones_.begin(), tones_.end(), [&](const Tone& t) {
+      return t.lock_in.frequency_Hz() == f && t.lock_in.window_steps() == window;
+    });
+    tones.push_back(old != tones_.end() ? *old
+                                        : Tone{LockIn(f, setup_.rate_Hz, step_frames_, window), nullptr});
   }
   tones_ = std::move(tones);
   prepare();
@@ -268,10 +272,9 @@ void Plant::write(std::span<double> out) {
   const std::array bridges{capture.bridge_a, capture.bridge_b, capture.lateral};
   for (std::size_t c = 0; c < bridges.size(); ++c)
     if (bridges[c])
-      put(*bridges[c]) =
-          now_.bridge_dead[c]
-              ? 0
-              : wires_.bridge(static_cast<int>(c), truth_.reading_N[c], world_, !now_.bridge_open[c]);
+      put(*bridges[c]) = now_.bridge_dead[c] ? 0
+                                             : wires_.bridge(static_cast<int>(c), truth_.reading_N[c], world_,
+                                                             !now_.bridge_open[c]);
   for (std::size_t k = 0; k < setup_.pickups.size(); ++k) {
     const Pickup& pickup = setup_.pickups[k];
     const double signal = pickup.full_scale_per_um * filters_[filter_].second.output(k);

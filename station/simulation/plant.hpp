@@ -50,8 +50,9 @@ class Plant {
 
   /// Names the tones that the finger can feel from now on. Solves the surface for new frequencies (0.1 ms
   /// each, 20 ms for a thick plate), so call it between trials. Tones that were already named are followed
-  /// without interruption.
-  void set_tones(std::vector<double> frequency_Hz);
+  /// without interruption. The finger feels their amplitudes half a `window_s` late; a shorter window than 10
+  /// ms needs tones that are further apart (LockIn).
+  void set_tones(std::vector<double> frequency_Hz, double window_s = 0.01);
   /// Adds a fault. It must begin at a frame that has not been captured yet.
   void add(const Fault& fault);
   /// Ends all faults with the next captured frame.
@@ -74,8 +75,8 @@ class Plant {
   const Truth& truth() const { return truth_; }
   /// Number of frames captured so far.
   std::int64_t frames() const { return captured_; }
-  /// Returns the complex amplitude z (um) with which this tone (an index) moves the drive edge, as it was 5
-  /// ms ago. The motion at frame n of the laboratory is Re(z exp(2 pi i f n / rate)).
+  /// Returns the complex amplitude z (um) with which this tone (an index) moves the drive edge, as it was
+  /// half a window ago. The motion at frame n of the laboratory is Re(z exp(2 pi i f n / rate)).
   std::complex<double> tone_um(std::size_t tone) const;
   /// Displacement under a fingertip at x (rms over its length), per displacement of the drive edge.
   double gain_at(std::size_t tone, double x_m) const;

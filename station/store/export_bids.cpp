@@ -79,6 +79,10 @@ Texts texts_of(const SessionStart& start) {
       const auto question = text_of(at(*task, "question"), start.language);
       if (!question.empty()) texts.instructions += (texts.instructions.empty() ? "" : "\n") + question;
     }
+    if (const auto* tasks = at(document, "tasks"))
+      for (const auto& task : tasks->entries)
+        texts.instructions += (texts.instructions.empty() ? "" : "\n") + task.key + ": " +
+                              text_of(at(task.value, "question"), start.language);
   } catch (const core::BadInput&) {
     // Leave out texts that this release can no longer read. The data are exported anyway.
   }

@@ -256,8 +256,18 @@ ExportColumns trial_columns(const std::vector<ExportedFactor>& factors) {
        "tare_mn",
        "mu",
        "silence_db",
-       "silence_tone_db"});
+       "silence_tone_db",
+       "followed",
+       "mu_asked",
+       "mu_commanded",
+       "mu_felt",
+       "follow_lag_ms",
+       "follow_inside",
+       "follow_share",
+       "envelope_error_db",
+       "envelope_lag_us"});
   add(columns, previous, {"level", "correct_response", "response", "correct", "outcome"});
+  add(columns, trial, {"again"});
   columns.push_back(columns_version());
   add_factors(columns, at, factors);
   return columns;

@@ -30,8 +30,10 @@ std::vector<Column> list_columns() {
       {"segment_id", "Run of the program within the session, from 1", "", ""},
       {"trial_index", "Index of the trial among all trials presented in the session, from 0", "", ""},
       {"stream",
-       "What recorded the signal: finger means the force cells, raw all captured channels of the sound card",
-       "", "finger | raw"},
+       "What recorded the signal: finger means the force cells, follow and envelope what a scene that "
+       "follows "
+       "the finger did, raw all captured channels of the sound card",
+       "", "finger | follow | envelope | raw"},
       {"onset", "Time of the signal's first point, from the start of the segment", "s", ""},
       {"start_frame", "Playback frame of the signal's first point", "", ""},
       {"rate_hz", "Points per second", "Hz", ""},

@@ -533,6 +533,10 @@ const Table<TrialRow>& trial_table() {
            {"points", "points",
             "Points that the result of the trial was worth to the participant; n/a if the "
             "protocol gives none, and for void trials"}),
+       field<&T::given, &ResponseRow::again>(
+           {"again", "again",
+            "How often the intervals were presented again because the participant asked for it; all times of "
+            "the trial are those of the last time. n/a if the task does not offer it"}),
        field<&T::finger, &FingerRow::sensing>(
            {"sensing", "sensing",
             "Whether the touch met the requirements of the protocol's [sensing]: ok, or too few "
@@ -590,7 +594,47 @@ const Table<TrialRow>& trial_table() {
            {"silence_tone_dB", "silence_tone_db",
             "Level of the strongest tone in this silence, relative to the planned vibration; n/a if "
             "no tone stands out of the noise",
-            "dB"})}};
+            "dB"}),
+       field<&T::follow, &FollowRow::followed>(
+           {"followed", "followed",
+            "Whether the surface followed the finger: ok, or what has interrupted it (late, reference, "
+            "force, "
+            "lifted, position, saturated; several with spaces between them), or unrecorded; n/a if no scene "
+            "of the trial "
+            "follows the finger"}),
+       field<&T::follow, &FollowRow::mu_asked>(
+           {"mu_asked", "mu_asked",
+            "Mean coefficient of friction that the scene presented last asks for at the finger, over the "
+            "times at which the surface followed it and it slid; n/a if the scene asks for a displacement. "
+            "Without resting_friction in the protocol, friction at rest is the one with which mu_commanded "
+            "equals mu_felt"}),
+       field<&T::follow, &FollowRow::mu_commanded>(
+           {"mu_commanded", "mu_commanded",
+            "Mean coefficient of friction at these times by the friction table and the commanded envelope"}),
+       field<&T::follow, &FollowRow::mu_felt>(
+           {"mu_felt", "mu_felt",
+            "Mean coefficient of friction at these times as the force cells measured it"}),
+       field<&T::follow, &FollowRow::lag_ms>({"follow_lag_ms", "follow_lag_ms",
+                                              "Time by which felt friction is behind what was asked for at "
+                                              "the finger; n/a if that varied by less "
+                                              "than 5 %",
+                                              "ms"}),
+       field<&T::follow, &FollowRow::inside>({"follow_inside", "follow_inside",
+                                              "Fraction of these times at which felt friction differs by "
+                                              "less than 10 % from what was asked for"}),
+       field<&T::follow, &FollowRow::share>(
+           {"follow_share", "follow_share",
+            "Fraction of the interval presented last in which the surface followed the finger"}),
+       field<&T::follow, &FollowRow::envelope_error_dB>({"envelope_error_dB", "envelope_error_db",
+                                                         "Difference between the vibration's envelope at the "
+                                                         "pick-up and the commanded one, relative to the "
+                                                         "commanded (rms); of several intervals, the largest",
+                                                         "dB"}),
+       field<&T::follow, &FollowRow::envelope_lag_us>({"envelope_lag_us", "envelope_lag_us",
+                                                       "Time by which the envelope at the pick-up is behind "
+                                                       "the commanded one; of several intervals, the "
+                                                       "one furthest from 0",
+                                                       "us"})}};
   return table;
 }
 
@@ -644,7 +688,8 @@ const Table<ToneRow>& tone_table() {
        field<&T::of_interval>({"of_interval", "of_interval",
                                "Number of the task's interval to which this one belongs, in the order "
                                "presented, from 0; differs from interval_index if an interval of the task "
-                               "has several parts"})}};
+                               "has several parts, or is presented again; -1 for what comes before the first "
+                               "interval"})}};
   return table;
 }
 

@@ -182,6 +182,8 @@ CREATE TABLE trial (
     CHECK ((confidence_time_s IS NULL) = (confidence IS NULL) AND coalesce(confidence_time_s, 0) >= 0),
   -- what the result was worth to the participant
   points REAL CHECK (points IS NULL OR outcome NOT IN ('aborted', 'fault')),
+  -- how often the participant had the intervals presented again; NULL where nobody can
+  again INTEGER CHECK (again >= 0),
   -- what force sensors measured
   sensing TEXT NOT NULL
     CHECK (sensing IN ('', 'ok', 'strokes', 'light', 'hard', 'slow', 'fast', 'lost', 'wire', 'tare')),
@@ -199,6 +201,16 @@ CREATE TABLE trial (
   boundary_se_mm REAL,
   lag_mm REAL,
   tare_mN REAL,
+  -- how the surface followed the finger
+  followed TEXT NOT NULL,
+  mu_asked REAL,
+  mu_commanded REAL,
+  mu_felt REAL,
+  follow_lag_ms REAL,
+  follow_inside REAL CHECK (follow_inside BETWEEN 0 AND 1),
+  follow_share REAL CHECK (follow_share BETWEEN 0 AND 1),
+  envelope_error_dB REAL,
+  envelope_lag_us REAL,
   UNIQUE (session_id, trial_index),
   FOREIGN KEY (session_id, segment_index) REFERENCES segment (session_id, segment_index),
   FOREIGN KEY (session_id, block_index, attempt) REFERENCES block (session_id, block_index, attempt),

@@ -8,10 +8,10 @@ namespace turnpoint::store {
 
 /// The number of the schema, which databases have as PRAGMA user_version. It changes with the tables, the
 /// columns, and the bytes that the checksums cover. The program reads no other schema.
-constexpr int kSchema = 12;
+constexpr int kSchema = 13;
 
 /// The commit whose `turnpoint export` reads the schemas before the present one.
-constexpr const char* kLastReader = "f7e446de";
+constexpr const char* kLastReader = "fb95ea6f";
 
 /// Identifies the files of the program as PRAGMA application_id: "TPNT".
 constexpr int kApplicationId = 0x54504e54;

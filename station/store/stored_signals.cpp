@@ -23,8 +23,26 @@ const char* meaning_of(const std::string& channel) {
       {"lateral", "Force of the finger along the surface, positive towards larger positions"},
       {"position",
        "Position of the finger from the wide end of the surface; missing if the finger does not press"},
-      {"speed",
-       "Speed of the finger, positive towards larger positions; missing if the position is missing"}};
+      {"speed", "Speed of the finger, positive towards larger positions; missing if the position is missing"},
+      {"gain",
+       "Gain of the drive at this frame, as it was commanded; 1 is as planned; missing between intervals"},
+      {"place",
+       "Place of the contact, from the wide end of the surface, as predicted for this frame; missing if not "
+       "known"},
+      {"asked",
+       "What the scene asks for at that place: the coefficient of friction, or the displacement (um)"},
+      {"commanded", "Coefficient of friction there by the friction table and the commanded envelope"},
+      {"felt",
+       "Measured coefficient of friction of the newest forces, which were measured `age` earlier; missing if "
+       "the "
+       "finger does not slide"},
+      {"age", "Time from the newest forces to this frame"},
+      {"at_rest", "Coefficient of friction of the surface at rest, as the loop estimates it"},
+      {"following", "0: the gain rests; 1: the gain follows the finger"},
+      {"fault",
+       "What keeps the surface from following at this moment: 0 nothing, 1 late, 2 reference, 3 force, 4 "
+       "lifted, "
+       "5 position, 6 saturated"}};
   if (channel.starts_with("channel_"))
     return "What was captured on this channel, as it came from the converter: 2147483648 is full scale; a "
            "sample of -2147483648 is stored as -2147483647";

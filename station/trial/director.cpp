@@ -10,6 +10,7 @@
 #include "station/procedure/state_hash.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/trial/director_state.hpp"
 #include "station/trial/orders.hpp"
 #include "station/trial/timing.hpp"
@@ -21,6 +22,7 @@ using protocol::Block;
 
 void Director::State::enter_block() {
   trial = shown = right = 0;
+  std::ranges::fill(task_trials, 0);
   spent_s = 0;
   specs.clear();
   procedures.clear();
@@ -35,6 +37,7 @@ void Director::State::enter_block() {
   runs.clear();
   const auto* b = now();
   if (b == nullptr) return;
+  block_task = protocol::task_of(protocol, "", b->name);
   for (const auto& name : b->procedures) {
     specs.push_back(find_spec(name));
     const auto key = procedure::key_of(seed, static_cast<int>(block), procedures.size(), attempt);
@@ -73,6 +76,7 @@ procedure::Context Director::State::context_for() const {
 void Director::State::learn(const TrialEnd& end) {
   if (current_procedure == no_procedure) return;
   const auto index = static_cast<std::size_t>(current_procedure);
+  const auto& task = seen_by(protocol::task_of(protocol, specs[index]->name, "")).task;
   last_procedure = current_procedure;
   std::erase(pass, current_procedure);
   if (specs[index]->kind == procedure::Kind::adjustment && end.setting &&
@@ -80,8 +84,7 @@ void Director::State::learn(const TrialEnd& end) {
     return procedures[index]->record_setting(*end.setting);
   auto answer = procedure::Answer::none;
   if (end.outcome == core::Outcome::answered && end.response)
-    answer =
-        protocol::learned_from(*specs[index], protocol::answer_id(protocol.task, *end.response), end.correct);
+    answer = protocol::learned_from(*specs[index], protocol::answer_id(task, *end.response), end.correct);
   procedures[index]->record(answer);
 }
 
@@ -92,7 +95,7 @@ bool Director::State::time_is_up() const { return now()->lasts_s && spent_s >= *
 /// long as a quick answer takes.
 double Director::State::trial_s() const {
   constexpr double quick_s = 0.5;
-  return trial > 0 && spent_s > 0 ? spent_s / trial : protocol::quick_trial_s(protocol, quick_s);
+  return trial > 0 && spent_s > 0 ? spent_s / trial : protocol::quick_trial_s(seen_by(block_task), quick_s);
 }
 
 int Director::State::block_expected(const Block& b) const {
@@ -152,6 +155,8 @@ int Director::block_index() const { return static_cast<int>(state_->block); }
 int Director::attempt() const { return state_->attempt; }
 int Director::blocks() const { return static_cast<int>(state_->blocks.size()); }
 
+std::size_t Director::task() const { return state_->current ? state_->current->task : state_->block_task; }
+
 bool Director::ready() const {
   const auto ready = [](const auto& procedure) { return procedure->ready(); };
   return state_->current || std::ranges::all_of(state_->procedures, ready);
@@ -173,6 +178,7 @@ void Director::record(const TrialEnd& end) {
   const auto type = s.current->type;
   s.last_counts = type != core::TrialType::warmup;
   const auto level = s.current->level;
+  const auto task = s.current->task;
   s.current.reset();
   if (type == core::TrialType::warmup) {
     --s.warmups, ++s.warmups_given;
@@ -182,7 +188,7 @@ void Director::record(const TrialEnd& end) {
   s.learn(end);
   if (s.now()->kind == protocol::BlockKind::friction_table)
     s.strokes[s.block].push_back({*level, end.friction});
-  ++s.trial, ++s.done;
+  ++s.trial, ++s.done, ++s.task_trials[task];
   if (type != core::TrialType::catch_trial) ++s.shown;
   if (end.correct.value_or(false)) ++s.right;
 }
@@ -231,7 +237,7 @@ void Director::warm_up(int trials) {
 
 void Director::rested() {
   state_->fresh = true;
-  if (auto& current = state_->current) current->fresh = state_->is_fresh();
+  if (auto& current = state_->current) current->fresh = state_->is_fresh(current->task);
 }
 
 const std::vector<Director::Stroke>& Director::strokes(int block_index) const {

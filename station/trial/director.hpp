@@ -22,6 +22,7 @@ struct TrialSpec {
   int trial_in_block = 0;
   core::TrialType type = core::TrialType::experimental;
   std::string procedure;  ///< name of the procedure that chose the level; "" if no procedure did
+  std::size_t task = 0;   ///< which task it asks: see protocol::of_task()
   std::optional<double> level;
   protocol::Factors factors;
   std::vector<std::vector<std::string>> intervals;  ///< scene names in the order of presentation
@@ -86,6 +87,9 @@ class Director {
   int block_index() const;
   int attempt() const;
   int blocks() const;
+
+  /// The task of the trial that next() returned last, until it is recorded; then that of the block.
+  std::size_t task() const;
 
   /// True if next() would not wait for the program of a procedure.
   bool ready() const;

@@ -73,10 +73,10 @@ bool Director::State::can_follow(const std::map<std::string, int>& left, const s
 bool Director::State::leaves_order(const TrialSpec& spec, int spare) {
   return std::ranges::all_of(runs, [&](const auto& rule) {
     const auto& key = rule.first;
-    if (key != procedure::kRightAnswer || orders.size() == 1) return leaves_lists(spec, key, spare);
+    if (key != procedure::kRightAnswer || orders().size() == 1) return leaves_lists(spec, key, spare);
     std::map<std::string, int> left;
     const int end = trial - trial % run_of_orders() + run_of_orders();
-    for (int other = trial; other < end && orders.front().correct; ++other)
+    for (int other = trial; other < end && orders().front().correct; ++other)
       if (other != deviation.order_of.value_or(trial))
         ++left[std::to_string(*presented_order(order_key(other)).correct)];
     return can_follow(left, key, spec, spare);
@@ -98,7 +98,7 @@ const Director::State::Left& Director::State::lists_left(const TrialSpec& spec, 
     other.factors = spec.factors;
     for (const auto& candidate : procedures[i]->candidates()) {
       set_proposal(candidate.proposal, from, other.factors);
-      other.correct = correct_choice(protocol.task, other.factors, orders.front().intervals);
+      other.correct = correct_choice(seen_by(block_task).task, other.factors, orders().front().intervals);
       const auto value = value_of(key, other);
       all[value] += candidate.in_all;
       if (candidate.in_repeat > 0) soon[value] += candidate.in_repeat;
@@ -126,7 +126,7 @@ bool Director::State::leaves_lists(const TrialSpec& spec, const std::string& key
 /// True if other draws can give a trial of the current procedure, or a catch trial, factors with other runs.
 bool Director::State::draws_factors(const TrialSpec& spec) const {
   if (current_procedure == no_procedure) return true;
-  const bool decides = runs.count(procedure::kRightAnswer) && !orders.front().correct;
+  const bool decides = runs.count(procedure::kRightAnswer) && !orders().front().correct;
   const auto& from = *specs[static_cast<std::size_t>(current_procedure)];
   const auto sets = [&](const std::string& name) {
     return name == from.level || (from.second && name == from.second->level) ||
@@ -158,7 +158,7 @@ std::optional<TrialSpec> Director::State::with_short_runs(const TrialSpec& first
       if (i != first_procedure) others.push_back(i);
   // the first trials of this run of orders, or of the next one, that have different orders
   std::vector<int> places{trial};
-  if (orders.size() > 1)
+  if (orders().size() > 1)
     for (int other = trial + 1; other < trial - trial % run_of_orders() + 2 * run_of_orders(); ++other) {
       const auto& its = presented_order(order_key(other));
       if (std::ranges::none_of(places, [&](int of) { return same(presented_order(order_key(of)), its); }))

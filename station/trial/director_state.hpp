@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "station/procedure/procedure.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/trial/director.hpp"
 #include "station/trial/orders.hpp"
 
@@ -21,7 +22,9 @@ struct Director::State {
   procedure::Programs* programs;
   procedure::EarlierTrials earlier;
   std::vector<protocol::Block> blocks;
-  std::vector<IntervalOrder> orders;  ///< all that the task can have
+  std::vector<std::vector<IntervalOrder>> orders_by_task;  ///< all that each task can have
+  std::size_t block_task = 0;    ///< the task of trials of the block that no procedure chooses
+  std::vector<int> task_trials;  ///< how many of the block's trials that count asked each task
   std::size_t block = 0;
   /// number of the current attempt at the block, and of the first attempt since the session was started or
   /// restarted
@@ -77,10 +80,15 @@ struct Director::State {
         programs(starts),
         earlier(std::move(before)),
         blocks(protocol::block_order(p, visit)),
-        orders(orders_of(p.task)) {
+        task_trials(protocol::tasks_of(p).size()) {
+    for (const auto* one : protocol::tasks_of(p)) orders_by_task.push_back(orders_of(one->task));
     enter_block();
   }
 
+  /// The protocol as the task of a trial sees it.
+  const protocol::Protocol& seen_by(std::size_t task) const { return protocol::of_task(protocol, task); }
+  /// The orders of the block's task. Limits of runs, which look at them, do not go with several tasks.
+  const std::vector<IntervalOrder>& orders() const { return orders_by_task[block_task]; }
   const protocol::Block* now() const {
     return ended.empty() && block < blocks.size() ? &blocks[block] : nullptr;
   }
@@ -109,9 +117,10 @@ struct Director::State {
   bool catch_due() const;
   TrialSpec blank(core::TrialType type) const;
   const IntervalOrder& presented_order(int key) const;
+  int order_number(const TrialSpec& spec) const;
   void complete(TrialSpec& spec) const;
-  bool is_fresh() const;
-  std::optional<SliderSpan> slider(int key) const;
+  bool is_fresh(std::size_t task) const;
+  std::optional<SliderSpan> slider(std::size_t of_task, int key) const;
   TrialSpec warmup_trial() const;
   TrialSpec catch_trial() const;
   std::optional<TrialSpec> practice_trial() const;

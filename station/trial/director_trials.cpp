@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "station/protocol/answers.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/trial/director_state.hpp"
 #include "station/trial/orders.hpp"
 
@@ -119,6 +120,7 @@ TrialSpec Director::State::blank(core::TrialType type) const {
   spec.block_index = static_cast<int>(block);
   spec.attempt = attempt;
   spec.trial_in_block = trial;
+  spec.task = block_task;
   spec.type = now()->practice ? core::TrialType::practice : type;
   spec.factors = drawn_factors();
   spec.timeouts_are_data = timeouts_are_data();
@@ -126,27 +128,41 @@ TrialSpec Director::State::blank(core::TrialType type) const {
 }
 
 const IntervalOrder& Director::State::presented_order(int key) const {
-  return order_for(orders, seed, static_cast<int>(block), attempt, key);
+  return order_for(orders(), seed, static_cast<int>(block), attempt, key);
+}
+
+/// The number by which order_for() finds the trial's order of intervals. In a block of several tasks, each
+/// counts its own trials, so that its orders come equally often, and has orders of its own: those of one task
+/// must not tell those of another.
+int Director::State::order_number(const TrialSpec& spec) const {
+  if (spec.type == core::TrialType::warmup) return warmups_given;
+  if (protocol::tasks_in(protocol, *now()).size() < 2) return order_key(deviation.order_of.value_or(trial));
+  const int apart = 1'000'000 * run_of_orders();
+  return static_cast<int>(spec.task) * apart + task_trials[spec.task];
 }
 
 /// True if the next trial is the first one of the block or after a rest, and a part is then longer.
-bool Director::State::is_fresh() const {
-  const auto parts = protocol::parts_of(protocol.task);
-  return fresh && std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part.first_s; });
+bool Director::State::is_fresh(std::size_t task) const {
+  if (!fresh) return false;
+  const auto parts = protocol::parts_of(seen_by(task).task);
+  return std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part.first_s; });
 }
 
 /// Fills in what follows from the level and the factors: order of intervals, right answer, roving, times.
 void Director::State::complete(TrialSpec& spec) const {
   const int key = spec.type == core::TrialType::warmup ? -1 - warmups_given : trial;
-  const auto& order = presented_order(
-      spec.type == core::TrialType::warmup ? warmups_given : order_key(deviation.order_of.value_or(trial)));
+  const auto& task = seen_by(spec.task).task;
+  const auto& order =
+      order_for(orders_by_task[spec.task], seed, static_cast<int>(block), attempt, order_number(spec));
   spec.intervals = order.intervals;
-  spec.correct = order.correct ? order.correct : correct_choice(protocol.task, spec.factors, order.intervals);
-  spec.slider = slider(key);
-  spec.fresh = is_fresh();
+  spec.correct = order.correct ? order.correct : correct_choice(task, spec.factors, order.intervals);
+  spec.slider = slider(spec.task, key);
+  spec.fresh = is_fresh(spec.task);
   auto rove = draws(Stream::roving, key);
-  for (const auto& interval : spec.intervals) {
-    const auto parts = protocol::parts_of(protocol.task, interval);
+  std::vector<std::vector<protocol::Part>> lists;
+  if (!task.before.empty()) lists.push_back(task.before);
+  for (const auto& interval : spec.intervals) lists.push_back(protocol::parts_of(task, interval));
+  for (const auto& parts : lists) {
     const auto range = [&](const protocol::Part& part) {
       return protocol.scenes.at(part.scenes.front()).rove_dB;
     };
@@ -162,14 +178,13 @@ void Director::State::complete(TrialSpec& spec) const {
                            : draws(stream, key).uniform(from.low, from.high);
   };
   spec.iti_s = time_s(protocol.timing.iti_s, Stream::intertrial);
-  if (const auto& foreperiod = protocol.task.foreperiod_s)
-    spec.foreperiod_s = time_s(*foreperiod, Stream::foreperiod);
+  if (const auto& foreperiod = task.foreperiod_s) spec.foreperiod_s = time_s(*foreperiod, Stream::foreperiod);
 }
 
 /// Returns the window that the slider shows. It is a fifth wider than the factor's range. This surplus is
 /// divided between the two ends at random, in whole steps.
-std::optional<SliderSpan> Director::State::slider(int key) const {
-  const auto& task = protocol.task;
+std::optional<SliderSpan> Director::State::slider(std::size_t of_task, int key) const {
+  const auto& task = seen_by(of_task).task;
   for (const auto& factor : protocol.factors) {
     if (task.kind != protocol::TaskKind::adjustment || factor.name != task.adjusts || !factor.range) continue;
     SliderSpan span;
@@ -268,6 +283,7 @@ TrialSpec Director::State::procedure_trial(int index) const {
   const auto proposal = procedures[static_cast<std::size_t>(index)]->choice(deviation.place);
   auto spec = blank(core::TrialType::experimental);
   spec.procedure = from.name;
+  spec.task = protocol::task_of(protocol, from.name, "");
   spec.level = proposal.level;
   set_proposal(proposal, from, spec.factors);
   complete(spec);

@@ -16,6 +16,8 @@ constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 void check(const Timing& plan) {
   if (plan.intervals.empty())
     throw std::invalid_argument("trial: there is no interval; at least one is needed");
+  if (plan.again < 0)
+    throw std::invalid_argument("trial: the number of presentations is negative; it must be 0 or more");
   if (plan.answers < 1) throw std::invalid_argument("trial: there are no answers; at least one is needed");
   for (const auto time : {plan.signal_ns.value_or(0), plan.cue_ns, plan.deadline_ns, plan.anticipation_ns,
                           plan.feedback_ns, plan.late_ns, plan.iti_ns, plan.wrong_delay_ns,
@@ -72,12 +74,16 @@ std::vector<Action> Machine::handle(const Event& event) {
       break;
     case EventKind::heard:
       heard_.at(static_cast<std::size_t>(event.value)) = true;
+      present_again();
       break;
     case EventKind::answer:
       answer(event);
       break;
     case EventKind::touch:
       ++result_.extra_touches;
+      break;
+    case EventKind::again:
+      again(event);
       break;
     case EventKind::contact:
       contact(event);
@@ -259,6 +265,32 @@ void Machine::answer(const Event& event) {
   if (plan_.confidence == 0) return conclude(Outcome::answered, event.time_ns);
   if (phase_ == Phase::stimulus) actions_.push_back({ActionKind::silence, interval_, event.time_ns});
   enter(Phase::confidence, kNever);
+}
+
+void Machine::again(const Event& event) {
+  const bool late = deadline_at() != kNever && event.time_ns > deadline_at();
+  if (!may_ask_again() || late) {
+    ++result_.extra_touches;
+    return;
+  }
+  if (phase_ == Phase::stimulus) actions_.push_back({ActionKind::silence, interval_, event.time_ns});
+  ++result_.again;
+  result_.zero_ns.reset();
+  no_contact_deadline_ns_.reset();
+  interval_ = 0;
+  asked_again_ = true;
+  enter(Phase::cue, kNever);
+  present_again();
+}
+
+// Presents the intervals that the participant has asked for, unless the trial has ended meanwhile.
+void Machine::present_again() {
+  if (!asked_again_ || phase_ != Phase::cue || std::find(heard_.begin(), heard_.end(), false) != heard_.end())
+    return;
+  asked_again_ = false;
+  std::fill(onsets_ns_.begin(), onsets_ns_.end(), kNever);
+  std::fill(heard_.begin(), heard_.end(), false);
+  actions_.push_back({ActionKind::present, 0, now_ns_ + plan_.cue_ns});
 }
 
 void Machine::confide(const Event& event) {

@@ -62,6 +62,8 @@ struct Timing {
   /// confidence is not asked for. A second press of the answer, within core::kConfidenceGuard_ns of the
   /// first, is no confidence
   int confidence = 0;
+  /// how often the participant may ask for the intervals again, while an answer is open
+  int again = 0;
 };
 
 enum class EventKind {
@@ -71,6 +73,7 @@ enum class EventKind {
   heard,    ///< value: index of an interval that has been played completely and as scheduled
   answer,   ///< value: index of the answer or, after the answer, of the degree of confidence
   touch,    ///< a touch beside the answers
+  again,    ///< the participant asks to feel the intervals of the trial once more
   contact,  ///< value 1: a finger is on the surface; 0: it was lifted
   xrun,     ///< the drive lost frames; value 1: in an interval of this trial, 0: in silence
   refuted,  ///< value: index of an interval in which the surface did not move as planned
@@ -89,7 +92,8 @@ enum class ActionKind {
   enter,  ///< value: the new phase; show its page
   /// schedule all intervals, with the silences of Timing between them, the first no earlier than time_ns; the
   /// caller replies with an `onset` event for each interval, and with a `heard` event when the interval has
-  /// been played completely
+  /// been played completely. It comes once at the start, and once for each time that the participant asks for
+  /// the intervals again; by then, everything presented before has been heard
   present,
   silence,  ///< ramp down what is playing now, and cancel what has not begun
   signal,   ///< give the response signal; time_ns: when it was due
@@ -112,6 +116,7 @@ struct Result {
   std::optional<std::int64_t> confidence_time_ns;  ///< time of the confidence rating, counted from the answer
   std::int64_t started_ns = 0, ended_ns = 0;
   int extra_touches = 0;  ///< late, early, repeated or outdated touches; they are logged but never scored
+  int again = 0;  ///< how often the intervals were presented again; all times are those of the last time
   int xruns = 0;
 };
 
@@ -123,6 +128,11 @@ struct Result {
 /// outcome therefore becomes final only when every interval has been reported as played without loss (event
 /// `heard`). If a loss is reported first, the trial is void. The phases continue meanwhile, but the trial
 /// does not end before its outcome is final.
+///
+/// If the participant asks for the intervals again, the trial goes back to its cue, and everything after it
+/// (response_zero, deadline, anticipation) happens as after the first presentation. The intervals are
+/// presented once all of those before have been reported as heard, so that a loss in any presentation makes
+/// the trial void.
 class Machine {
  public:
   /// Throws std::invalid_argument for a plan without intervals or answers, with a negative time, or with a
@@ -139,6 +149,8 @@ class Machine {
   Phase phase() const { return phase_; }
   bool done() const { return phase_ == Phase::done; }
   bool answers_open() const;
+  /// True if the participant may ask for the intervals again.
+  bool may_ask_again() const { return answers_open() && result_.again < plan_.again; }
   /// True once the outcome is final. Later events cannot change it.
   bool decided() const;
   int interval() const { return interval_; }
@@ -152,6 +164,8 @@ class Machine {
   bool step(std::int64_t now_ns);
   void answer(const Event& event);
   void confide(const Event& event);
+  void again(const Event& event);
+  void present_again();
   void contact(const Event& event);
   void onset(const Event& event);
   void begin_interval(std::int64_t onset_ns);
@@ -176,6 +190,7 @@ class Machine {
   bool concluded_ = false;
   bool touching_ = false;
   bool signalled_ = false;
+  bool asked_again_ = false;  ///< the intervals are to be presented again once those before are heard
   std::optional<std::int64_t> lift_off_ns_, no_contact_deadline_ns_;
   Result result_;
   std::vector<Action> actions_;

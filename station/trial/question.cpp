@@ -11,6 +11,7 @@
 #include "station/protocol/expression.hpp"
 #include "station/protocol/resolve.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/trial/timing.hpp"
 
 namespace turnpoint::trial {
@@ -99,8 +100,8 @@ simulation::Question compared(const TrialSpec& spec, const protocol::Protocol& p
 
 }  // namespace
 
-simulation::Question question_of(const TrialSpec& spec, const protocol::Protocol& protocol,
-                                 std::uint64_t seed) {
+simulation::Question question_of(const TrialSpec& spec, const protocol::Protocol& whole, std::uint64_t seed) {
+  const auto& protocol = protocol::of_task(whole, spec.task);
   simulation::Question question;
   question.level = spec.level.value_or(0);
   question.correct = spec.correct;
@@ -114,6 +115,7 @@ simulation::Question question_of(const TrialSpec& spec, const protocol::Protocol
   set_second(spec, protocol, level, question);
   const auto& task = protocol.task;
   question.unsure = !task.unsure.empty();
+  question.again = task.again;
   if (task.confidence) question.confidence = static_cast<int>(task.confidence->labels.size());
   if (protocol::judges(task)) {
     question.decides = simulation::Decides::presence;
@@ -176,21 +178,23 @@ double equal_setting(const protocol::Protocol& protocol, const protocol::Factors
   return low <= 0 && high >= 0 ? 0 : 0.5 * (low + high);
 }
 
-simulation::Adjustment adjustment_of(const TrialSpec& spec, const protocol::Protocol& protocol,
+simulation::Adjustment adjustment_of(const TrialSpec& spec, const protocol::Protocol& whole,
                                      std::uint64_t seed) {
+  const auto& protocol = protocol::of_task(whole, spec.task);
   simulation::Adjustment adjustment;
   adjustment.start = spec.level.value_or(spec.slider->low);
   adjustment.low = spec.slider->low, adjustment.high = spec.slider->high;
   adjustment.equal = equal_setting(protocol, spec.factors);
   // after the tones there is nothing to feel, and after the deadline nothing counts
-  const auto times = simulated_times(protocol, spec, 0);
+  const auto last = parts_of(whole, spec).back();
+  const auto times = simulated_times(whole, spec, last, 0);
   const auto from_slider_s = [&times](std::int64_t from_onset_ns) {
     return 1e-9 * static_cast<double>(from_onset_ns - times.slider_ns);
   };
   constexpr double least_s = 0.05;  // where there is no time at all, the setting comes too late anyway
-  adjustment.within_s =
-      std::max(least_s, std::min(parts_of(protocol, spec).back().length_s + from_slider_s(0),
-                                 spec.deadline_s + from_slider_s(times.zero_ns)));
+  adjustment.within_s = std::max(
+      least_s, std::min(last.length_s + from_slider_s(0), spec.deadline_s + from_slider_s(times.zero_ns)));
+  adjustment.again = protocol.task.again;
   adjustment.key = {seed, core::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
   return adjustment;
 }
@@ -226,6 +230,9 @@ std::pair<double, double> answers_from_s(const protocol::Protocol& protocol) {
 std::vector<core::Problem> observer_notes(const protocol::Protocol& protocol,
                                           const simulation::Observer& observer) {
   std::vector<core::Problem> notes;
+  for (const auto& one : protocol.by_task)
+    for (auto& note : observer_notes(one, observer)) protocol::add_once(std::move(note), notes);
+  if (!protocol.by_task.empty()) return notes;
   if (protocol.task.kind == protocol::TaskKind::adjustment || protocol.timing.signal) return notes;
   const auto [least_s, most_s] = observer.nondecision_range_s();
   const auto seconds = [](double s) { return plain(core::number(s, 3)); };

@@ -2,6 +2,7 @@
 
 #include "station/core/number.hpp"
 #include "station/protocol/answers.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/trial/timing.hpp"
 
 namespace turnpoint::trial {
@@ -43,7 +44,8 @@ core::TrialRow row_of(const TrialSpec& spec, const protocol::Protocol& protocol,
   for (const auto& [name, value] : spec.factors)
     std::visit([&row, &name = name](const auto& v) { row.factors[name] = v; }, value);
   if (spec.correct)
-    row.correct_response = spec.strokes ? "ok" : protocol::answer_id(protocol.task, *spec.correct);
+    row.correct_response =
+        spec.strokes ? "ok" : protocol::answer_id(protocol::of_task(protocol, spec.task).task, *spec.correct);
   row.timing.response_zero = name(zero_of(protocol, spec));
   row.timing.response_time_quality = "n/a";
   row.timing.deadline_s = spec.deadline_s;
@@ -57,7 +59,9 @@ void fill_result(core::TrialRow& row, const Result& result, const TrialSpec& spe
   auto& timing = row.timing;
   row.outcome = result.outcome;
   if (result.response)
-    given.response = value ? core::exact(*value) : protocol::answer_id(protocol.task, *result.response);
+    given.response = value
+                         ? core::exact(*value)
+                         : protocol::answer_id(protocol::of_task(protocol, spec.task).task, *result.response);
   if (result.response && spec.strokes) given.response = movement_word(row, *result.response);
   given.correct = result.correct;
   given.confidence = result.confidence;
@@ -69,6 +73,7 @@ void fill_result(core::TrialRow& row, const Result& result, const TrialSpec& spe
   timing.decision_time_s = seconds(result.decision_time_ns);
   timing.movement_time_s = seconds(result.movement_time_ns);
   given.extra_touches = result.extra_touches;
+  if (protocol.task.again > 0 && !spec.strokes) given.again = result.again;
   row.presented.xruns = result.xruns;
   if (!spec.correct) given.correct.reset();
   given.points = points_of(result, spec, protocol);

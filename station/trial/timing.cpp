@@ -6,6 +6,7 @@
 
 #include "station/core/limits.hpp"
 #include "station/protocol/answers.hpp"
+#include "station/protocol/tasks.hpp"
 
 namespace turnpoint::trial {
 
@@ -18,15 +19,22 @@ std::int64_t whole_ns(double s) { return static_cast<std::int64_t>(s * 1e9); }
 
 /// The parts that the task names; a buzz, if there is one, is not among them.
 std::vector<Part> task_parts(const protocol::Protocol& protocol, const TrialSpec& spec) {
-  const auto& task = protocol.task;
+  const auto& task = protocol::of_task(protocol, spec.task).task;
   const auto value = [&](const protocol::Linear& time_s) { return protocol::evaluate(time_s, spec.factors); };
   std::vector<Part> parts;
   bool fresh = spec.fresh;  // only one part of a trial is longer
-  for (std::size_t i = 0; i < spec.intervals.size(); ++i) {
+  // An example of an explanation, whose length the spec states, is a single scene.
+  const auto before = spec.length_s ? 0 : task.before.size();
+  std::vector<std::vector<protocol::Part>> intervals;
+  if (spec.length_s)
+    intervals.push_back(protocol::parts_of(task, spec.intervals.front()));
+  else
+    intervals = protocol::parts_of_trial(task, spec.intervals);
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
     double silence_s = i > 0 && task.gap_s ? value(*task.gap_s) : 0;
-    for (const auto& from : protocol::parts_of(task, spec.intervals[i])) {
+    for (const auto& from : intervals[i]) {
       Part part;
-      part.interval = static_cast<int>(i);
+      part.interval = parts.size() < before ? kBeforeIntervals : static_cast<int>(i);
       for (const auto& silence : from.silences_s) silence_s += value(silence);
       part.silence_s = std::exchange(silence_s, 0);
       // A part that is explored lasts until the answer, but at most explore_s or, if that is not set, until
@@ -84,16 +92,19 @@ core::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& 
   return spec.strokes ? core::ResponseZero::interval_off : protocol.timing.response_zero;
 }
 
+double cue_s(const protocol::Protocol& protocol, const TrialSpec& spec) {
+  return spec.strokes ? protocol::kCue_s
+                      : protocol::evaluate(protocol::of_task(protocol, spec.task).task.cue_s, spec.factors);
+}
+
 double reach_s(double length_s) { return std::min(0.2, 0.5 * length_s); }
 
-SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSpec& spec,
+SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSpec& spec, const Part& last,
                                std::int64_t onset_ns) {
-  const auto last = parts_of(protocol, spec).back();
   SimulatedTimes times{onset_ns, onset_ns, {}, {}, onset_ns};
-  if (spec.strokes || !protocol::explored(protocol.task)) times.open_ns += whole_ns(last.length_s);
-  if (!spec.strokes)
-    if (const auto parts = task_parts(protocol, spec); !parts.back().starts_s.empty())
-      times.slider_ns += whole_ns(parts.back().starts_s.back());
+  if (spec.strokes || !protocol::explored(protocol::of_task(protocol, spec.task).task))
+    times.open_ns += whole_ns(last.length_s);
+  if (last.changes > 0) times.slider_ns += whole_ns(last.starts_s[last.changes - 1]);
   switch (zero_of(protocol, spec)) {
     case core::ResponseZero::go_cue:
       break;
@@ -115,7 +126,8 @@ SimulatedTimes simulated_times(const protocol::Protocol& protocol, const TrialSp
   return times;
 }
 
-std::vector<Event> simulated_events(const SimulatedTimes& times, const simulation::Reply& reply) {
+std::vector<Event> simulated_events(const SimulatedTimes& times, const simulation::Reply& reply,
+                                    int presented_again) {
   std::vector<Event> events;
   if (times.touch_ns) events.push_back({*times.touch_ns, EventKind::contact, 1});
   if (!reply.choice) {
@@ -128,11 +140,26 @@ std::vector<Event> simulated_events(const SimulatedTimes& times, const simulatio
   if (times.touch_ns && !lift_ns && reply.travel_s > 0)
     lift_ns = std::max(*times.touch_ns, at_ns - whole_ns(reply.travel_s));
   if (lift_ns) events.push_back({*lift_ns, EventKind::contact, 0});
-  events.push_back({at_ns, EventKind::answer, *reply.choice});
-  if (reply.confidence)
+  const bool asks_again = presented_again < reply.again;
+  if (asks_again)
+    events.push_back({at_ns, EventKind::again, 0});
+  else
+    events.push_back({at_ns, EventKind::answer, *reply.choice});
+  if (reply.confidence && !asks_again)
     events.push_back({at_ns + whole_ns(reply.confidence_time_s), EventKind::answer, *reply.confidence - 1});
   std::stable_sort(events.begin(), events.end(),
                    [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; });
+  return events;
+}
+
+std::vector<Event> simulated_events(const SimulatedTimes& times, const TrialSpec& spec,
+                                    const simulation::Setting& setting, int presented_again) {
+  auto events = simulated_events(times, simulation::Reply{});
+  if (presented_again < setting.again)
+    events.push_back(
+        {std::max(times.open_ns, times.slider_ns + whole_ns(setting.again_s)), EventKind::again, 0});
+  else
+    events.push_back({simulated_done_ns(times, spec, setting.done_s), EventKind::answer, 0});
   return events;
 }
 
@@ -144,16 +171,18 @@ std::int64_t simulated_done_ns(const SimulatedTimes& times, const TrialSpec& spe
              : times.zero_ns + whole_ns(spec.anticipation_s + press_s);
 }
 
-Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec) {
+Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec,
+                 const std::vector<Part>& parts) {
   Timing plan;
-  plan.cue_ns = ns(protocol::kCue_s);
+  const auto& task = protocol::of_task(protocol, spec.task).task;
+  plan.cue_ns = ns(cue_s(protocol, spec));
   plan.watermark_ns = core::kWatermark_ns;
-  for (const auto& part : parts_of(protocol, spec)) {
+  for (const auto& part : parts) {
     IntervalTiming timed{ns(part.length_s), {}, ns(part.silence_s)};
     for (const double start : part.starts_s) timed.scene_starts_ns.push_back(ns(start));
     plan.intervals.push_back(std::move(timed));
   }
-  plan.answer_ends_stimulus = !spec.strokes && protocol::explored(protocol.task);
+  plan.answer_ends_stimulus = !spec.strokes && protocol::explored(task);
   plan.response_zero = zero_of(protocol, spec);
   plan.deadline_ns = ns(spec.deadline_s);
   plan.anticipation_ns = ns(spec.anticipation_s);
@@ -173,9 +202,9 @@ Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& bloc
     if (block.kind == protocol::BlockKind::training) plan.feedback_ns = ns(protocol::kLate_s);
     return plan;
   }
-  const auto& task = protocol.task;
   plan.answers = task.kind == protocol::TaskKind::adjustment ? 1 : protocol::answer_count(task);
   plan.unsure = protocol::answer_index(task, protocol::kUnsure);
+  plan.again = task.again;
   if (task.confidence) plan.confidence = static_cast<int>(task.confidence->labels.size());
   return plan;
 }

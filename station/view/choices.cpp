@@ -253,7 +253,7 @@ CheckWords words_of(const rehearsal::Check& check) {
     const bool leaks = cue.above_chance();
     const auto percent = [](double share) { return plain(std::lround(100 * share)); };
     const auto [name, advice] = cue_advice(cue.cue);
-    words.cues.push_back({name,
+    words.cues.push_back({cue.task.empty() ? name : Phrase{"", cue.task + ", ", {name}},
                           {"check.alone", "", {percent(cue.accuracy), percent(cue.chance)}},
                           leaks,
                           leaks ? advice : Phrase()});

@@ -25,7 +25,7 @@ struct Page {
 const std::vector<Page>& pages() {
   static const std::vector<Page> all{
       {"study", {"protocol", "random"}, {}},
-      {"question", {"task", "instructions"}, {"instructions"}},
+      {"question", {"task", "tasks", "instructions"}, {"instructions"}},
       {"scenes", {"scene"}, {"scene"}},
       {"levels", {"factor", "procedure"}, {"factor", "procedure"}},
       // the parts of a session, in the order in which they come
@@ -69,11 +69,21 @@ std::vector<std::string> languages_of(const Document& document) {
   return strings_at(document, {"protocol", "languages"});
 }
 
+/// The table of the task, or those of several tasks.
+std::vector<const Part*> tasks_of(const Document& document) {
+  std::vector<const Part*> tasks;
+  if (const auto* task = document.find({"task"}); task != nullptr) tasks.push_back(task);
+  if (const auto* several = document.find({"tasks"}); several != nullptr)
+    for (const auto& task : several->parts) tasks.push_back(&task);
+  return tasks;
+}
+
 std::vector<std::string> choices_of(const Document& document) {
   std::vector<std::string> ids;
-  if (const auto* part = document.find({"task", "choices"}); part != nullptr)
-    for (const auto& choice : part->parts)
-      if (const auto* id = choice.find("id"); id != nullptr) ids.push_back(id->scalar.string);
+  for (const auto& task : tasks_of(document))
+    if (const auto* part = task->find("choices"); part != nullptr)
+      for (const auto& choice : part->parts)
+        if (const auto* id = choice.find("id"); id != nullptr) ids.push_back(id->scalar.string);
   return ids;
 }
 
@@ -206,6 +216,7 @@ class Maker {
     std::vector<Section> sections;
     for (const auto& page : pages()) sections.push_back({page.name, page.added, {}, 0});
     for (const auto& key : protocol::protocol_keys().list) {
+      if (is_replaced(key)) continue;
       auto& groups = sections[page_of(key.name)].groups;
       if (key.kind == Key::Kind::table && !key.keys->named)
         groups.push_back(group({key.name}, *key.keys, document_.find({key.name}), key.needed));
@@ -218,6 +229,14 @@ class Maker {
   }
 
  private:
+  /// Whether the file has another table instead, such as [tasks] instead of [task].
+  bool is_replaced(const Key& key) const {
+    return document_.find({key.name}) == nullptr &&
+           std::ranges::any_of(key.conditions, [&](const auto& with) {
+             return with.absent && document_.find({with.key}) != nullptr;
+           });
+  }
+
   /// The parts of a session in the order of the file, which is that of the session.
   void put_in_order(std::vector<Group>& groups) const {
     const auto begin = [this](const Group& group) {
@@ -242,8 +261,9 @@ class Maker {
       auto made = group(path, of_list ? *key.keys : *key.keys->named->keys, &table, true);
       made.name = of_list ? name_in(table) : table.name;
       made.copied = table.kind == Part::Kind::table;
-      // a protocol needs a scene
-      made.removable = made.copied && (list->parts.size() > 1 || !key.needed);
+      // a protocol needs a scene, and [tasks] two
+      const std::size_t fewest = std::max<std::size_t>(key.needed ? 1 : 0, of_list ? 0 : key.keys->fewest);
+      made.removable = made.copied && list->parts.size() > fewest;
       if (!of_list && made.copied) {
         Field name{path, Input::name};
         name.present = name.required = true, name.value = table.name;
@@ -342,8 +362,9 @@ class Maker {
         if (done.insert(entry.name).second) add_key(at.below(entry.name), named, &entry, false);
     for (const auto& name : names_for(document_, named))
       if (done.insert(name).second) add_key(at.below(name), named, nullptr, false);
-    if (named.kind != Key::Kind::any) return;
-    Field entry{at.path, Input::entry};
+    const bool lists = named.kind == Key::Kind::tables;
+    if (named.kind != Key::Kind::any && !lists) return;
+    Field entry{at.path, lists ? Input::list_name : Input::entry};
     entry.key = &named, entry.heading = at.heading;
     fields_->push_back(std::move(entry));
   }
@@ -444,9 +465,10 @@ class Maker {
     const auto table = referred_table(name);
     if (table.empty() || field.closed) return;
     field.allowed = names_of(document_, table);
-    const auto* parts = document_.find({"task", "parts"});
-    if (parts != nullptr && (name == "intervals" || name == "standard" || name == "target"))
-      for (const auto& interval : parts->parts) field.allowed.push_back(interval.name);
+    if (name == "intervals" || name == "standard" || name == "target")
+      for (const auto* task : tasks_of(document_))
+        if (const auto* parts = task->find("parts"); parts != nullptr)
+          for (const auto& interval : parts->parts) field.allowed.push_back(interval.name);
     if (name == "after_each")
       for (const auto& sequence : names_of(document_, "sequence")) field.allowed.push_back(sequence);
     // A name refers to something that the file has. Until it has it, the name can be typed.
@@ -695,6 +717,19 @@ std::string with_entry(const Document& document, const Field& field, const std::
   return document.with(path, typed.substr(part.value.begin, part.value.end - part.value.begin));
 }
 
+/// The text with one more list of tables, which begins with a table of the first scene, if there is one.
+std::string with_list(const Document& document, const Field& field, const std::string& name) {
+  const auto is_plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+  };
+  if (!std::all_of(name.begin(), name.end(), is_plain)) refuse(field, name, "letters, digits, - and _");
+  auto path = field.path;
+  path.push_back(name);
+  if (document.find(path) != nullptr) refuse(field, name, "a name that is not there yet");
+  const auto scenes = names_of(document, "scene");
+  return document.with(path, scenes.empty() ? "[{}]" : "[{ scene = " + toml_string(scenes.front()) + " }]");
+}
+
 /// A value as a person writes it, with another name in place of one of its names, also before a dot.
 std::string with_other_name(const std::string& value, const std::string& name, const std::string& other) {
   std::string all;
@@ -772,6 +807,7 @@ std::string new_table(const Document& document, const std::string& kind) {
 
 std::string referred_table(const std::string& key) {
   static const std::map<std::string, std::string> tables{{"base", "scene"},
+                                                         {"task", "tasks"},
                                                          {"intervals", "scene"},
                                                          {"standard", "scene"},
                                                          {"target", "scene"},
@@ -820,6 +856,8 @@ std::string changed(const Document& document, const Field& field, const std::str
   if (field.present && typed == field.value) return document.text();
   if (field.input == Input::entry)
     return typed.empty() ? document.text() : with_entry(document, field, typed);
+  if (field.input == Input::list_name)
+    return typed.empty() ? document.text() : with_list(document, field, typed);
   if (field.input == Input::name) return typed.empty() ? document.text() : renamed(document, field, typed);
   if (typed.empty()) {
     if (!field.present || field.required) return document.text();

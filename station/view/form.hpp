@@ -17,12 +17,13 @@ struct Field {
     word,        ///< one of `allowed`
     expression,  ///< a number or arithmetic on factors; or a word or a number
     text,
-    names,    ///< texts separated by commas; two in a row are joined by an arrow
-    name,     ///< the name of the table itself, which stands in its header
-    table,    ///< a table, such as a zone or one page, with its fields after it; see extended() and reduced()
-    list,     ///< a list of tables, such as pages; `value` is their number
-    entry,    ///< a key that the user names, with its value: `start = 5`
-    written,  ///< a value as it is written in the file
+    names,  ///< texts separated by commas; two in a row are joined by an arrow
+    name,   ///< the name of the table itself, which stands in its header
+    table,  ///< a table, such as a zone or one page, with its fields after it; see extended() and reduced()
+    list,   ///< a list of tables, such as pages; `value` is their number
+    entry,  ///< a key that the user names, with its value: `start = 5`
+    list_name,  ///< a name for one more list of tables: the parts of an interval
+    written,    ///< a value as it is written in the file
   };
   Path path;
   Input input = Input::written;

@@ -8,6 +8,7 @@
 
 #include "station/core/number.hpp"
 #include "station/protocol/answers.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/report/figures.hpp"
 #include "station/report/words.hpp"
 #include "station/view/report_data.hpp"
@@ -53,6 +54,13 @@ double stimulus_s(const core::TrialRow& row, int rate_Hz, bool explored) {
   return scheduled_s - last_s + std::min(last_s, until_answer_s);
 }
 
+std::vector<LiveView::HowAnswered> LiveView::how_answered(const protocol::Protocol& protocol) {
+  std::vector<HowAnswered> tasks;
+  for (const auto* one : protocol::tasks_of(protocol))
+    tasks.push_back({one->task.adjusts, protocol::explored(one->task)});
+  return tasks;
+}
+
 LiveView::LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state,
                    std::string language, OnGauges on_gauges, std::shared_ptr<std::atomic<int>> stored)
     : on_state_(std::move(on_state)),
@@ -61,8 +69,7 @@ LiveView::LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnSt
       language_(std::move(language)),
       level_(protocol::common_level(protocol).value_or(Words(language_)("figure.level"))),
       asked_(protocol.sensing),
-      adjusted_(protocol.task.adjusts),
-      explored_(protocol::explored(protocol.task)),
+      tasks_(how_answered(protocol)),
       rig_(rig),
       planner_(rig_),
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
@@ -85,9 +92,9 @@ void LiveView::finger_moved(const std::optional<session::FingerSeen>& finger) {
   on_gauges_(gauges);
 }
 
-void LiveView::trial_ended(const trial::TrialSpec& /*spec*/, const core::TrialRow& row) {
+void LiveView::trial_ended(const trial::TrialSpec& spec, const core::TrialRow& row) {
   if (stored_) ++*stored_;
-  LiveTrial trial{row, stimulus_s(row, rig_.output.rate_Hz, explored_)};
+  LiveTrial trial{row, stimulus_s(row, rig_.output.rate_Hz, tasks_.at(spec.task).explored)};
   trial.tones.clear();
   trial.signal_rows.clear();
   push({{}, {}, std::move(trial), std::make_shared<core::TrialRow>(row)});
@@ -129,7 +136,7 @@ void LiveView::take(const News& news) {
     next_setting_ = std::chrono::steady_clock::now() + kSettingEvery;
     trial_.spec.factors = news.setting->factors;
     trial_.plans.front().back() = news.setting->plan;
-    setting_ = std::get<double>(trial_.spec.factors.at(adjusted_));
+    setting_ = std::get<double>(trial_.spec.factors.at(tasks_.at(trial_.spec.task).adjusts));
     show();
   }
   if (!news.ended) return;

@@ -93,8 +93,13 @@ class LiveView : public session::Monitor {
   /// name of the factor that the first procedure varies, or "Level" if there is no procedure
   std::string level_;
   std::optional<protocol::Sensing> asked_;
-  std::string adjusted_;  ///< the factor that a slider sets; "" if there is none
-  bool explored_;         ///< whether the participant may answer while the surface moves
+  /// of each task
+  struct HowAnswered {
+    std::string adjusts;    ///< the factor that a slider sets; "" if there is none
+    bool explored = false;  ///< whether the participant may answer while the surface moves
+  };
+  static std::vector<HowAnswered> how_answered(const protocol::Protocol& protocol);
+  std::vector<HowAnswered> tasks_;
   rig::Rig rig_;
   // The worker thread alone uses the members from `planner_` to `state_`.
   scene::Planner planner_;

@@ -13,6 +13,7 @@
 #include "station/protocol/answers.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/protocol/resolve.hpp"
+#include "station/protocol/tasks.hpp"
 
 namespace turnpoint::view {
 
@@ -84,6 +85,18 @@ void describe_plan(SceneLook& look) {
   add("preview.surface",
       phrase("preview.crest", {um(plan.peak_displacement_m), shown(plan.crest_factor, 3)}));
   add("preview.lowest_friction", phrase("preview.of_rest", {shown(plan.lowest_friction, 3)}));
+  if (plan.follow) {
+    const auto figures = scene::follow_figures(plan);
+    add("preview.follow", phrase("preview.follow_delay", {shown(1e3 * figures.delay.total_s, 3),
+                                                          shown(1e3 * figures.time_constant_s, 3)}));
+    for (const auto& texture : figures.textures)
+      add("preview.texture",
+          phrase("preview.texture_limits",
+                 {plain(texture.part + 1), shown(texture.bandwidth_Hz, 3),
+                  texture.most_speed_m_s ? plain(number(1e3 * *texture.most_speed_m_s, 3) + " mm/s")
+                                         : phrase("preview.none")}));
+    for (const auto& unmet : figures.unmet) add("preview.unmet", scene::in_words(plan, unmet));
+  }
   for (const auto& product : plan.audible_products)
     add("preview.product",
         phrase("preview.product_order", {shown(product.frequency_Hz, 5), plain(product.order)}));
@@ -112,7 +125,9 @@ Preview::Preview(protocol::Protocol protocol, rig::Rig rig)
 std::vector<std::string> Preview::scenes() const {
   std::vector<std::string> used, others;
   for (const auto& [name, scene] : protocol_.scenes) {
-    const auto parts = protocol::parts_of(protocol_.task);
+    std::vector<protocol::Part> parts;
+    for (const auto* one : protocol::tasks_of(protocol_))
+      for (auto& part : protocol::parts_of(one->task)) parts.push_back(std::move(part));
     const bool shown = std::any_of(parts.begin(), parts.end(), [&, scene_name = name](const auto& part) {
       return std::find(part.scenes.begin(), part.scenes.end(), scene_name) != part.scenes.end();
     });
@@ -187,6 +202,11 @@ SceneLook look_at(scene::DrivePlan planned, protocol::Factors factors, scene::Pl
   if (look.plan.tones.size() == 1)
     look.nearest_resonance_Hz = planner.nearest_resonance_Hz(look.plan, look.plan.tones[0].frequency_Hz);
   look.under = planner.under_finger(look.plan);
+  if (look.plan.follow) {
+    for (const auto events : {scene::Events::none, scene::Events::all})
+      look.followed.push_back(scene::follow_curve(look.plan, kProfilePoints, events));
+    if (look.followed[1].asked == look.followed[0].asked) look.followed.pop_back();
+  }
   describe_plan(look);
   describe_cues(look);
   return look;

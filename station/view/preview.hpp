@@ -6,6 +6,7 @@
 #include "station/core/texts.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/rig/rig.hpp"
+#include "station/scene/following.hpp"
 #include "station/scene/planner.hpp"
 
 namespace turnpoint::view {
@@ -36,6 +37,9 @@ struct SceneLook {
   scene::Planner::Profile profile;
   scene::UnderFinger under;
   std::optional<double> nearest_resonance_Hz;  ///< of a scene with one tone
+  /// what a scene that follows the finger asks for and reaches, before its events; and, if it has any, after
+  /// all of them
+  std::vector<scene::FollowCurve> followed;
   /// facts about the scene and its cues, as pairs of a label and a value, in the order in which they are
   /// shown
   std::vector<std::pair<core::Phrase, core::Phrase>> facts, cues;

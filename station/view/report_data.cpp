@@ -13,6 +13,7 @@
 #include "station/core/limits.hpp"
 #include "station/core/number.hpp"
 #include "station/protocol/protocol.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/report/stored_estimates.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/session/planned_session.hpp"
@@ -286,10 +287,13 @@ void add_own_estimates(const std::string& database, const store::StoredSession& 
   report::add_program_estimates(stored.blocks, stored.events, protocol, data);
 }
 
-report::SessionData report_data(const std::string& database, const std::string& session_id) {
-  const auto stored = store::read_session(database, session_id);
+namespace {
+
+/// The data of one of the session's tasks. `stored` has all trials, `own` those of the task.
+report::SessionData data_of_task(const std::string& database, const store::StoredSession& stored,
+                                 const store::StoredSession& own, const protocol::Protocol& protocol,
+                                 std::size_t task) {
   const auto& start = stored.session.start;
-  const auto protocol = protocol::parse(start.protocol_text, start.protocol_path);
   report::SessionData data;
   data.title = protocol.title;
   data.participant = stored.session.person;
@@ -311,13 +315,29 @@ report::SessionData report_data(const std::string& database, const std::string& 
               (answer.occasion > 0 ? " (after block " + std::to_string(answer.occasion) + ")" : ""),
           answer.answer);
   data.seed = start.seed;
-  report::add_trials(stored.blocks, protocol, data);
+  report::add_trials(own.blocks, protocol::of_task(protocol, task), data);
   add_own_estimates(database, stored, protocol, data);
+  report::keep_estimates_of(protocol::of_task(protocol, task), data);
   add_programs(stored.events, data);
   add_health(stored, data);
-  data.measured = measured_trials(stored.blocks);
-  add_strip(database, stored, data);
+  data.measured = measured_trials(own.blocks);
+  add_strip(database, own, data);
   return data;
+}
+
+}  // namespace
+
+std::vector<report::SessionData> report_data(const std::string& database, const std::string& session_id) {
+  const auto stored = store::read_session(database, session_id);
+  const auto& start = stored.session.start;
+  const auto protocol = protocol::parse(start.protocol_text, start.protocol_path);
+  std::vector<report::SessionData> all;
+  for (std::size_t task = 0; task < protocol::tasks_of(protocol).size(); ++task) {
+    auto own = stored;
+    own.blocks = report::of_task(std::move(own.blocks), protocol, task);
+    all.push_back(data_of_task(database, stored, own, protocol, task));
+  }
+  return all;
 }
 
 std::optional<protocol::Protocol> newest_protocol(const std::string& path, const std::string& protocol_id,

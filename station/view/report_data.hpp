@@ -11,10 +11,10 @@
 
 namespace turnpoint::view {
 
-/// Collects the data of one stored session for a report. The protocol is parsed from the text that is stored
-/// with the session. If a block was repeated, its last attempt counts. Throws StoreError, or core::BadInput
-/// if this program can no longer read the protocol text.
-report::SessionData report_data(const std::string& database, const std::string& session_id);
+/// Collects the data of one stored session for a report, for each task of its protocol. The protocol is
+/// parsed from the text that is stored with the session. If a block was repeated, its last attempt counts.
+/// Throws StoreError, or core::BadInput if this program can no longer read the protocol text.
+std::vector<report::SessionData> report_data(const std::string& database, const std::string& session_id);
 
 /// Adds to `data` what the procedures of a stored session, and its separate programs, estimated themselves.
 void add_own_estimates(const std::string& database, const store::StoredSession& stored,

@@ -97,9 +97,28 @@ ReportPages report_pages(const report::Summary& summary) {
 
 ReportPages report_pages(const std::string& database, const std::string& session_id,
                          const std::string& language) {
-  auto data = report_data(database, session_id);
-  data.language = language;
-  return report_pages(report::summarise(std::move(data)));
+  std::vector<report::Summary> summaries;
+  for (auto& data : report_data(database, session_id)) {
+    data.language = language;
+    summaries.push_back(report::summarise(std::move(data)));
+  }
+  auto all = report_pages(summaries.front());
+  if (summaries.size() == 1) return all;
+  all.sections.clear(), all.figures.clear();
+  for (const auto& summary : summaries) {
+    auto pages = report_pages(summary);
+    for (auto& section : pages.sections) {
+      section.heading = {"", summary.data.task + ": ", {section.heading}};
+      all.sections.push_back(std::move(section));
+    }
+    std::move(pages.figures.begin(), pages.figures.end(), std::back_inserter(all.figures));
+  }
+  // what is about the whole session
+  Brief whole;
+  for (const auto& part : report::document(summaries).parts) std::visit(whole, part);
+  for (auto& section : whole.sections)
+    if (section.heading.key == "report.station") all.sections.push_back(std::move(section));
+  return all;
 }
 
 }  // namespace turnpoint::view

@@ -9,6 +9,7 @@
 #include "station/procedure/program.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/interludes.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/session/pages.hpp"
 #include "station/session/session.hpp"
 #include "station/trial/director.hpp"
@@ -77,21 +78,33 @@ class Sampler {
     const auto instruction = block.fixed.find("instruction");
     const auto* word =
         instruction == block.fixed.end() ? nullptr : std::get_if<std::string>(&instruction->second);
-    const auto told = std::tuple(block.kind, block.practice, word == nullptr ? std::string() : *word);
+    const auto asked = protocol::tasks_in(setup_.protocol, block);
+    const auto told = std::tuple(block.kind, block.practice, word == nullptr ? std::string() : *word, asked);
     if (!blocks_.insert(told).second) return;
     auto alone = setup_.protocol;
     alone.plan = {block};
     trial::Director director(alone, {}, 1, &programs_);
-    const auto spec = director.next();
+    auto spec = director.next();
     if (!spec) return;
     auto page = pages_.instructions(block, director);
     pages_.add_mark(page, *spec);
     add("design.page.instructions", std::move(page));
-    const auto task = std::pair(block.kind, word == nullptr ? std::string() : *word);
-    if (tasks_.insert(task).second) add_trial(*spec, block, director);
     const bool judged =
         block.feedback == protocol::Feedback::trial || block.kind == protocol::BlockKind::training;
-    if (judged && feedback_.insert(task).second) add_feedback(*spec, block, director);
+    // a trial of each of its tasks
+    constexpr int most_trials = 1000;
+    std::set<std::size_t> seen;
+    for (int i = 0; spec && i < most_trials && seen.size() < std::max<std::size_t>(1, asked.size()); ++i) {
+      const auto task = std::tuple(block.kind, word == nullptr ? std::string() : *word, spec->task);
+      if (seen.insert(spec->task).second && tasks_.insert(task).second) add_trial(*spec, block, director);
+      if (judged && feedback_.insert(task).second) add_feedback(*spec, block, director);
+      if (asked.size() < 2) break;
+      trial::TrialEnd end;
+      end.response = 0, end.correct = spec->correct == 0;
+      if (spec->slider) end.setting = spec->level;
+      director.record(end);
+      spec = director.next();
+    }
     session::BlockScore score;
     score.trials = 10, score.right = 8, score.times_s = {0.5};
     if (auto over = pages_.block_over(block, score, 0, director); over && over_.insert(told).second)
@@ -112,7 +125,7 @@ class Sampler {
     const auto phase = [&](Phase of, int interval) {
       return pages_.of_phase(of, interval, spec, block, {}, director);
     };
-    const auto& task = setup_.protocol.task;
+    const auto& task = protocol::of_task(setup_.protocol, spec.task).task;
     const int last = last_of(spec);
     add("design.page.cue", phase(Phase::cue, 0));
     const auto parts = trial::parts_of(setup_.protocol, spec);
@@ -124,13 +137,16 @@ class Sampler {
       if (i > 0 && begins && task.gap_s) add("design.page.gap", phase(Phase::gap, i - 1));
       auto page = phase(Phase::stimulus, i);
       if (spec.slider && i == last)
-        pages_.add_slider(page, *spec.slider, spec.level.value_or(spec.slider->low));
+        pages_.add_slider(page, *spec.slider, spec.level.value_or(spec.slider->low), false);
+      page.again = task.again > 0 && i == last && protocol::explored(task);
       add("design.page.interval", std::move(page));
     }
     if (spec.strokes) return;
     const bool answered = spec.slider || (task.kind == protocol::TaskKind::single_interval &&
                                           protocol::explored(task) && !task.value);
-    if (!answered) add("design.page.answer", phase(Phase::response, last));
+    auto answer = phase(Phase::response, last);
+    answer.again = task.again > 0;
+    if (!answered) add("design.page.answer", std::move(answer));
     if (task.confidence) add("design.page.confidence", phase(Phase::confidence, last));
     trial::Result late;
     late.outcome = core::Outcome::timeout;
@@ -158,8 +174,8 @@ class Sampler {
   const trial::Director director_;
   std::vector<SamplePage> all_;
   std::set<std::string> interludes_;
-  std::set<std::tuple<protocol::BlockKind, bool, std::string>> blocks_, over_;
-  std::set<std::pair<protocol::BlockKind, std::string>> tasks_, feedback_;
+  std::set<std::tuple<protocol::BlockKind, bool, std::string, std::vector<std::size_t>>> blocks_, over_;
+  std::set<std::tuple<protocol::BlockKind, std::string, std::size_t>> tasks_, feedback_;
   bool rest_ = false;
 };
 

@@ -199,6 +199,37 @@ std::string surface_svg(const SceneLook& look, const rig::Rig& rig, double width
   return svg.finish();
 }
 
+namespace {
+
+bool is_displacement(const SceneLook& look) {
+  return look.plan.scene.follow->unit == scene::FollowUnit::displacement;
+}
+
+/// Plots what a scene that follows the finger asks for (dashed) and what is reached, before and after its
+/// events, in the chart of friction or of displacement. Friction is drawn relative to the surface at rest.
+void add_followed(const SceneLook& look, report::Line line, const Words& words, report::Chart& chart) {
+  if (!look.plan.follow) return;
+  const auto unit = look.plan.scene.follow->unit;
+  const double scale = unit == scene::FollowUnit::displacement  ? 1e6
+                       : unit == scene::FollowUnit::coefficient ? 1 / look.plan.follow->resting_friction
+                                                                : 1;
+  for (const auto& curve : look.followed) {
+    line.x.clear();
+    for (const double x : curve.x_m) line.x.push_back(1e3 * x);
+    for (const bool asked : {true, false}) {
+      line.y.clear();
+      for (const double value : asked ? curve.asked : curve.reached) line.y.push_back(scale * value);
+      line.beyond = asked;
+      line.name = words(asked ? "figure.asked" : "figure.reached");
+      chart.y.high = std::max(chart.y.high, 1.1 * *std::max_element(line.y.begin(), line.y.end()));
+      chart.layers.push_back(line);
+    }
+    line.series += 2;
+  }
+}
+
+}  // namespace
+
 report::Figure profile_figure(const std::vector<SceneLook>& looks, const std::string& language) {
   const Words words(language);
   if (looks.empty()) throw std::invalid_argument("there is no scene to draw");
@@ -224,7 +255,8 @@ report::Figure profile_figure(const std::vector<SceneLook>& looks, const std::st
     // With a single scene, displacement and friction would get the same series number and look. Give the
     // friction curve another number.
     if (!several) felt.series = 1;
-    friction.layers.push_back(felt);
+    add_followed(look, felt, words, look.plan.follow && is_displacement(look) ? displacement : friction);
+    if (!look.plan.follow || is_displacement(look)) friction.layers.push_back(felt);
     displacement.layers.push_back(line);
   }
   if (most_um > 0) displacement.y.high = 1.15 * most_um;

@@ -11,7 +11,9 @@
 #include "station/protocol/answers.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/protocol.hpp"
+#include "station/protocol/tasks.hpp"
 #include "station/protocol/visits.hpp"
+#include "station/report/stored_estimates.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/store/places.hpp"
 #include "station/store/read.hpp"
@@ -120,16 +122,17 @@ struct PersonData {
 
 /// Adds what the procedures of a session estimated themselves.
 void add_own(const std::string& database, const store::StoredSession& stored,
-             const protocol::Protocol& protocol, PersonData& all) {
+             const protocol::Protocol& protocol, std::size_t task, PersonData& all) {
   report::SessionData own;
   add_own_estimates(database, stored, protocol, own);
+  report::keep_estimates_of(protocol::of_task(protocol, task), own);
   const auto& id = stored.session.session_id;
   for (auto& estimate : own.estimates) all.estimates.push_back({id, std::move(estimate)});
   for (auto& end : own.early_ends) all.early_ends.push_back({id, std::move(end)});
 }
 
 PersonData data_of(const std::string& person, const std::vector<Found>& sessions,
-                   const protocol::Protocol& protocol) {
+                   const protocol::Protocol& protocol, std::size_t task) {
   PersonData data;
   auto& all = data.all;
   std::vector<core::BlockRecord> blocks;
@@ -138,7 +141,7 @@ PersonData data_of(const std::string& person, const std::vector<Found>& sessions
   if (!sessions.empty()) all.seed = sessions.front().session.start.seed;
   for (const auto& found : sessions) {
     auto stored = store::read_session(found.database, found.session.session_id);
-    add_own(found.database, stored, protocol, data);
+    add_own(found.database, stored, protocol, task, data);
     int last_block = first_block;
     for (auto& block : stored.blocks) {
       block.start.block_index += first_block;
@@ -151,7 +154,9 @@ PersonData data_of(const std::string& person, const std::vector<Found>& sessions
   }
   all.title = protocol.title;
   all.participant = person;
-  report::add_trials(blocks, protocol, all);
+  report::add_other_trials(blocks, protocol, task, all);
+  report::add_trials(report::of_task(std::move(blocks), protocol, task), protocol::of_task(protocol, task),
+                     all);
   all.finger.clear();  // forces cannot be combined over sessions
   return data;
 }
@@ -228,7 +233,9 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
   const auto stored = protocol::parse(first.session.start.protocol_text, first.session.start.protocol_path);
   const auto design = protocol::design(stored);
   study.design_rows = design.rows;
-  const auto protocol = report::by_group(stored);
+  const auto whole = report::by_group(stored);
+  const auto task = protocol::chosen_task(whole, choice.task);
+  const auto& protocol = protocol::of_task(whole, task);
   const auto rules = protocol.exclusion.value_or(protocol::Exclusion{});
   study.rules = report::rules_in_words(rules);
   const auto people = by_person(std::move(all));
@@ -243,7 +250,7 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
     }
     ++done;
     const auto used = counted(sessions, study.sessions);
-    auto [data, estimates, early_ends] = data_of(person, used.sessions, protocol);
+    auto [data, estimates, early_ends] = data_of(person, used.sessions, whole, task);
     data.run_mode = store::name(sessions.front().session.start.run_mode);
     data.replicates = report::kStudyReplicates;
     auto result = report::study_person(data, rules, used.incomplete);
@@ -256,13 +263,14 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
     result.completed = has_completed(sessions, design);
     sink(result, data);
     study.persons.push_back(std::move(result));
-    data.trials.clear();
+    data.trials.clear(), data.other_trials.clear();
     study.settings = std::move(data);
   }
   for (auto& [name, text] : study.facts)
     if (const auto& n = study.sessions; name == "Sessions" && n.counted() != n.found)
       text = fmt::format("{} of {} count; {} were begun again later, {} were not completed", n.counted(),
                          n.found, n.superseded, n.incomplete);
+  if (!protocol.task.name.empty()) study.facts.emplace_back("Task", protocol.task.name);
   report::finish_study(study);
   return study;
 }

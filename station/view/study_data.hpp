@@ -16,6 +16,7 @@ struct StudyChoice {
   /// version of the protocol, or the beginning of the SHA-256 of its text; "" if all sessions have the same
   std::string protocol_version;
   std::string mode;  ///< live, pilot or simulated; "" if all sessions have the same
+  std::string task;  ///< name of the task to report; "" if the protocol has one
 };
 
 /// Called once for each participant, with the trials of all sessions of this participant.

@@ -62,13 +62,16 @@ std::vector<TrialPart> trial_timeline(const protocol::Protocol& protocol) {
     now_s += duration_s;
   };
   const auto count = interval_count(task);
-  for (std::size_t i = 0; i < count; ++i) {
+  std::vector<std::vector<std::string>> intervals;
+  for (std::size_t i = 0; i < count; ++i)
+    intervals.push_back(i < task.intervals.size() ? task.intervals[i]
+                        : task.intervals.empty()
+                            ? std::vector<std::string>{i + 1 < count ? task.standard : task.target}
+                            : task.intervals.back());
+  const auto lists = protocol::parts_of_trial(task, intervals);
+  for (std::size_t i = 0; i < lists.size(); ++i) {
     if (i > 0 && gap_s > 0) add(TrialPart::Kind::gap, gap_s);
-    const auto interval = i < task.intervals.size() ? task.intervals[i]
-                          : task.intervals.empty()
-                              ? std::vector<std::string>{i + 1 < count ? task.standard : task.target}
-                              : task.intervals.back();
-    for (const auto& part : protocol::parts_of(task, interval)) {
+    for (const auto& part : lists[i]) {
       double silence_s = 0;
       for (const auto& silence : part.silences_s) silence_s += middle(silence);
       if (silence_s > 0) add(TrialPart::Kind::gap, silence_s);

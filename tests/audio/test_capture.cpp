@@ -161,3 +161,33 @@ TEST_CASE("if nobody takes the blocks, new frames are lost and counted", "[drive
   CHECK(card.numbering == 1);
   CHECK(card.times[before] == static_cast<std::int32_t>(before) + card.capture->counters().lost_frames);
 }
+
+TEST_CASE("a listener hears every captured period on the capture's thread, also if nobody takes the blocks",
+          "[drive][capture][follow]") {
+  struct Hears : CaptureListener {
+    std::vector<std::int32_t> times;
+    std::vector<std::int64_t> first;
+    std::uint32_t numbering = 0;
+    void captured(std::int64_t first_frame, std::uint32_t number,
+                  std::span<const std::int32_t> samples) noexcept override {
+      first.push_back(first_frame);
+      numbering = number;
+      for (std::size_t n = 0; n < samples.size(); n += 2) times.push_back(samples[n]);
+    }
+  } hears;
+  Card card;
+  card.capture->step();
+  card.capture->listen(hears);
+  for (int k = 0; k < 5; ++k) card.capture->step();
+  CHECK(hears.first == std::vector<std::int64_t>{384, 768, 1152, 1536, 1920});
+  CHECK(is_consecutive(hears.times, 0, hears.times.size()));
+  CHECK(hears.times.front() == 384);
+  fake_pcm().pass(10'000);  // an overrun
+  card.capture->step();
+  card.capture->step();
+  CHECK(hears.numbering == 1);
+  CHECK(hears.times.back() == hears.first.back() + 383);
+  while (card.capture->counters().overruns < 2)
+    card.capture->step();  // the ring is full: nobody takes blocks
+  CHECK(hears.first.back() + 384 == card.capture->counters().frames);
+}

@@ -39,12 +39,24 @@ TEST_CASE("the audio thread's code allocates, locks and logs nothing, whatever c
   burst.marker.amplitude = 0.1;
   burst.noise.rms = 0.01;
   const auto id = core.schedule(burst, [] { return std::int64_t{0}; });
+  Burst following = one_tone(30000, 0.1);
+  following.start_frame = 1000;
+  following.following = {1, 0.5, 960, 480, 1920};
+  const auto follows = core.schedule(following, [] { return std::int64_t{0}; });
+  bool gains = true;  // whether gains come for the burst that follows them
   const auto run = [&](int blocks) {
     return violations_in([&] {
-      for (int k = 0; k < blocks; ++k, frame += 384) core.process(frame, block);
+      for (int k = 0; k < blocks; ++k, frame += 384) {
+        for (std::int64_t at = frame; gains && at < frame + 384; at += 96)
+          static_cast<void>(core.follow({follows, 96, at, {1, 0.9f, 0.8f, 0.7f, 0.8f, 0.9f, 1, 1}}));
+        core.process(frame, block);
+      }
     });
   };
   CHECK(run(50) == 0);
+  gains = false;
+  CHECK(run(20) == 0);
+  gains = true;
   Change change;
   change.at_frame = 60000;
   change.to = one_tone(24000, 0.3).tones;

@@ -1230,7 +1230,7 @@ class Manual(Folder):
                              ("export --db lab.sqlite --out l", ["locker"]), ("export --format b", ["bids"]),
                              ("run friction-c", ["friction-confidence"]), ("check s", ["smoothness-line", "smoothness-points",
                                                                                        "speed-accuracy", "study.toml"]),
-                             ("check demo --rig sim", ["simulated", "simulated-forces"]), ("power --join lab.sqlite s", ["study.toml"]),
+                             ("check demo --rig sim", ["simulated", "simulated-following", "simulated-forces"]), ("power --join lab.sqlite s", ["study.toml"]),
                              ("backup --db lab.sqlite --db", []), ("plan demo --scene x --j", ["--json"]),
                              ("join P01 P02 x", []), ("run --participant lab", []), ("nonsense l", [])):
             found = sorted(word for word in self.completed(line) if not word.startswith("--database"))

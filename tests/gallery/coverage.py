@@ -170,6 +170,10 @@ GALLERY = {
         **two_sides(1.03, 0.1, 0.02), **BEFORE,
         **diffusion({level: NORMAL.cdf(abs(level - 1.03) / 0.1 * NORMAL.inv_cdf(0.75)) for level in (0.7, 0.8, 0.9, 1.1, 1.2, 1.3)})}),
     "sequential-effects": ("sim:slope=0.6,lapse=0", {"exponent": 0.6, **BEFORE}),
+    "task-switching": ("sim:threshold=0.3,lapse=0", {
+        f"{task}: {quantity}": value for task in ("strength", "place") for quantity, value in {
+            **conditions(("switch", "repeat"), {**two_sides(0.0, 0.3, 0.0), **diffusion(signed((0.2, 0.4, 0.8), 0.3))}),
+            **no_difference("switch", "repeat", *ALIKE)}.items()}),
     "stochastic-approximation": ("sim:threshold=0.4,slope=1.5", {**curve(0.4, 1.5, 0.02), **BEFORE, "share of second": 0.5}),
 }
 # file and quantity that are estimated, but have no true value
@@ -193,6 +197,11 @@ def named(condition, quantity):
 
 def intervals(report):
     """Yields the name of each quantity of a report and its interval, which may be None."""
+    for part in report.get("tasks", []):
+        for quantity, interval in intervals(part):
+            yield named(part["task"], quantity), interval
+    if "tasks" in report:
+        return
     for fit in report["fits"]:
         equal = fit["measures"].startswith("PSE")
         yield named(fit["name"], "PSE" if equal else "threshold"), fit.get("threshold_interval")

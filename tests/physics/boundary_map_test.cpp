@@ -6,6 +6,7 @@
 #include "physics/centre_line.hpp"
 #include "physics/edge_feature.hpp"
 #include "physics/field.hpp"
+#include "physics/statement.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::physics;
@@ -242,4 +243,38 @@ TEST_CASE("a map of a frequency band agrees with the whole map in this band", "[
   CHECK_FALSE(band.frequency_Hz(0.28));
   options.band = {5e3, 6e3};
   CHECK_THROWS_AS(BoundaryMap(aluminium_plate(), options), std::domain_error);
+}
+
+TEST_CASE("the reach of an edge is that of the map, in a band too, and an answer needs no whole map",
+          "[physics]") {
+  for (const Surface& s : surfaces()) {
+    for (const char* name : {"turning", "peak", "p50", "friction=0.7"}) {
+      MapOptions options = edge(name);
+      for (const bool band : {false, true}) {
+        if (band) options.band = {15e3, 45e3};
+        CAPTURE(s.taper.index(), s.length_m, s.thickness_m, name, band);
+        const BoundaryMap map(s, options);
+        const Reach reach = boundary_reach_m(s, options);
+        double first = s.length_m, last = 0;
+        for (double f = 1e3; f < 2e6; f *= 1.0005) {
+          const auto x = map.boundary_m(f);
+          if (!x || (band && (f < 15e3 || f > 45e3))) continue;
+          first = std::min(first, *x), last = std::max(last, *x);
+        }
+        CHECK(reach.first_m == Approx(first).margin(1e-3));
+        CHECK(reach.last_m == Approx(last).margin(2e-3));  // the frequencies end before the apex
+      }
+      options.band.reset();
+      const BoundaryMap map(s, options);
+      for (const double x : {0.02, 0.15, 0.25, 0.4}) {
+        const MapAnswer one = answer_at_boundary(s, options, x), other = map.at_boundary(x);
+        REQUIRE(one.frequency_Hz.has_value() == other.frequency_Hz.has_value());
+        if (one.frequency_Hz) CHECK(*one.frequency_Hz == Approx(*other.frequency_Hz).epsilon(1e-4));
+        if (!one.frequency_Hz) CHECK(one.reason.find("no frequency puts this edge at") == 0);
+      }
+    }
+  }
+  MapOptions below = edge("p50");
+  below.band = {10, 20};
+  CHECK_THROWS_AS(boundary_reach_m(seed_brass(), below), Refused);
 }

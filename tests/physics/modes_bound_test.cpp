@@ -160,6 +160,52 @@ TEST_CASE("the jump of a piston's field is 1 on the drive edge, 0 on the sides, 
 
 namespace {
 
+// A field with many maxima of nearly the same height, of which any may be the last one by a small error. Its
+// edges lie at a distance beyond the maximum that is stated to be the last.
+class Waves final : public CentreLine {
+ public:
+  Waves(double last_m, double length_m) : last_m_(last_m), length_m_(length_m) {}
+  Scaled value(double x) const override {
+    // the same for all: waves that end beyond 0.6 of the length
+    const double t = x / length_m_;
+    return {1 + 0.01 * std::cos(40 * t) - (t > 0.6 ? std::min(0.99, 4 * (t - 0.6)) : 0), 0};
+  }
+  Scaled slope(double) const override { return {0, 0}; }
+  std::optional<double> last_peak_m() const override { return last_m_; }
+  std::optional<double> level_m(double) const override { return last_m_ + 0.05 * length_m_; }
+
+ private:
+  double last_m_, length_m_;
+};
+
+}  // namespace
+
+TEST_CASE("where two solutions have different last maxima, the bounds of modes are not less than the jump",
+          "[physics]") {
+  const Surface s = seed_brass();
+  const double cut = cut_off_half_width_m(s, frequency_Hz);
+  for (const double jump : {0.6 * cut, 2 * cut, 6 * cut}) {
+    const Waves modes(0.4 * s.length_m, s.length_m), other(0.4 * s.length_m + jump, s.length_m);
+    for (const auto comparison : {Comparison::coarsest, Comparison::coarser, Comparison::finer})
+      for (const Edge& edge : {Edge::percent(0.5), Edge::peak()}) {
+        const auto bound = modes_bound(s, frequency_Hz, edge, comparison, modes, other).value();
+        CHECK(bound.jump);
+        CHECK(bound.position_m >= std::min(jump, s.length_m));
+        CHECK(bound.position_m <= 1.01 * s.length_m);
+        const double gain = std::abs(std::log(std::abs(modes.value(*modes.last_peak_m()).mantissa)) -
+                                     std::log(std::abs(other.value(*other.last_peak_m()).mantissa)));
+        CHECK(bound.level_dB >= 8.68 * gain);
+      }
+  }
+  // a small difference is not a jump
+  const Waves modes(0.4 * s.length_m, s.length_m), near(0.4 * s.length_m + 0.1 * cut, s.length_m);
+  const auto bound = modes_bound(s, frequency_Hz, Edge::peak(), Comparison::coarsest, modes, near).value();
+  CHECK_FALSE(bound.jump);
+  CHECK(bound.position_m < cut);
+}
+
+namespace {
+
 // Counts the bounds that were checked and those that the true error exceeded, and keeps the ratios bound /
 // error.
 struct Tally {
@@ -210,6 +256,10 @@ struct Campaign {
   // solving
   Tally finer, coarser, coarsest, before;
   Tally mode;
+  // What is assumed of the coarsest solution with which `mode` is compared, divided by its error of |v|
+  // beyond a quarter of the difference from `mode`; and how often its error is larger.
+  std::vector<double> assumed_share;
+  int assumed_outside = 0;
   // What choose_model states of its choice for a random tolerance of |v|, level or boundary; how often `mode`
   // truly meets it, and is chosen then; and how often a choice that should meet it does not.
   Tally choice;
@@ -228,6 +278,7 @@ struct Campaign {
   void add_map(int number, const Surface& s, const CollocatedField& truth, const CentreLine& line);
   void add_choice(int number, const Surface& s, Normalise normalise, const Errors& of_mode,
                   const Errors& of_modes);
+  void add_sketch(int number, const Surface& s, const CollocatedField& truth, const CentreLine& first_mode);
 
  private:
   static std::ofstream open_lines() {
@@ -301,6 +352,27 @@ void Campaign::add_choice(int number, const Surface& s, Normalise normalise, con
                 chosen.reason.c_str(), e.amplitude, e.boundary_m, e.level_dB);
 }
 
+void Campaign::add_sketch(int number, const Surface& s, const CollocatedField& truth,
+                          const CentreLine& first_mode) {
+  if (!modes_bound_applies(s)) return;
+  const auto coarse = make_compared_line(s, frequency_Hz, Comparison::coarsest);
+  const auto apart = line_difference(s, frequency_Hz, Edge::percent(0.5), first_mode,
+                                     first_mode.value(0).ln_magnitude(), *coarse);
+  if (!apart || apart->jump || apart->shape > 0.4) return;
+  const ModeBound first = mode_bound(s, frequency_Hz, 1, first_mode.last_peak_m());
+  const double assumed = assumed_error(s, first, Resolution::coarsest).shape + first.sides.shape;
+  const double off = errors(s, *coarse, 0, truth, Normalise::peak).amplitude;
+  const double rest = off - 0.25 * apart->shape;
+  write(number, "sketch", "amplitude", assumed, std::max(1e-12, rest));
+  assumed_share.push_back(assumed / std::max(1e-12, rest));
+  if (rest <= assumed) return;
+  ++assumed_outside;
+  std::printf(
+      "scene %d: the coarsest solution is wrong by %.2e of %.2e, %.2e of which the difference holds; "
+      "resonance %.3g\n",
+      number, off, assumed, 0.25 * apart->shape, first.resonance);
+}
+
 void Campaign::add(int number, const Surface& s, Normalise normalise, const CollocationGrid& finest) {
   const auto x0 = turning_point_m(s, frequency_Hz);
   if (!x0 || *x0 < 0.02 * s.length_m) return;
@@ -354,6 +426,7 @@ void Campaign::add(int number, const Surface& s, Normalise normalise, const Coll
   write(number, "mode", of_mode, stated);
   mode.add(of_mode, stated);
   add_choice(number, s, normalise, of_mode, e);
+  add_sketch(number, s, *truth, *one);
   if (!inside(of_mode, stated))
     std::printf(
         "scene %d: mode is outside: amplitude %.2e of %.2e; boundary %.2e of %.2e; level %.2e of %.2e\n",
@@ -372,9 +445,11 @@ void compare_scenes(const char* surface, int usual, std::uint64_t seed, const Co
   for (int i = first; i < first + count; ++i) all.add_scene(seed, i, finest, make);
   if (count > usual)
     WARN(all.error.size() << " scenes from number " << first << ", median error " << median(all.error)
-                          << "\nfiner: " << all.finer << "\ncoarser: " << all.coarser << "\ncoarsest: "
-                          << all.coarsest << "\nbefore solving: " << all.before << "\nmode: " << all.mode
-                          << "\nchoice: " << all.choice << "\nmode suffices in " << all.suffices
+                          << "\nfiner: " << all.finer << "\ncoarser: " << all.coarser
+                          << "\ncoarsest: " << all.coarsest << "\nbefore solving: " << all.before
+                          << "\nmode: " << all.mode << "\nchoice: " << all.choice
+                          << "\ncoarsest, as assumed: " << all.assumed_outside << " outside; least "
+                          << Tally::least(all.assumed_share) << "\nmode suffices in " << all.suffices
                           << " scenes and is taken in " << all.taken << " of them\nmap: " << all.map_outside
                           << " outside; bound / error, median " << median(all.map));
   CHECK(all.error.size() > 0.8 * count);
@@ -385,6 +460,7 @@ void compare_scenes(const char* surface, int usual, std::uint64_t seed, const Co
   CHECK(all.mode.outside <= count / 10000);
   CHECK(all.choice.outside <= count / 10000);
   CHECK(all.beyond <= count / 10000);
+  CHECK(all.assumed_outside <= count / 10000);
   CHECK(all.map_outside <= count / 10000);
   if (count < std::max(usual, 16)) return;  // the median of a few scenes means nothing
   CHECK(all.taken >= 0.7 * all.suffices);

@@ -19,6 +19,8 @@ const std::string root = TURNPOINT_SOURCE_DIR;
 std::string source(const std::string& name) { return core::read_file(root + "/protocols/" + name); }
 rig::Rig simulated() { return rig::load(root + "/deploy/rigs/simulated.toml"); }
 
+rig::Rig following() { return rig::load(root + "/deploy/rigs/simulated-following.toml"); }
+
 std::string all_of(const std::vector<core::Problem>& problems) {
   std::string all;
   for (const auto& problem : problems) all += format(problem) + "\n";
@@ -44,8 +46,10 @@ void check_shipped(const rig::Rig& rig) {
       if (entry.path().extension() != ".toml") continue;
       INFO(entry.path().string());
       const auto protocol = protocol::load(entry.path().string());
+      const bool follows = std::any_of(protocol.scenes.begin(), protocol.scenes.end(),
+                                       [](const auto& scene) { return scene.second.follow.has_value(); });
       const bool more = protocol.sensing || protocol.task.sound == protocol::Sound::masking_noise;
-      const auto survey = protocol::survey(protocol, more ? with_cells(rig) : rig);
+      const auto survey = protocol::survey(protocol, follows ? following() : more ? with_cells(rig) : rig);
       CHECK(all_of(survey.problems) == "");
       CHECK(all_of(survey.warnings) == "");
       CHECK_FALSE(survey.sights.empty());
@@ -72,6 +76,81 @@ TEST_CASE("a protocol that watches the finger needs force cells, and real ones n
   CHECK(found(rig) == "");
   rig.capture->bridges.clear();
   CHECK(contains(found(rig), "the rig has no force cells"));
+}
+
+TEST_CASE("a scene that follows the finger is refused at its line on a rig that cannot",
+          "[protocol][follow]") {
+  const auto text = source("grating-periods.toml");
+  CHECK(problems(text, following()) == "");
+  const auto cells_only = with_cells(simulated());
+  const auto refused = problems(text, cells_only);
+  CAPTURE(refused);
+  const auto line =
+      std::count(text.begin(), text.begin() + static_cast<long>(text.find("follow = {")), '\n') + 1;
+  CHECK(contains(refused, "p.toml:" + std::to_string(line) + ":"));
+  CHECK(contains(refused, "scene \"standard\" in block \"practice\""));
+  CHECK(contains(refused, "give \"cells_resonance_Hz\" in [capture]"));
+  auto slow = following();
+  slow.output.period_frames = 384, slow.output.periods = 4;
+  CHECK(contains(problems(text, slow), "10.87 ms from the finger's place to the amplitude"));
+}
+
+TEST_CASE("values of a factor that no pattern can have are a problem at the line of follow",
+          "[protocol][follow]") {
+  // the ends of the range are possible, the middle is not: a texture in time with 0 Hz
+  auto text = replaced(source("grating-periods.toml"), "range = [0.0, 4.0]", "range = [-4.0, 4.0]");
+  text = replaced(text, "period_mm = \"6 + wider_mm\"", "frequency_Hz = \"wider_mm\"");
+  text = replaced(text, "levels = [4.0]", "levels = [0.0]");
+  const auto refused = problems(text, following());
+  CAPTURE(refused);
+  CHECK(contains(refused, "a texture needs cycles_per_m or cycles_per_s"));
+  const auto line =
+      std::count(text.begin(), text.begin() + static_cast<long>(text.rfind("follow = {")), '\n') + 1;
+  CHECK(contains(refused, "p.toml:" + std::to_string(line) + ":"));
+}
+
+TEST_CASE("noises are refused if they need too many samples together, or have power at no whole cycle",
+          "[protocol][follow]") {
+  const auto with = [](const std::string& one, const std::string& other) -> std::string {
+    try {
+      return problems(replaced(source("grating-periods.toml"), "follow = { friction = 1.0, parts = [",
+                               "follow = { friction = 1.0, parts = [" + one + other),
+                      following());
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+  };
+  const auto noise = [](const std::string& period, const std::string& low, const std::string& high) {
+    return "{ shape = \"noise\", from = 0.5, to = 0.6, period_mm = " + period +
+           ", spectrum = [{ cycles_per_mm = " + low + ", density = 1.0 }, { cycles_per_mm = " + high +
+           ", density = 1.0 }], begin_mm = 35.0, end_mm = 115.0 },";
+  };
+  const auto long_one = noise("80.0", "0.5", "2.0");  // 1280 samples
+  CHECK(with(long_one, "") == "");
+  CHECK(contains(with(long_one, long_one), "have more than 2048 samples"));
+  CHECK(contains(with(noise("10.0", "0.11", "0.19"), ""), "no power at any whole number of cycles"));
+}
+
+TEST_CASE("where a scene cannot reach what it asks for everywhere, the check says so and lets it be",
+          "[protocol][follow]") {
+  const auto text =
+      replaced(source("edge-anywhere.toml"), "follow = { friction = 1.0", "follow = { friction = 0.8");
+  const auto survey = protocol::survey(protocol::parse(text, "p.toml"), following());
+  CHECK(all_of(survey.problems) == "");
+  const auto told = all_of(survey.warnings);
+  CAPTURE(told);
+  CHECK(contains(told, "relative friction 0.8 is asked for, and from 1 to 1 is reached"));
+}
+
+TEST_CASE("the rig is asked for calibrated cells if it is a real one and a scene follows",
+          "[protocol][follow]") {
+  auto protocol = protocol::load(root + "/protocols/grating-periods.toml");
+  protocol.sensing.reset();
+  auto rig = following();
+  rig.capture->uri = "alsa:hw:1";
+  CHECK(contains(all_of(protocol::survey(protocol, rig).problems), "force cells are not calibrated"));
+  rig.capture->forces = rig::ForceCells{};
+  CHECK(all_of(protocol::survey(protocol, rig).problems) == "");
 }
 
 TEST_CASE("tones whose products come near the carrier of the force cells give a warning with the figures",

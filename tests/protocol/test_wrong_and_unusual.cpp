@@ -1,5 +1,6 @@
 // Tests the files in tests/protocol/corpus: wrong protocols with the line that must be reported, and unusual
 // but correct ones. README.md there explains their form.
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <sstream>
@@ -74,6 +75,16 @@ Edited edited(const Case& wanted) {
   return result;
 }
 
+bool follows(const protocol::Protocol& protocol) {
+  return std::any_of(protocol.scenes.begin(), protocol.scenes.end(),
+                     [](const auto& scene) { return scene.second.follow.has_value(); });
+}
+
+const rig::Rig& following() {
+  static const auto rig = rig::load(root + "/deploy/rigs/simulated-following.toml");
+  return rig;
+}
+
 const rig::Rig& quick() {
   static const auto rig = quick_rig();
   return rig;
@@ -82,7 +93,8 @@ const rig::Rig& quick() {
 /// The problems of the file or, if there are none, those found by a survey on a rig.
 std::vector<core::Problem> said_of(const std::string& source) {
   try {
-    auto survey = protocol::survey(protocol::parse(source, "p.toml"), quick());
+    const auto parsed = protocol::parse(source, "p.toml");
+    auto survey = protocol::survey(parsed, follows(parsed) ? following() : quick());
     auto said = survey.problems;
     said.insert(said.end(), survey.warnings.begin(), survey.warnings.end());
     return said;

@@ -100,6 +100,26 @@ class Reading(unittest.TestCase):
             for name, levels in factors.items():
                 self.assertEqual(set(trials[name]), set(levels), name)
 
+    def test_the_trials_of_several_tasks(self):
+        gallery, database = Path(README).parents[2] / "protocols/gallery/task-switching.toml", self.folder / "tasks.sqlite"
+        for seed in ("2", "6"):  # a slow person, who misses deadlines
+            subprocess.run([TURNPOINT, "run", gallery, "--participant", "P" + seed, "--db", database, "--headless", "--observer",
+                            "sim:threshold=0.3,lapse=0,bound=1.5", "--seed", seed], check=True, stdout=subprocess.DEVNULL)
+        out = self.folder / "tasks"
+        subprocess.run([TURNPOINT, "export", "--db", database, "--out", out], check=True, stdout=subprocess.DEVNULL)
+        self.same(turnpoint.read(database), turnpoint.read(out))
+        trials = turnpoint.read(database).trials
+        task = trials.procedure.str.split("-").str[0]
+        for _, session in trials.groupby("session_id"):
+            turns = ["strength-switch", "strength-repeat", "place-switch", "place-repeat"]
+            self.assertEqual(list(session.procedure), turns * 48)  # a missed trial does not come again out of turn
+            self.assertEqual(list(session.turn), ["switch", "repeat"] * 96)
+            self.assertGreater((session.outcome == "timeout").sum(), 0)
+        self.assertEqual(set(trials.response[task == "strength"].dropna()), {"rougher", "smoother"})
+        self.assertEqual(set(trials.response[task == "place"].dropna()), {"left", "right"})
+        shares = trials.groupby([task, trials.level.abs()]).correct.mean().astype(float).unstack()
+        self.assertTrue((shares[0.8] > shares[0.2] + 0.15).all(), shares)  # each task has levels of its own
+
     def test_sessions_are_chosen(self):
         whole = turnpoint.read(self.database)
         for source in (self.database, self.folder / "csv"):

@@ -396,3 +396,36 @@ choices = [ { id = "done", label = { en = "Done" } } ]
   CHECK(mean_of("0.7", two, "go_cue", "explore_s = 20.0\ndeadline_s = 25.0\nanticipation_s = 9.5\n") ==
         Approx(0.7).margin(0.03));
 }
+
+TEST_CASE("protocols that follow the finger are checked with their cues, and what is deeper moves more",
+          "[check]") {
+  const std::string root = TURNPOINT_SOURCE_DIR;
+  rehearsal::CheckOptions options;
+  options.sessions = 1;
+  const auto path = root + "/deploy/rigs/simulated-following.toml";
+  const auto check = rehearsal::check(root + "/protocols/grating-periods.toml", path, options);
+  for (const auto& problem : check.problems) UNSCOPED_INFO(format(problem));
+  for (const auto& problem : check.warnings) UNSCOPED_INFO(format(problem));
+  CHECK(check.problems.empty());
+  CHECK(check.warnings.empty());
+  CHECK(check.trials.median >= 66);  // 6 practice and 60, some of which nobody answers
+  const auto accuracy = [](const rehearsal::Check& of, const std::string& cue) {
+    for (const auto& report : of.cues.reports)
+      if (report.cue == cue) return report.accuracy;
+    return -1.0;
+  };
+  CHECK(accuracy(check, "pitch") == Approx(0.5).margin(0.01));
+  // A comparison that is also deeper needs more vibration everywhere.
+  const auto source = core::read_file(root + "/protocols/grating-periods.toml");
+  const TemporaryFolder folder;
+  const auto deeper = folder / "deeper.toml";
+  std::ofstream(deeper) << [&] {
+    auto text = source;
+    const auto at = text.rfind("from = 0.4");
+    return text.replace(at, 10, "from = 0.25");
+  }();
+  const auto told = rehearsal::check(deeper, path, options);
+  for (const auto& problem : told.problems) UNSCOPED_INFO(format(problem));
+  CHECK(told.problems.empty());
+  CHECK(accuracy(told, "amplitude at the wide end") > 0.95);
+}

@@ -93,7 +93,8 @@ class Sweep:
     def session(self, folder, protocol, kind, person):
         """One more person; false if the session could not be run."""
         text = protocol.read_text()
-        rig = RIGS / ("simulated-forces.toml" if "\n[sensing]" in text or 'by = "tone"' in text else "simulated.toml")
+        rig = RIGS / ("simulated-following.toml" if "\nfollow = " in text else
+                      "simulated-forces.toml" if "\n[sensing]" in text or 'by = "tone"' in text else "simulated.toml")
         observer = "sim" if kind == "sim" else f"program:{HERE}/one_way.py,kind={kind}"
         for wait_s in (3, 30):  # a session that was asked to end before it began is begun again
             run = self.call("run", protocol, "--rig", rig, "--participant", person, "--db", folder / "lab.sqlite",

@@ -89,6 +89,25 @@ TEST_CASE("a plan states displacement, friction and boundary under a finger", "[
   CHECK(same.boundary_shift_m == 0);
 }
 
+TEST_CASE("a planner that has solved for a finger says the same of other levels as a new one", "[scene]") {
+  const auto rig = simulated();
+  Planner known(rig);
+  auto scene = edge_at(0.150, "p50");
+  for (const double displacement_m : {1e-6, 0.4e-6}) {
+    for (const char* edge : {"p50", "peak"}) {
+      scene.displacement_m = displacement_m;
+      scene.edge = physics::parse_edge(edge);
+      Planner fresh(rig);
+      const auto one = known.under_finger(known.plan(scene)), other = fresh.under_finger(fresh.plan(scene));
+      CHECK(one.displacement_m == other.displacement_m);
+      CHECK(one.free_friction == other.free_friction);
+      CHECK(one.profile_friction == other.profile_friction);
+      CHECK(one.friction_low == other.friction_low);
+      CHECK(one.boundary_shift_m == other.boundary_shift_m);
+    }
+  }
+}
+
 TEST_CASE("a displacement requested under a finger is reached there, and limits apply without the finger",
           "[scene]") {
   auto rig = simulated();
@@ -229,6 +248,16 @@ TEST_CASE("what prevents a plan, and what a tolerance lacks, is said in the lang
   zone.zone->from_m = 0.2;
   zone.zone->friction = 0.7;
   CHECK(refused_in(zone, "de").find("Bereich von 200 bis 150 mm; erlaubt: innerhalb von 0 bis 300 mm") == 0);
+  // the reason is that of the first time, also in a copy of the planner
+  Planner planner(simulated());
+  CHECK_THROWS_AS(planner.plan(zone), Unreachable);
+  for (Planner one : {planner, Planner(planner)}) {
+    try {
+      one.plan(zone);
+    } catch (const Unreachable& refused) {
+      CHECK(core::say(refused.why(), "de") == refused_in(zone, "de"));
+    }
+  }
   auto strict = edge_at(0.150, "p50");
   strict.tolerance = {1e-9, {}, {}};
   const auto plan = Planner(simulated()).plan(strict);

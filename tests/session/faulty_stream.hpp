@@ -53,6 +53,7 @@ class FaultyStream : public turnpoint::audio::Stream {
   void change(std::uint32_t burst, const turnpoint::audio::Change& change) override {
     real_->change(burst, change);
   }
+  bool follow(const turnpoint::audio::GainPeriod& gains) noexcept override { return real_->follow(gains); }
   void stop(std::uint32_t burst, const turnpoint::audio::Ramp& ramp,
             std::optional<std::int64_t> frame) override {
     real_->stop(burst, ramp, frame);

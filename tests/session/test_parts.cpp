@@ -390,7 +390,8 @@ TEST_CASE("an interval of parts that lasts until the answer takes answers in its
   const auto protocol = protocol::parse(text, "p.toml");
   CHECK(protocol::explored(protocol.task));
   const auto spec = *trial::Director(protocol, 0, 5).next();
-  trial::Machine machine(trial::timing_of(protocol, *trial::Director(protocol, 0, 5).block(), spec));
+  trial::Machine machine(trial::timing_of(protocol, *trial::Director(protocol, 0, 5).block(), spec,
+                                          trial::parts_of(protocol, spec)));
   constexpr std::int64_t ms = 1'000'000;
   machine.start(0);
   machine.handle({800 * ms, trial::EventKind::onset, 0});
@@ -730,4 +731,141 @@ TEST_CASE("a deadline is compared with every part that can be the last one; rows
     swapped += long_first ? 1 : 0;
   }
   CHECK(swapped > 0);
+}
+
+namespace {
+
+/// An adaptor before two intervals, longer in the first trial.
+const std::string kBefore =
+    replaced(replaced(kPauses, "duration_s = \"lead_s\"",
+                      "before = [{ scene = \"adaptor\", duration_s = \"lead_s\", first_s = 2.0 }, "
+                      "{ silence_s = 0.1 }, { scene = \"adaptor\", duration_s = 0.3 }, "
+                      "{ silence_s = \"isi_s\" }]\nduration_s = 0.4"),
+             "repeats = 4", "repeats = 2");
+
+}  // namespace
+
+TEST_CASE("one adaptor comes before both intervals of a trial, at the frames that the file states",
+          "[session][parts][before]") {
+  const auto trials = session_of(kBefore);
+  REQUIRE(trials.size() == 8);
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    INFO("trial " << i);
+    const auto parts = stored_parts(trials[i]);
+    REQUIRE(parts.size() == 4);
+    const double isi_s = number(trials[i], "isi_s");
+    const bool is_long = i == 0 || i == 3 || i == 4;  // blocks of four, with a break after the third
+    const std::int64_t lengths[] = {frames(is_long ? 2.0 : number(trials[i], "lead_s")), frames(0.3),
+                                    frames(0.4), frames(0.4)};
+    const std::int64_t silences[] = {0, frames(0.1), frames(isi_s), frames(2 * isi_s)};
+    auto at = parts.at(0).first;
+    for (int k = 0; k < 4; ++k) {
+      at += silences[k];
+      CHECK(parts.at(k).first == at);
+      CHECK(parts.at(k).second == lengths[k]);
+      at += lengths[k];
+    }
+    std::map<int, int> interval;
+    for (const auto& tone : trials[i].tones) interval[tone.interval_index] = tone.of_interval;
+    CHECK(interval == std::map<int, int>{{0, -1}, {1, -1}, {2, 0}, {3, 1}});
+    CHECK(trials[i].tones.front().scene == "adaptor");
+    CHECK(trials[i].timing.response_time_s.value_or(0) > 0);  // counted from the end of the second interval
+  }
+}
+
+TEST_CASE("the page counts only the intervals, and what comes before them is none",
+          "[session][parts][before]") {
+  const TemporaryFolder folder;
+  Screen screen;
+  session::Inputs inputs;
+  session::run(session::prepare(simulated_run(written(folder, kBefore), folder / "a.sqlite", 5)), &screen,
+               inputs);
+  std::vector<int> numbers;
+  for (const auto& page : screen.pages) {
+    if (page.kind != session::PageKind::stimulus) continue;
+    CHECK(page.interval.of == 2);
+    if (numbers.empty() || numbers.back() != page.interval.number) numbers.push_back(page.interval.number);
+    if (numbers.size() == 6) break;
+  }
+  CHECK(numbers == std::vector<int>{0, 1, 2, 0, 1, 2});
+}
+
+TEST_CASE("a session with something before the intervals goes on with the same trials after a cut",
+          "[session][parts][before]") {
+  const TemporaryFolder folder;
+  const auto file = written(folder, kBefore);
+  session::Inputs inputs;
+  const auto whole =
+      session::run(session::prepare(simulated_run(file, folder / "whole.sqlite", 5)), nullptr, inputs);
+  const auto expected = trials_of(folder / "whole.sqlite", whole.session_id);
+  for (int page : {12, 17, 23}) {
+    const auto name = "cut" + std::to_string(page) + ".sqlite";
+    Screen cut(page);
+    CHECK_THROWS_AS(session::run(session::prepare(simulated_run(file, folder / name, 5)), &cut, inputs),
+                    std::runtime_error);
+    std::ostringstream messages;
+    const auto resumed = session::prepare_resume({folder / name, "", "resume", true}, messages);
+    REQUIRE(resumed.has_value());
+    const auto done = trials_of(folder / name, resumed->resume_session).size();
+    const auto summary = session::run(*resumed, nullptr, inputs);
+    CHECK(summary.status == core::SessionStatus::completed);
+    const auto trials = trials_of(folder / name, summary.session_id);
+    REQUIRE(trials.size() == expected.size());
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+      CHECK(trials[i].factors == expected[i].factors);
+      CHECK(trials[i].given.response == expected[i].given.response);
+      CHECK(trials[i].learned.state_hash == expected[i].learned.state_hash);
+    }
+    if (done < trials.size()) CHECK(stored_parts(trials[done]).at(0).second == frames(2.0));
+  }
+}
+
+TEST_CASE("what comes before the intervals is limited, counted, measured and roved like them",
+          "[session][parts][before]") {
+  auto rig = thin_plate();
+  rig.limits.continuous_s = 3.5;
+  const auto problems = [&](const std::string& text) {
+    return said(protocol::survey(protocol::parse(text, "p.toml"), rig).problems);
+  };
+  CHECK(problems(kBefore).empty());
+  // 2.0 s, 0.1 s, 1.5 s, 0.25 s and 0.4 s; the pause of 0.5 s between the intervals is a rest
+  CHECK(problems(replaced(kBefore, "duration_s = 0.3", "duration_s = 1.5"))
+            .find("tones last up to 4.25 s without a pause") != std::string::npos);
+  const auto seconds = [](const std::string& text) {
+    return rehearsal::session_length(protocol::parse(text, "p.toml"), 1).duration_s;
+  };
+  CHECK(seconds(replaced(kBefore, "duration_s = 0.3", "duration_s = 1.3")) - seconds(kBefore) ==
+        Approx(8 * 1.0).margin(1e-6));
+  const TemporaryFolder folder;
+  const auto ran = run(written(folder, kBefore), [](int, simulation::Plant&) {});
+  REQUIRE(ran.trials.size() == 8);
+  for (const auto& trial : ran.trials) {
+    CHECK(trial.surface.proof == core::Proof::ok);
+    for (const auto& tone : trial.tones) CHECK(std::abs(tone.measured_dB.value()) < 0.2);
+  }
+  const auto roved = replaced(kBefore, "displacement_um = 1.0", "displacement_um = 1.0\nrove_dB = 3.0");
+  for (const auto& trial : session_of(roved)) {
+    std::map<int, double> rove_dB;
+    for (const auto& tone : trial.tones) rove_dB[tone.interval_index] = tone.rove_dB;
+    CHECK(rove_dB.at(0) == rove_dB.at(1));  // one draw for what comes before
+    CHECK(rove_dB.at(0) != rove_dB.at(2));
+    CHECK(rove_dB.at(2) != rove_dB.at(3));
+  }
+}
+
+TEST_CASE("what comes before the intervals changes nothing of what the search for cues finds in them",
+          "[session][parts][before][cues]") {
+  // the level decides which interval is right, so the adaptor can depend on it without telling the order
+  const auto guard = [](const std::string& text) {
+    const auto protocol = protocol::parse(text, "p.toml");
+    return rehearsal::cue_guard(protocol, thin_plate(), protocol::survey(protocol, thin_plate()));
+  };
+  const auto without = guard(replaced(replaced(kPauses, "duration_s = \"lead_s\"", "duration_s = 0.4"),
+                                      "repeats = 4", "repeats = 2"));
+  const auto with = guard(kBefore);
+  REQUIRE(with.reports.size() == without.reports.size());
+  for (std::size_t i = 0; i < with.reports.size(); ++i) {
+    CHECK(with.reports[i].cue == without.reports[i].cue);
+    CHECK(with.reports[i].accuracy == Approx(without.reports[i].accuracy).margin(0.02));
+  }
 }

@@ -292,7 +292,7 @@ TEST_CASE("a procedure that continues goes on where the participant's last sessi
     add_and_compare(request.database, second, request.protocol, rows);
     CHECK(rows.size() == 2 * end_of_first);
     CHECK(rows[end_of_first].level != rows.front().level);
-    const auto report = view::report_data(request.database, second.session_id);
+    const auto report = view::report_data(request.database, second.session_id).front();
     REQUIRE(report.estimates.size() == 1);
     REQUIRE(second.estimates.size() == 1);
     CHECK(report.estimates[0].mean == second.estimates[0].mean);

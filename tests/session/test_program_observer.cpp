@@ -149,11 +149,11 @@ TEST_CASE("numbers, confidence and settings of a slider come from a program too"
   CHECK(reply.confidence_time_s == 0.5);
   number.value->high = 12;
   CHECK_THROWS_WITH(observer.answer(number), ContainsSubstring("\"value\" is 12.5; allowed are 0 to 12"));
-  const auto setting = observer.adjust({1, 0, 5, 2, 0, {}});
+  const auto setting = observer.adjust({1, 0, 5, 2, 0, 0, {}});
   REQUIRE(setting.moves.size() == 2);
   CHECK(setting.moves[1].value == 3);
   CHECK(setting.done_s == 2);
-  CHECK_THROWS_WITH(observer.adjust({1, 0, 2.5, 2, 0, {}}),
+  CHECK_THROWS_WITH(observer.adjust({1, 0, 2.5, 2, 0, 0, {}}),
                     ContainsSubstring("\"value\" is 3; allowed are 0 to 2.5"));
 }
 

@@ -62,7 +62,7 @@ TEST_CASE("a session takes its levels from a program, and stores which program i
   CHECK(estimates[0].basis == std::to_string(right) + " right");
   CHECK(store::verify(session.setup.database).good());
 
-  const auto report = view::report_data(session.setup.database, summary.session_id);
+  const auto report = view::report_data(session.setup.database, summary.session_id).front();
   REQUIRE(report.estimates.size() == 1);
   CHECK(report.estimates[0].mean == -right);
   CHECK(std::ranges::any_of(report.facts, [](const auto& fact) {

@@ -53,7 +53,7 @@ report::SessionData data_of(const std::string& sensing, Sensors& sensors) {
   session::Inputs inputs;
   const auto summary =
       session::run(setup, nullptr, inputs, std::make_unique<session::SimulatedRoom>(setup.rig), &sensors);
-  return view::report_data(request.database, summary.session_id);
+  return view::report_data(request.database, summary.session_id).front();
 }
 
 double mean_between(const analysis::FrictionCurve& curve, double from_mm, double to_mm) {

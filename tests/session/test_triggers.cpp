@@ -68,7 +68,8 @@ Ran run(const std::string& protocol, const std::string& rig_tables,
   for (const auto& block : stored.blocks)
     ran.trials.insert(ran.trials.end(), block.trials.begin(), block.trials.end());
   for (const auto& event : stored.events) ran.events[event.kind].push_back(event);
-  for (const auto& [name, text] : view::report_data(request.database, ran.summary.session_id).health)
+  const auto reports = view::report_data(request.database, ran.summary.session_id);
+  for (const auto& [name, text] : reports.front().health)
     if (core::say(name, "en") == "Trigger codes") ran.report = core::say(text, "en");
   return ran;
 }

@@ -144,6 +144,7 @@ inline TrialRow answered(int index, int tones = 2) {
   t.given.confidence = 1 + index % 4;
   t.given.confidence_time_s = 0.75;
   t.given.points = 2.5;
+  t.given.again = 6;
   t.finger.sensing = "ok";
   t.finger.contact_s = 2.25;
   t.finger.strokes = 9;
@@ -159,6 +160,7 @@ inline TrialRow answered(int index, int tones = 2) {
   t.finger.lag_mm = 0.625;
   t.finger.tare_mN = -1.5;
   t.finger.mu = 0.625;
+  t.follow = {"late lifted", 0.5, 0.5625, 0.59375, 1.75, 0.875, 0.9375, -32.5, 62.5};
   t.signal_rows.push_back(finger_signal(index));
   t.learned.state_hash = 0xfedcba9876543210ULL + static_cast<unsigned>(index);
   for (int i = 0; i < 2; ++i)

@@ -377,5 +377,5 @@ TEST_CASE("the bytes over which the checksums of a session are made change only 
       "UPDATE segment SET session_id = (SELECT session_id FROM session); DELETE FROM link");
   Transaction transaction(database);
   Chain chain(database, "00000000-0000-4000-8000-000000000000");
-  CHECK(chain.add().sha256 == "c46b47c63bf331ecfe50aed5962c3a85e1dffe75faf9d27102a8aa96071dc8e7");
+  CHECK(chain.add().sha256 == "374f751db6b3b6aab1c2ad628eee82bd40b7d829ff6fd347bdb0b4ec26a0dd1d");
 }

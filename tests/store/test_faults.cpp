@@ -206,7 +206,7 @@ TEST_CASE("a database of another schema is not changed, and the message says whi
     const auto [kind, message] = sample::failure(action);
     CHECK(kind == ErrorKind::other_schema);
     CHECK(sample::contains(message, "has schema " + std::to_string(schema)));
-    CHECK(sample::contains(message, schema < kSchema ? "`turnpoint export` of commit f7e446de" : "update"));
+    CHECK(sample::contains(message, schema < kSchema ? "`turnpoint export` of commit fb95ea6f" : "update"));
   };
   check([&] { sample::session(db, 1); });
   check([&] { list_sessions(db); });

@@ -70,6 +70,9 @@ void add_judgements(std::vector<Exhibit>& all, const Words& words) {
                            "なめらかさに合う数はいくつですか? 二倍なめらかなら二倍の数です。");
   number.value = {0.1, 1000, 1, {}, {}, ""};
   all.push_back({"number", number});
+  number.again = number.offers_again = true;
+  all.push_back({"number-again", number});
+  number.again = number.offers_again = false;
   number.value.decimals = 0;
   number.value.first = core::text("first_is", words.language);
   number.value.first.replace(number.value.first.find("%1"), 2, "10");
@@ -140,6 +143,8 @@ void add_trials(std::vector<Exhibit>& all, const Words& words) {
   cue.text.clear();
   cue.answers_open = false;
   all.push_back({"cue", cue});
+  cue.cue = boundary(words, PageKind::stimulus).text;  // what a task of several says before its trials
+  all.push_back({"cue-task", cue});
   all.push_back({"explore", boundary(words, PageKind::stimulus)});
   all.push_back({"response", boundary(words, PageKind::response)});
   Page now = boundary(words, PageKind::stimulus);
@@ -155,6 +160,10 @@ void add_trials(std::vector<Exhibit>& all, const Words& words) {
   all.push_back({"interval-2-of-3", oddity(words, PageKind::stimulus, 2)});
   all.push_back({"gap", oddity(words, PageKind::pause, 2)});
   all.push_back({"response-3", oddity(words, PageKind::response, 3)});
+  // with the button that presents the intervals again, beside the longest badge
+  Page again = instructed(oddity(words, PageKind::response, 3), words, "accuracy");
+  again.again = again.offers_again = true;
+  all.push_back({"response-again", again});
   all.push_back({"between-trials", base(words, PageKind::interval)});
   Page feedback = base(words, PageKind::feedback);
   feedback.correct = true;
@@ -312,6 +321,9 @@ void add_starts(std::vector<Exhibit>& all, const Words& words) {
   adjust.answers.clear();
   adjust.slider = {31, 0, 100, 1};
   all.push_back({"adjust", adjust});
+  adjust.again = adjust.offers_again = true;
+  all.push_back({"adjust-again", adjust});
+  adjust.again = adjust.offers_again = false;
   adjust.answers_open = true;
   all.push_back({"adjust-silent", adjust});
 }

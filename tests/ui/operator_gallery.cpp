@@ -85,7 +85,7 @@ view::ReportPages forces_exhibit(const std::string& protocol, const std::string&
   const auto database = folder.filePath("a.sqlite").toStdString();
   session::Inputs inputs;
   const auto session = session::run(session::prepare(request_for(protocol, database)), nullptr, inputs);
-  auto data = view::report_data(database, session.session_id);
+  auto data = view::report_data(database, session.session_id).front();
   data.language = language;
   for (const auto& trial : data.trials) {
     const double wave = std::sin(2.1 * trial.trial_index), other = std::cos(1.3 * trial.trial_index);

@@ -39,6 +39,29 @@ Item {
             return find(view, "slider")
         }
 
+        function test_the_standard_comes_again_and_then_the_setting_that_was_made() {
+            session.bridge.watch(stage.Window.window)
+            session.start("match.toml")
+            tap("proceed")
+            adjusting()
+            verify(!find(view, "proceed").enabled)
+            tap("stepUp")
+            tap("stepUp")
+            fuzzyCompare(find(view, "slider").parent.value, -19, 1e-9)
+            tap("again")
+            tryVerify(() => page.kind === PageModel.Stimulus, 20000)      // the standard
+            verify(!page.again)
+            adjusting()
+            fuzzyCompare(page.slider, -19, 1e-9)
+            verify(!page.again)                                           // once is all
+            verify(find(view, "proceed").enabled)                         // the setting can be confirmed as it is
+            tap("proceed")
+            tryCompare(session, "over", true, 20000)
+            compare(session.failure, "")
+            compare(session.column("again"), "1")
+            compare(session.column("response"), "-19")
+        }
+
         function test_settings_by_slider_and_step_buttons_are_stored() {
             session.bridge.watch(stage.Window.window)
             session.start("adjust.toml")

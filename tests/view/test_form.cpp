@@ -61,7 +61,7 @@ std::string said(const std::string& source) { return core::canonical(core::parse
 bool is_value(const Field& field) {
   using Input = Field::Input;
   return field.input != Input::table && field.input != Input::list && field.input != Input::entry &&
-         field.input != Input::name;
+         field.input != Input::list_name && field.input != Input::name;
 }
 
 }  // namespace
@@ -103,6 +103,30 @@ TEST_CASE("every value of every shipped protocol has exactly one field, which le
           CHECK(a.items.size() == b.items.size());
         }
   }
+}
+
+TEST_CASE("a file with several tasks has a group for each of them, and none for a single one", "[form]") {
+  const Document document(
+      "[tasks.side]\nkind = \"single-interval\"\nintervals = [\"edge\"]\n[tasks.which]\nkind = \"2ifc\"\n"
+      "[[procedure]]\nname = \"steps\"\ntask = \"which\"\n",
+      "tasks.toml");
+  const auto form = view::form_of(document, {});
+  std::vector<Path> tasks;
+  for (const auto& section : form)
+    for (const auto& group : section.groups) {
+      CHECK(group.path != Path{"task"});
+      if (group.path.front() != "tasks") continue;
+      CHECK(section.name == "question");
+      CHECK_FALSE(group.removable);  // a file has one [task] or two or more
+      tasks.push_back(group.path);
+    }
+  CHECK(tasks == std::vector<Path>{{"tasks", "side"}, {"tasks", "which"}});
+  const auto* field = find(form, {"tasks", "which", "gap_s"});
+  REQUIRE(field != nullptr);
+  const auto* named = find(form, {"procedure", "0", "task"});
+  if (named == nullptr) named = find(form, {"procedure", "steps", "task"});
+  REQUIRE(named != nullptr);
+  CHECK(named->allowed == std::vector<std::string>{"side", "which"});
 }
 
 TEST_CASE("fields have the kind, words and limits of the table of keys, and the names that the file gives",
@@ -214,6 +238,46 @@ TEST_CASE("what is typed into a field is what the reader of protocols reads", "[
   source = view::reduced(with_pass, *find(form, {"block", "0", "pass"}));
   CHECK(source.find("pass") == std::string::npos);
   CHECK(type(source, {"task", "kind"}, "") == source);
+}
+
+TEST_CASE("an interval of several parts is begun by its name, and its parts are added one by one", "[form]") {
+  const std::string scenes = "format = \"friction-protocol/1\"\n[scene.adaptor]\n[scene.edge]\n";
+  const auto begin = [](const Document& document) {
+    for (const auto& section : form_of(document, {}))
+      for (const auto& group : section.groups)
+        for (const auto& field : group.fields)
+          if (field.input == Field::Input::list_name && field.path == Path{"task", "parts"}) return field;
+    FAIL("no field for a new interval");
+    return Field{};
+  };
+  const Document document(scenes + "[task]\nkind = \"2ifc\"\n", "p.toml");
+  const Document one(view::changed(document, begin(document), "adapted"), "p.toml");
+  CHECK(said(one.text()) == said(scenes + "[task]\nkind = \"2ifc\"\n[task.parts]\n"
+                                          "adapted = [{ scene = \"adaptor\" }]\n"));
+  const Document two(view::changed(one, begin(one), "other"), "p.toml");
+  CHECK(two.find({"task", "parts", "other"}) != nullptr);
+  CHECK(two.find({"task", "parts", "adapted"}) != nullptr);
+  // its parts can be added, and intervals can name it
+  bool extends = false, named = false;
+  for (const auto& section : form_of(two, {}))
+    for (const auto& group : section.groups)
+      for (const auto& field : group.fields) {
+        if (field.path == Path{"task", "parts", "adapted"} && field.input == Field::Input::list) {
+          extends = true;
+          const Document more(view::extended(two, field), "p.toml");
+          CHECK(more.find({"task", "parts", "adapted", "1", "scene"}) != nullptr);
+        }
+        if (field.path == Path{"task", "intervals"})
+          named = std::count(field.allowed.begin(), field.allowed.end(), "adapted") == 1;
+      }
+  CHECK(extends);
+  CHECK(named);
+  for (const char* bad : {"two words", "a.b", "\"", "\u00e4"}) {
+    INFO(bad);
+    CHECK_THROWS_AS(view::changed(document, begin(document), bad), core::BadInput);
+  }
+  CHECK_THROWS_AS(view::changed(one, begin(one), "adapted"), core::BadInput);
+  CHECK(view::changed(one, begin(one), "") == one.text());
 }
 
 TEST_CASE("another name of a table is also given to what refers to it", "[form]") {

@@ -52,6 +52,38 @@ std::string clash(const std::string& svg, double height) {
 
 }  // namespace
 
+TEST_CASE("the preview of a scene that follows the finger draws what is asked for beside what is reached",
+          "[preview]") {
+  view::Preview preview(protocol::load(kSource + "/protocols/edge-anywhere.toml"),
+                        rig::load(kSource + "/deploy/rigs/simulated-following.toml"));
+  const auto look = preview.look("edge", factors(preview, {"edge_mm=75", "step=0.4"}));
+  REQUIRE(look.problem.empty());
+  REQUIRE(look.followed.size() == 1);  // no events
+  const auto figure = view::profile_figure({look});
+  const auto& asked = std::get<report::Line>(figure.charts.at(1).layers.at(0));
+  const auto& reached = std::get<report::Line>(figure.charts.at(1).layers.at(1));
+  CHECK(asked.beyond);
+  CHECK_FALSE(reached.beyond);
+  const auto at = [](const report::Line& line, double x_mm) {
+    for (std::size_t i = 0; i < line.x.size(); ++i)
+      if (line.x[i] >= x_mm) return line.y[i];
+    return -1.0;
+  };
+  for (const auto* line : {&asked, &reached}) {
+    CHECK(at(*line, 10) == Approx(1).margin(1e-6));
+    CHECK(at(*line, 30) == Approx(0.75).margin(0.01));
+    CHECK(at(*line, 50) == Approx(0.5).margin(1e-6));
+    CHECK(at(*line, 67.5) == Approx(0.4).margin(0.01));  // half-way down to 0.3 at the edge
+    CHECK(at(*line, 82.5) == Approx(0.6).margin(0.01));  // half-way back from 0.7
+    CHECK(at(*line, 100) == Approx(0.5).margin(1e-6));
+    CHECK(at(*line, 200) == Approx(1).margin(1e-6));
+  }
+  bool delay = false;
+  for (const auto& [label, value] : look.facts)
+    delay = delay || core::say(value, "en").starts_with("2.37 ms after it");
+  CHECK(delay);
+}
+
 TEST_CASE("the chart of friction under a fingertip shows the loaded surface", "[preview]") {
   auto preview = preview_of("demo");
   const auto look = preview.look("edge", factors(preview, {}));

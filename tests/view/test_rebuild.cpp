@@ -136,7 +136,9 @@ const Field* find(const Form& form, const Path& path, bool value) {
     for (const auto& group : section.groups)
       for (const auto& field : group.fields) {
         const bool table = field.input == Input::table || field.input == Input::list;
-        if (field.path == path && table != value && field.input != Input::entry) return &field;
+        if (field.path == path && table != value && field.input != Input::entry &&
+            field.input != Input::list_name)
+          return &field;
       }
   return nullptr;
 }
@@ -156,6 +158,15 @@ bool one_step(Hand& hand, const Form& wanted) {
                   std::equal(field.path.begin(), field.path.end(), one.path.begin()) &&
                   document.find(one.path) == nullptr)
                 return hand.set(name, group, field, one.path.back() + " = " + one.value), true;
+        return false;
+      case Input::list_name:
+        for (const auto& other : wanted)
+          for (const auto& there : other.groups)
+            for (const auto& one : there.fields)
+              if (one.input == Input::list && one.path.size() == field.path.size() + 1 &&
+                  std::equal(field.path.begin(), field.path.end(), one.path.begin()) &&
+                  document.find(one.path) == nullptr)
+                return hand.set(name, group, field, one.path.back()), true;
         return false;
       case Input::name:
         return false;
@@ -229,6 +240,8 @@ TEST_CASE("every shipped protocol can be made from an empty study by taps", "[fo
     if (entry.path().extension() == ".toml") files.push_back(entry.path().string());
   std::sort(files.begin(), files.end());
   REQUIRE(files.size() > 20);
+  // one with an interval of several parts
+  files.push_back(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/gallery/adaptation.toml");
   for (const auto& file : files) {
     INFO(file);
     const Document target(core::read_file(file), file);

@@ -46,7 +46,7 @@ TEST_CASE("each number of the report on the screen stands on its page as well", 
   const TemporaryFolder folder;
   session::Inputs inputs;
   const auto stored = session::run(session::prepare(demo_in(folder)), nullptr, inputs);
-  const auto summary = report::summarise(view::report_data(stored.database, stored.session_id));
+  const auto summary = report::summarise(view::report_data(stored.database, stored.session_id).front());
   const auto page = report::to_html(summary);
   int intervals = 0;
   for (const auto& section : view::report_pages(summary).sections) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "station/session/prepare.hpp"
@@ -56,6 +57,25 @@ TEST_CASE("the pages of a two-interval study come in the order of a trial", "[de
   REQUIRE(without_late.size() > wanted.size());
   CHECK(std::vector<std::string>(without_late.begin(), without_late.begin() + 8) == wanted);
   CHECK(names.back() == "end");
+}
+
+TEST_CASE("a block of several tasks has the pages of each of them", "[desk]") {
+  const auto pages = samples_of("gallery/task-switching", "en");
+  for (const auto& [cue, question, answer] :
+       {std::tuple{"How smooth?", "Rougher or smoother than usual?", "rougher"},
+        std::tuple{"Where does it end?", "Left or right of the middle?", "left"}}) {
+    INFO(cue);
+    const auto has = [&, cue = cue, question = question, answer = answer](const auto& sample) {
+      const auto& page = sample.page;
+      return page.cue == cue || (page.cue.empty() && page.text == question && !page.answers.empty() &&
+                                 page.answers.front().id == answer);
+    };
+    std::set<session::PageKind> kinds;
+    for (const auto& sample : pages)
+      if (has(sample)) kinds.insert(sample.page.kind);
+    CHECK(kinds.count(session::PageKind::cue) == 1);
+    CHECK(kinds.count(session::PageKind::stimulus) == 1);
+  }
 }
 
 TEST_CASE("every shipped study has pages in each of its languages", "[desk]") {

@@ -11,6 +11,7 @@ Item {
     required property DesignController design
     required property var field
     readonly property string label: field.kind === "entry" ? texts.text("design.add_entry")
+        : field.kind === "listName" ? texts.text("design.add_parts")
         : design.label(field.label, texts.language) + (field.kind === "list" ? ": " + field.value : "")
     readonly property bool heading: field.kind === "table" || field.kind === "list"
     readonly property bool words: field.kind === "boolean" || (field.kind === "word" && field.allowed.length <= 4)

@@ -237,7 +237,8 @@ Rectangle {
         anchors.fill: parent
         theme: look
         readonly property var field: root.edited?.field ?? null
-        title: field === null ? "" : field.kind === "entry" ? texts.text("design.add_entry") : root.design.label(field.title, texts.language)
+        title: field === null ? "" : field.kind === "entry" ? texts.text("design.add_entry")
+            : field.kind === "listName" ? texts.text("design.add_parts") : root.design.label(field.title, texts.language)
         help: texts.say(field?.help ?? "")
         suggestions: field?.allowed ?? []
         sayings: suggestions.reduce((said, word) => Object.assign(said, { [word]: root.design.word(field?.key ?? "", word, texts.language) }), {})

@@ -36,6 +36,8 @@ QString kind_name(Input input) {
       return "list";
     case Input::entry:
       return "entry";
+    case Input::list_name:
+      return "listName";
     default:
       return "text";
   }

@@ -146,7 +146,7 @@ Item {
             height: root.target
             width: Math.min(Math.max(implicitWidth, 22 * root.theme.unit), root.width - 2 * (root.stepWidth + root.theme.targetGap))
             theme: root.theme
-            enabled: root.touched || root.silent
+            enabled: root.touched || root.page.sliderMoved || root.silent
             armed: root.armed
             text: root.texts.done
             onActivated: root.bridge.next()

@@ -80,7 +80,8 @@ Rectangle {
             left: parent.left; right: parent.right; top: parent.top
             leftMargin: theme.margin; rightMargin: theme.margin; topMargin: frame.band + theme.unit
         }
-        height: root.mayPause ? Math.max(pause.height, badge.height) : 0
+        // The same on all pages of a trial, so that nothing moves when the button appears.
+        height: root.mayPause ? Math.max(pause.height, badge.height, root.page.offersAgain ? again.implicitHeight : 0) : 0
         InstructionBadge {
             id: badge
             anchors.verticalCenter: parent.verticalCenter
@@ -102,6 +103,27 @@ Rectangle {
             texts: texts
             armed: !arming.running
             onActivated: root.bridge.back()
+        }
+        // Feel the intervals of the trial again. It stands in the middle of what badge and pause button leave, so that
+        // it is nearer to none of the answers.
+        ActionButton {
+            id: again
+            objectName: "again"
+            visible: root.page.again
+            anchors.verticalCenter: parent.verticalCenter
+            readonly property real badgeRoom: badge.visible ? badge.width + theme.unit : 0
+            readonly property real pauseRoom: pause.width + theme.unit
+            readonly property real from: root.leftHanded ? pauseRoom : badgeRoom
+            readonly property real room: parent.width - badgeRoom - pauseRoom
+            width: Math.min(implicitWidth, Math.floor(room))
+            x: Math.round(from + (room - width) / 2)
+            implicitHeight: Math.max(pause.implicitHeight, theme.targetLeast)
+            theme: theme
+            primary: false
+            size: theme.textSmall
+            text: texts.text("again")
+            armed: !arming.running
+            onActivated: root.bridge.again()
         }
         ActionButton {
             id: pause

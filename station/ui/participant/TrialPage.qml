@@ -18,7 +18,7 @@ Item {
     readonly property bool counted: page.intervals > 1
 
     // A flash lasts for a moment from the frame that shows it, however late this frame is. There is one flash in a trial,
-    // and each trial begins with a cue of 0.8 s, so no second has three flashes, which could cause a seizure.
+    // and each trial begins with a cue of 0.8 s or more, so no second has three flashes, which could cause a seizure.
     readonly property bool signalledByFlash: page.flash
     readonly property bool flashing: signalledByFlash && !flash.over
     onSignalledByFlashChanged: {
@@ -193,7 +193,8 @@ Item {
         id: question
         visible: !root.feedback && !root.page.answerNow && root.page.kind !== PageModel.Interval
         anchors { left: parent.left; right: parent.right; bottom: bars.top; bottomMargin: Math.min(Math.round(1.5 * root.theme.unit), Math.max(0, (bars.y - surface.y - (surface.visible || places.visible ? surface.height : 0) - asked.height) / 2)); top: surface.visible || places.visible ? surface.bottom : parent.top }
-        text: root.counted && root.stimulus ? root.texts.slideNow
+        text: root.cue && root.page.cue !== "" ? root.texts.phrased(root.page.cue)
+            : root.counted && root.stimulus ? root.texts.slideNow
             : root.counted && !root.asks ? root.texts.getReady
             : root.cue ? root.texts.slideHere : root.texts.phrased(root.page.text)
         color: root.theme.ink

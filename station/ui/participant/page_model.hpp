@@ -23,6 +23,7 @@ class PageModel : public QObject {
   Q_PROPERTY(Kind kind READ kind NOTIFY changed)
   Q_PROPERTY(QString title READ title NOTIFY changed)
   Q_PROPERTY(QString text READ text NOTIFY changed)
+  Q_PROPERTY(QString cue READ cue NOTIFY changed)
   Q_PROPERTY(QStringList answers READ answers NOTIFY changed)
   Q_PROPERTY(QStringList captions READ captions NOTIFY changed)
   Q_PROPERTY(double valueLow READ value_low NOTIFY changed)
@@ -35,6 +36,8 @@ class PageModel : public QObject {
   Q_PROPERTY(bool back READ back NOTIFY changed)
   Q_PROPERTY(bool playing READ playing NOTIFY changed)
   Q_PROPERTY(QString picture READ picture NOTIFY changed)
+  Q_PROPERTY(bool again READ again NOTIFY changed)
+  Q_PROPERTY(bool offersAgain READ offers_again NOTIFY changed)
   Q_PROPERTY(bool answerNow READ answer_now NOTIFY changed)
   Q_PROPERTY(bool flash READ flash NOTIFY changed)
   Q_PROPERTY(Verdict verdict READ verdict NOTIFY changed)
@@ -54,6 +57,7 @@ class PageModel : public QObject {
   Q_PROPERTY(double sliderMin READ slider_min NOTIFY changed)
   Q_PROPERTY(double sliderMax READ slider_max NOTIFY changed)
   Q_PROPERTY(double sliderStep READ slider_step NOTIFY changed)
+  Q_PROPERTY(bool sliderMoved READ slider_moved NOTIFY changed)
   Q_PROPERTY(QString language READ language NOTIFY changed)
   Q_PROPERTY(QString runMode READ run_mode NOTIFY changed)
   Q_PROPERTY(QString safe READ safe NOTIFY changed)
@@ -120,6 +124,7 @@ class PageModel : public QObject {
   Kind kind() const;
   QString title() const { return QString::fromStdString(page_.title); }
   QString text() const { return QString::fromStdString(page_.text); }
+  QString cue() const { return QString::fromStdString(page_.cue); }
   QStringList answers() const;
   QStringList captions() const;
   double value_low() const { return page_.value.low; }
@@ -132,6 +137,8 @@ class PageModel : public QObject {
   bool back() const { return page_.back; }
   bool playing() const { return page_.playing; }
   QString picture() const;
+  bool again() const { return page_.again; }
+  bool offers_again() const { return page_.offers_again; }
   bool answer_now() const { return page_.answer_now; }
   bool flash() const { return page_.flash_ns.has_value(); }
   Verdict verdict() const;
@@ -150,6 +157,7 @@ class PageModel : public QObject {
   double slider_min() const { return page_.slider.low; }
   double slider_max() const { return page_.slider.high; }
   double slider_step() const { return page_.slider.step; }
+  bool slider_moved() const { return page_.slider.moved; }
   QString language() const { return QString::fromStdString(page_.language); }
   QString run_mode() const { return QString::fromStdString(page_.run_mode); }
   QString safe() const { return QString::fromStdString(page_.safe); }

@@ -81,6 +81,9 @@ void SessionBridge::next() {
 void SessionBridge::back() {
   if (!std::exchange(left_, true)) push(input::Back{});
 }
+void SessionBridge::again() {
+  if (!std::exchange(left_, true)) push(input::Again{});
+}
 void SessionBridge::choose(int index) { push(input::Answer{index}); }
 void SessionBridge::moveSlider(double value) { push(input::Slider{value}); }
 void SessionBridge::answerValue(double value) { push(input::Value{value}); }

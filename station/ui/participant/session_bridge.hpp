@@ -75,6 +75,8 @@ class SessionBridge : public QObject, public session::Display {
   Q_INVOKABLE void choose(int index);
   Q_INVOKABLE void moveSlider(double value);
   Q_INVOKABLE void answerValue(double value);
+  /// Reports that the participant asks for the intervals again. Only the first press on a page counts.
+  Q_INVOKABLE void again();
   Q_INVOKABLE void pause();
   Q_INVOKABLE void stop();
   /// For the operator: repeat() makes the current trial void and presents it again, arm() arms the amplifier,

@@ -24,6 +24,10 @@ const char* name(EventKind kind) {
       return "heard";
     case EventKind::burst_missed:
       return "missed";
+    case EventKind::burst_unfollowed:
+      return "unfollowed";
+    case EventKind::burst_follows:
+      return "follows";
     case EventKind::underrun:
       return "underrun";
     case EventKind::device_lost:
