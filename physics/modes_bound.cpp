@@ -38,13 +38,13 @@ constexpr double points_per_radian = 3;
 // better than one at the default resolution; its phase at the drive edge is less exact than |v|.
 constexpr double membrane_accuracy = 2e-3, plate_accuracy = 2.5e-3, tense_plate_accuracy = 5e-3,
                  thick_plate_accuracy = 4e-3, plate_piston_accuracy = 0.15;
-constexpr double coarse_plate_accuracy = 5e-3, coarse_membrane_phase = 5e-3, coarse_plate_phase = 3e-2;
+constexpr double coarse_plate_accuracy = 1e-2, coarse_membrane_phase = 5e-3, coarse_plate_phase = 3e-2;
 // how much the square of the largest slope of the sides adds to that, relative to it
 constexpr double steep_share = 0.25;
 // What a resonance of a higher mode adds. That of a coarse solution shows in its difference from `mode`; this
-// is twice what the margins of that difference did not hold.
+// is more than what the margins of that difference did not hold.
 constexpr double membrane_resonance = 5e-4, plate_resonance = 6e-3, thick_plate_resonance = 6e-4,
-                 coarse_resonance = 1e-4;
+                 coarse_membrane_resonance = 1e-4, coarse_plate_resonance = 4e-4;
 
 // A solution, scaled to a drive edge whose centre moves by 1.
 struct Line {
@@ -97,7 +97,7 @@ AssumedError assumed_error(const Surface& surface, const ModeBound& first, Resol
     phase = std::max(quiet, plate ? coarse_plate_phase : coarse_membrane_phase);
   }
   const double steep = plate && !coarse ? 1 : 1 + steep_share * first.steepest * first.steepest;
-  const double resonance = (coarse  ? coarse_resonance
+  const double resonance = (coarse  ? plate ? coarse_plate_resonance : coarse_membrane_resonance
                             : plate ? thick ? thick_plate_resonance : plate_resonance
                                     : membrane_resonance) *
                            (first.resonance - 1);
