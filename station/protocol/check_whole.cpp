@@ -319,7 +319,7 @@ void check_foreperiod(const Reading& reading) {
         phrase("a foreperiod that is shorter than the tones for all values of the factors"));
 }
 
-// A cue whose length depends on what decides the right answer, or the signal, tells it.
+// The length of a cue must not give away the right answer, or whether there is a signal.
 void check_cue(const Reading& reading) {
   const auto& task = reading.protocol.task;
   const auto deciding = deciding_factors(task);

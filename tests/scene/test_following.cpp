@@ -237,8 +237,7 @@ TEST_CASE(
   CHECK(follow_figures(held).loop_cutoff_Hz == held.follow->loop.cutoff_Hz);
 }
 
-TEST_CASE("noise is judged by what is in it, not by the length after which it comes again",
-          "[scene][follow]") {
+TEST_CASE("noise is judged by its frequencies, not by the period after which it repeats", "[scene][follow]") {
   const auto rig = following();
   const auto noise = [](double low_per_m, double high_per_m, int samples) {
     FollowTarget target;

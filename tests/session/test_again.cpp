@@ -14,6 +14,7 @@
 #include "tests/session/live_room.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/session/screen.hpp"
+#include "tests/session/stored_trials.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/replaced.hpp"
 
@@ -73,18 +74,6 @@ procedures = ["levels"]
 )";
 
 std::int64_t frames_of(double s) { return std::llround(s * kRate_Hz); }
-
-std::string written(const TemporaryFolder& folder, const std::string& text) {
-  std::ofstream(folder / "p.toml") << text;
-  return folder / "p.toml";
-}
-
-std::vector<core::TrialRow> trials_of(const std::string& database, const std::string& session) {
-  std::vector<core::TrialRow> trials;
-  for (const auto& block : store::read_session(database, session).blocks)
-    trials.insert(trials.end(), block.trials.begin(), block.trials.end());
-  return trials;
-}
 
 struct Session {
   std::vector<core::TrialRow> trials;

@@ -25,6 +25,7 @@
 #include "tests/session/live_room.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/session/screen.hpp"
+#include "tests/session/stored_trials.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/replaced.hpp"
 
@@ -190,18 +191,6 @@ std::map<int, std::pair<std::int64_t, std::int64_t>> stored_parts(const core::Tr
 }
 
 std::int64_t frames(double s) { return std::llround(s * kRate_Hz); }
-
-std::string written(const TemporaryFolder& folder, const std::string& text) {
-  std::ofstream(folder / "p.toml") << text;
-  return folder / "p.toml";
-}
-
-std::vector<core::TrialRow> trials_of(const std::string& database, const std::string& session) {
-  std::vector<core::TrialRow> trials;
-  for (const auto& block : store::read_session(database, session).blocks)
-    trials.insert(trials.end(), block.trials.begin(), block.trials.end());
-  return trials;
-}
 
 std::vector<core::TrialRow> session_of(const std::string& text) {
   const TemporaryFolder folder;

@@ -10,6 +10,7 @@
 #include "station/session/session.hpp"
 #include "station/store/read.hpp"
 #include "tests/session/screen.hpp"
+#include "tests/session/stored_trials.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/simulated_run.hpp"
 #include "tests/support/stochastic_approximation.hpp"
@@ -29,13 +30,6 @@ session::RunRequest request_for(const std::string& protocol, const std::string& 
 session::Summary run(const session::RunRequest& request) {
   session::Inputs inputs;
   return session::run(session::prepare(request), nullptr, inputs);
-}
-
-std::vector<core::TrialRow> trials_of(const std::string& database, const std::string& session) {
-  std::vector<core::TrialRow> all;
-  for (const auto& block : store::read_session(database, session).blocks)
-    for (const auto& trial : block.trials) all.push_back(trial);
-  return all;
 }
 
 /// Records the level of each trial that begins or ends.

@@ -13,6 +13,7 @@
 #include "station/store/read.hpp"
 #include "station/trial/director.hpp"
 #include "tests/session/screen.hpp"
+#include "tests/session/stored_trials.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/simulated_run.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -98,13 +99,6 @@ const std::string kTwoTasks =
 session::RunRequest request_for(const TemporaryFolder& folder, const std::string& database) {
   std::ofstream(folder / "tasks.toml") << kTwoTasks;
   return simulated_run(folder / "tasks.toml", folder / database, 5);
-}
-
-std::vector<core::TrialRow> trials_of(const std::string& database, const std::string& session) {
-  std::vector<core::TrialRow> trials;
-  for (const auto& block : store::read_session(database, session).blocks)
-    trials.insert(trials.end(), block.trials.begin(), block.trials.end());
-  return trials;
 }
 
 }  // namespace

@@ -13,31 +13,15 @@ session_begins short.toml --calibration calibration.toml
 # What each stimulus finds in the laboratory. A good stimulus follows each fault that makes a trial void.
 faults=("" "transducer half" "" "transducer dead" "" "frequency off" "" "drive late" "" "clip 0.1" "" "sounding 0.004" \
   "" "broken bridge" "no reference" "finger lifts" "")
+printf '%s\n' "${faults[@]}" >"$OUT/faults.txt"
 # The finger touches the surface while the stimulus lasts. When the stimulus is over, the next fault begins.
-stimulus_begins() { laboratory_lasts; plays=yes; echo touch 0.8 >&7; }
-stimulus_is_over() {
-  plays=
+stimulus_begins() { laboratory_lasts; echo touch 0.8 >&7; }
+answer_is_open() {
   laboratory repair
   [ -z "${faults[$stimuli]:-}" ] || laboratory fault "${faults[$stimuli]}"
-}
-answer_is_open() { stimulus_is_over; echo left >&8; }
-# If the host stands still, the guest's clock jumps, and the guard switches the amplifier off during a stimulus. That
-# stimulus is then "clock jumped" in the list, and the next one finds what was meant for it.
-plays=
-fault_page() {
-  case $1 in
-    *"note REASON"*) fail "the self-test found a fault" ;;
-    *"sound output stopped responding"*)
-      if [ "$plays" ]; then
-        faults=("${faults[@]:0:stimuli-1}" "clock jumped" "${faults[@]:stimuli-1}")
-        stimulus_is_over
-      fi ;;
-  esac
-  sleep 0.5
-  case $1 in *"arm or stop"*) echo arm >&8 ;; *) echo next >&8 ;; esac
+  echo left >&8
 }
 conduct
-printf '%s\n' "${faults[@]}" >"$OUT/faults.txt"
 cp truth.txt "$OUT"
 laboratory_lasts
 session_ends
