@@ -20,13 +20,13 @@ constexpr double profile_margin = 8, peak_margin = 4, edge_margin = 5;
 constexpr double level_share = 2, position_share = 1.25;
 constexpr double near_rad = 3;  // phase on either side of the last maximum that counts as near
 // how much larger the bounds are when the other solution is coarser, because it shares more of the error
-constexpr double coarser_share = 1.5;
+constexpr double coarser_share = 1.5, thick_coarser_share = 2.5;
 // If it is the coarsest one, and differs by less than `close` of the largest |v|, the error of `modes` is
 // much smaller than the difference: at most 0.18 of it for |v| on 340 random surfaces, and on those on which
 // two solutions were found to agree by chance. (Near a resonance both may be wrong by as much as they
 // differ.) The margin of |v|, and what those of level and edge are multiplied by.
 constexpr double close = 0.05, coarsest_profile_margin = 0.5, coarsest_share = 0.125,
-                 thick_coarsest_share = 0.5;
+                 thick_coarsest_share = 0.5, lossy_thick_share = 1, lossy_wave_below = 30;
 // largest differences that come from rounding and from effects that both solutions neglect
 constexpr double floor = 1e-8;
 
@@ -35,16 +35,21 @@ constexpr double points_per_radian = 3;
 // The errors that are assumed if no higher mode resonates. The values are above the largest errors found on
 // random surfaces. Plates under tension have thin boundary layers along their clamped sides. The field of a
 // clamped plate's piston jumps at the corners of the drive edge. A coarse solution is never assumed to be
-// better than one at the default resolution; its phase at the drive edge is less exact than |v|.
+// better than one at the default resolution; its phase at the drive edge is less exact than |v|. With much
+// loss, an error of the wavenumber changes how much the wave decays as well, by a constant over Q.
 constexpr double membrane_accuracy = 2e-3, plate_accuracy = 2.5e-3, tense_plate_accuracy = 5e-3,
                  thick_plate_accuracy = 4e-3, plate_piston_accuracy = 0.15;
-constexpr double coarse_plate_accuracy = 1e-2, coarse_membrane_phase = 5e-3, coarse_plate_phase = 3e-2;
+constexpr double coarse_thick_accuracy = 1e-2, coarse_tense_accuracy = 3.5e-2, coarse_membrane_phase = 3e-3,
+                 coarse_plate_phase = 1.8e-2, coarse_thick_phase = 1.2e-2, coarse_decay = 0.04,
+                 coarse_plate_decay = 0.3, coarse_thick_decay = 0.15;
 // how much the square of the largest slope of the sides adds to that, relative to it
 constexpr double steep_share = 0.25;
 // What a resonance of a higher mode adds. That of a coarse solution shows in its difference from `mode`; this
-// is more than what the margins of that difference did not hold.
+// is more than what the margins of that difference did not hold. It grows with the square, because a
+// resonance that the coarse solution has at another frequency does not show at all.
 constexpr double membrane_resonance = 5e-4, plate_resonance = 6e-3, thick_plate_resonance = 6e-4,
-                 coarse_membrane_resonance = 1e-4, coarse_plate_resonance = 4e-4;
+                 coarse_membrane_resonance = 1e-4, coarse_plate_resonance = 4e-4,
+                 coarse_resonance_square = 2e-5;
 
 // A solution, scaled to a drive edge whose centre moves by 1.
 struct Line {
@@ -93,14 +98,21 @@ AssumedError assumed_error(const Surface& surface, const ModeBound& first, Resol
                                                        : plate_accuracy;
   double phase = quiet;
   if (coarse) {
-    if (plate) quiet = std::max(quiet, coarse_plate_accuracy);
-    phase = std::max(quiet, plate ? coarse_plate_phase : coarse_membrane_phase);
+    if (plate && thick) quiet = std::max(quiet, coarse_thick_accuracy);
+    if (plate && surface.tension_Pa > 0) quiet = std::max(quiet, coarse_tense_accuracy);
+    quiet += (!plate  ? coarse_decay
+              : thick ? coarse_thick_decay
+                      : coarse_plate_decay) /
+             surface.quality_factor;
+    phase = std::max(quiet, !plate ? coarse_membrane_phase : thick ? coarse_thick_phase : coarse_plate_phase);
   }
   const double steep = plate && !coarse ? 1 : 1 + steep_share * first.steepest * first.steepest;
+  const double near = first.resonance - 1;
   const double resonance = (coarse  ? plate ? coarse_plate_resonance : coarse_membrane_resonance
                             : plate ? thick ? thick_plate_resonance : plate_resonance
                                     : membrane_resonance) *
-                           (first.resonance - 1);
+                               near +
+                           (coarse ? coarse_resonance_square * near * near : 0);
   return {quiet * steep + resonance, phase * steep + resonance};
 }
 
@@ -174,15 +186,19 @@ std::optional<ModesBound> modes_bound(const Surface& surface, double f, const Ed
   // counts more.
   const Taper taper(surface);
   const auto steepness = [&taper](double x) { return 1 + taper.slope(x) * taper.slope(x); };
+  const bool lossy = Dispersion(surface).wave_quality(f, surface.quality_factor) < lossy_wave_below;
   struct Factors {
     double profile, share;
   };
   const auto factors = [&](double difference) -> Factors {
     if (comparison == Comparison::finer) return {profile_margin, 1};
-    if (comparison == Comparison::coarser || !(difference < close))
-      return {coarser_share * profile_margin, coarser_share};
     const bool thick = surface.theory == PlateTheory::mindlin;
-    return {coarsest_profile_margin, thick ? thick_coarsest_share : coarsest_share};
+    const double coarser = thick ? thick_coarser_share : coarser_share;
+    if (comparison == Comparison::coarser || !(difference < close))
+      return {coarser * profile_margin, coarser};
+    return {coarsest_profile_margin, !thick  ? coarsest_share
+                                     : lossy ? lossy_thick_share
+                                             : thick_coarsest_share};
   };
   const Factors shape = factors(apart->shape), drive = factors(apart->drive);
   // Which of two different maxima is the last one decides a small error. Then the level and the edge may be

@@ -23,9 +23,9 @@ namespace {
 // between the points at which they are compared; and of those from a coarser solution, which misses a part of
 // what the models leave out: of |v|, and of the level and of edges, which are differences at one place.
 constexpr double probe_margin = 1.9, field_margin = 1.25, point_margin = 2;
-// The largest difference of |v| from a coarse solution for which these margins hold: near a resonance, a
-// coarse solution may be as wrong as it is different.
-constexpr double largest_difference = 0.4;
+// The largest difference of |v| from a coarse solution for which these margins hold. Near a resonance of a
+// clamped plate, a coarse solution may be as wrong as it is different.
+constexpr double largest_difference = 0.4, largest_at_resonance = 0.12, resonant_above = 2;
 // the least fall between a last maximum and the drive edge for which the maximum counts as certain; more if
 // the solution may be wrong by a quarter of it
 constexpr double certain_fall = 0.05;
@@ -40,8 +40,10 @@ constexpr double unknown = 2, unknown_dB = 120;
 constexpr double faint = 0.02;
 // shift of an edge relative to the cut-off half-width, divided by the error of `modes`; larger with a quality
 // factor of the wave below 30, because the field is then less steep at its edges. On clamped thin plates the
-// largest shift found was 0.28 of the error that is assumed.
-constexpr double edge_share = 0.8, plate_edge_share = 0.32, lossy_edge_share = 1.2, lossy_below = 30;
+// largest shift found was 0.28 of the error that is assumed. In coarse solutions it was 0.32 there, beyond
+// what the difference from `mode` holds, 0.11 on thick plates, and 1.1 on other surfaces.
+constexpr double edge_share = 0.8, plate_edge_share = 0.32, lossy_edge_share = 1.2, lossy_below = 30,
+                 coarse_edge_share = 1.6, coarse_plate_edge_share = 0.6, coarse_thick_edge_share = 0.2;
 // These shares were found for edges at half of the last maximum, which are mostly nearer to the turning point
 // than this many Airy lengths. In a coarse solution, edges farther out move farther, as those of `mode` do
 // (mode_bound.cpp), and so do the maximum and edges that are higher than this level.
@@ -162,8 +164,15 @@ RungEstimate assumed_estimate(const Surface& surface, const PlanRequest& request
   e.amplitude_bound = drive ? assumed.drive * conditioning : assumed.shape;
   e.level_bound_dB = 20 * std::log10(1 + assumed.drive * conditioning);
   const bool lossy = Dispersion(surface).wave_quality(reference.f, surface.quality_factor) < lossy_below;
-  const double share = lossy ? lossy_edge_share : is_thin_clamped(surface) ? plate_edge_share : edge_share;
-  const double growth = resolution == Resolution::coarsest ? edge_growth(reference) : 1;
+  const bool thick = surface.theory == PlateTheory::mindlin, thin = !lossy && is_thin_clamped(surface);
+  const bool coarse = resolution == Resolution::coarsest;
+  const double share = coarse  ? thick  ? coarse_thick_edge_share
+                                 : thin ? coarse_plate_edge_share
+                                        : coarse_edge_share
+                       : lossy ? lossy_edge_share
+                       : thin  ? plate_edge_share
+                               : edge_share;
+  const double growth = coarse ? edge_growth(reference) : 1;
   e.boundary_bound_m = assumed.shape * share * growth * cut_off_half_width_m(surface, reference.f) +
                        placed_elsewhere_m(request, reference);
   e.reason = "two-dimensional field at its default resolution";
@@ -237,8 +246,8 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
   e.boundary_bound_m = reference.edge.kind == Edge::Kind::turning ? 0 : bound.position_m();
   // The two-dimensional field may have a last maximum although the model `mode` has none, or have it at
   // another place.
-  if (reference.shallow_peak) e.boundary_bound_m += surface.length_m;
   if (!reference.peak_m || reference.shallow_peak) {
+    if (reference.edge.kind != Edge::Kind::turning) e.boundary_bound_m += surface.length_m;
     e.amplitude_bound += unknown;
     e.level_bound_dB += unknown_dB;
   }
@@ -326,7 +335,9 @@ RungEstimate coarsely_compared_mode(const Surface& surface, const PlanRequest& r
     const RungEstimate own =
         assumed_estimate(surface, request, one, one.bound, Resolution::coarsest, conditioning);
     const double shape = assumed_error(surface, one.bound, Resolution::coarsest).shape;
-    const Margins margins{field_margin, point_margin, std::max(certain_fall, 4 * shape), largest_difference};
+    const bool resonant = one.bound.resonance > resonant_above && Dispersion(surface).clamped_bending();
+    const Margins margins{field_margin, point_margin, std::max(certain_fall, 4 * shape),
+                          resonant ? largest_at_resonance : largest_difference};
     merge(all, compared_mode_estimate(surface, request, one, *coarse[i], own, margins));
   }
   all.reason = "first transverse mode with loss, compared with a coarse two-dimensional field";

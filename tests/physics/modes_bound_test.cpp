@@ -358,8 +358,10 @@ void Campaign::add_sketch(int number, const Surface& s, const CollocatedField& t
   const auto coarse = make_compared_line(s, frequency_Hz, Comparison::coarsest);
   const auto apart = line_difference(s, frequency_Hz, Edge::percent(0.5), first_mode,
                                      first_mode.value(0).ln_magnitude(), *coarse);
-  if (!apart || apart->jump || apart->shape > 0.4) return;
+  if (!apart || apart->jump) return;
   const ModeBound first = mode_bound(s, frequency_Hz, 1, first_mode.last_peak_m());
+  const bool resonant = first.resonance > 2 && bending_modelled(s) && s.edges == Edges::clamped;
+  if (apart->shape > (resonant ? 0.12 : 0.4)) return;
   const double assumed = assumed_error(s, first, Resolution::coarsest).shape + first.sides.shape;
   const double off = errors(s, *coarse, 0, truth, Normalise::peak).amplitude;
   const double rest = off - 0.25 * apart->shape;
@@ -473,8 +475,9 @@ void compare_scenes(const char* surface, int usual, std::uint64_t seed, const Co
   CHECK(median(all.map) < 10);
 }
 
-constexpr std::uint64_t membrane_seed = 20260104, thin_seed = 20260105;
-const CollocationGrid membrane_grid{14, 12, 9, 3, 0.75, 0.8, 30}, thin_grid{14, 12, 13, 3, 0.75, 0.8, 30};
+constexpr std::uint64_t membrane_seed = 20260104, thin_seed = 20260105, thick_seed = 20260106;
+const CollocationGrid membrane_grid{14, 12, 9, 3, 0.75, 0.8, 30}, thin_grid{14, 12, 13, 3, 0.75, 0.8, 30},
+    thick_grid{14, 12, 20, 3, 0.75, 0.8, 30};
 
 }  // namespace
 
@@ -506,6 +509,22 @@ TEST_CASE("the bounds of modes hold on stepped and on steep clamped plates", "[p
   CHECK(all.before.outside == 0);
 }
 
+// On the thin plate much loss makes the coarsest solution decay wrongly along a wide, even part. On the thick
+// ones a coarser solution agrees by chance in the level, and the coarsest one in the place of the edge.
+TEST_CASE("what is assumed of coarse solutions holds on plates with much loss and by chance", "[physics]") {
+  Campaign thin, thick;
+  thin.surface = "thin", thick.surface = "thick";
+  thin.add_scene(thin_seed, 10136, thin_grid, random_thin_plate);
+  for (const int number : {10163, 10166})
+    thick.add_scene(thick_seed, number, thick_grid, turnpoint::physics_test::random_thick_plate);
+  CHECK(thin.error.size() == 1);
+  CHECK(thin.assumed_outside == 0);
+  CHECK(thick.error.size() == 2);
+  CHECK(thick.finer.outside == 0);
+  CHECK(thick.coarser.outside == 0);
+  CHECK(thick.coarsest.outside == 0);
+}
+
 // In these scenes, the clamped end is at most half as wide as the cut-off, so the first mode reaches it only
 // as a weak evanescent wave. The reflection of this wave moves the edges by about 0.1 um.
 TEST_CASE("the map's bound includes a reflection from a clamped end far beyond the turning point",
@@ -522,8 +541,7 @@ TEST_CASE("the errors of models and map lie inside their bounds on random thin p
 }
 
 TEST_CASE("the errors of models and map lie inside their bounds on random thick plates", "[physics]") {
-  compare_scenes("thick", 4, 20260106, {14, 12, 20, 3, 0.75, 0.8, 30},
-                 turnpoint::physics_test::random_thick_plate);
+  compare_scenes("thick", 4, thick_seed, thick_grid, turnpoint::physics_test::random_thick_plate);
 }
 
 namespace {
