@@ -21,11 +21,17 @@ double line_at(std::span<const double> x, std::span<const double> y, double plac
 }  // namespace
 
 GainMap::GainMap(std::span<const double> x_m, std::span<const double> displacement_m,
-                 const physics::FrictionMap& friction, double fingertip_m, double most_gain)
+                 std::span<const double> finger_share, const physics::FrictionMap& friction,
+                 double fingertip_m, double most_gain)
     : most_gain_(most_gain) {
   if (!(std::isfinite(most_gain) && most_gain > 0)) throw std::invalid_argument("most_gain must be above 0");
   for (const double value : displacement_m)
     if (!(std::isfinite(value) && value >= 0)) throw std::invalid_argument("a displacement is below 0");
+  if (!finger_share.empty() && finger_share.size() != x_m.size())
+    throw std::invalid_argument("the finger's share has another number of places than the displacement");
+  for (const double share : finger_share)
+    if (!(share >= 0 && share <= 1 + 1e-9))
+      throw std::invalid_argument("the finger's share is not from 0 to 1");
   if (!(std::isfinite(fingertip_m) && fingertip_m >= 0))
     throw std::invalid_argument("the length of the fingertip is below 0");
   for (std::size_t i = 1; i < x_m.size(); ++i)
@@ -33,7 +39,13 @@ GainMap::GainMap(std::span<const double> x_m, std::span<const double> displaceme
   const auto under = physics::fingertip_average(x_m, displacement_m, fingertip_m);
   first_m_ = x_m.front();
   step_m_ = (x_m.back() - x_m.front()) / (kPlaces - 1);
-  // friction[level][place] at even steps of gain
+  std::array<double, kPlaces> left;
+  for (std::size_t p = 0; p < kPlaces; ++p)
+    left[p] = finger_share.empty()
+                  ? 1
+                  : std::min(1.0, line_at(x_m, finger_share, first_m_ + static_cast<double>(p) * step_m_));
+  // at[level][place]: friction of the free surface's field at even steps of gain. A finger that takes a share
+  // of the whole field under it feels this friction at a gain that is smaller by that share.
   std::vector<std::array<double, kPlaces>> at(fine_levels);
   std::vector<double> values(x_m.size());
   for (int level = 0; level < fine_levels; ++level) {
@@ -47,18 +59,23 @@ GainMap::GainMap(std::span<const double> x_m, std::span<const double> displaceme
   }
   constexpr int per_level = (fine_levels - 1) / (kLevels - 1);
   for (std::size_t p = 0; p < kPlaces; ++p) {
-    displacement_m_[p] =
-        static_cast<float>(most_gain * line_at(x_m, under, first_m_ + static_cast<double>(p) * step_m_));
-    const double lowest = at.back()[p];
-    lowest_[p] = static_cast<float>(lowest);
+    displacement_m_[p] = static_cast<float>(most_gain * left[p] *
+                                            line_at(x_m, under, first_m_ + static_cast<double>(p) * step_m_));
+    std::array<double, fine_levels> drop;  // the square root of 1 - friction at even steps of gain
+    for (std::size_t level = 0; level < fine_levels; ++level) {
+      const double free = left[p] * static_cast<double>(level);
+      const auto below = std::min(static_cast<std::size_t>(free), static_cast<std::size_t>(fine_levels - 2));
+      const double low = std::sqrt(1 - at[below][p]), high = std::sqrt(1 - at[below + 1][p]);
+      drop[level] = low + (free - static_cast<double>(below)) * (high - low);
+    }
+    lowest_[p] = static_cast<float>(1 - drop.back() * drop.back());
     for (std::size_t level = 0; level < kLevels; ++level)
-      drop_[p][level] = static_cast<float>(std::sqrt(1 - at[level * per_level][p]));
+      drop_[p][level] = static_cast<float>(drop[level * per_level]);
     std::size_t fine = 0;
     for (std::size_t level = 0; level < kLevels; ++level) {
-      const double share = static_cast<double>(level) / (kLevels - 1);
-      const double wanted = std::sqrt(1 - lowest) * share;
-      while (fine + 2 < fine_levels && std::sqrt(1 - at[fine + 1][p]) < wanted) ++fine;
-      const double low = std::sqrt(1 - at[fine][p]), high = std::sqrt(1 - at[fine + 1][p]);
+      const double wanted = drop.back() * static_cast<double>(level) / (kLevels - 1);
+      while (fine + 2 < fine_levels && drop[fine + 1] < wanted) ++fine;
+      const double low = drop[fine], high = drop[fine + 1];
       const double t = high > low ? std::clamp((wanted - low) / (high - low), 0.0, 1.0) : 0;
       gain_[p][level] = static_cast<float>(most_gain * (static_cast<double>(fine) + t) / (fine_levels - 1));
     }

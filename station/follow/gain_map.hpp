@@ -19,11 +19,14 @@ class GainMap {
   static constexpr int kPlaces = 128, kLevels = 65;
 
   GainMap() = default;
-  /// The planned displacement (peak, root of summed squares over the tones, under the finger) at two or more
-  /// ascending places; friction over displacement; length of the fingertip; and the largest gain that the rig
-  /// allows. Throws std::invalid_argument for values that are not possible.
+  /// The planned displacement without a finger (peak, root of summed squares over the tones) at two or more
+  /// ascending places; the share of it, from 0 to 1, that a finger leaves under its whole fingertip if its
+  /// middle is at this place (empty: all of it); friction over displacement under the finger; length of the
+  /// fingertip; and the largest gain that the rig allows. Throws std::invalid_argument for values that are
+  /// not possible.
   GainMap(std::span<const double> x_m, std::span<const double> displacement_m,
-          const physics::FrictionMap& friction, double fingertip_m, double most_gain);
+          std::span<const double> finger_share, const physics::FrictionMap& friction, double fingertip_m,
+          double most_gain);
 
   /// Relative friction (1: the surface at rest) at a gain from 0 to most_gain().
   double relative_friction(double place_m, double gain) const noexcept;

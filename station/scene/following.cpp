@@ -418,8 +418,8 @@ std::shared_ptr<const Plan> follow_plan(const rig::Rig& rig, const physics::Fric
   made->resting_gain = target.resting_gain;
   made->estimator.skin_m_per_N = rig.finger.skin_m_per_N;
   try {
-    made->map = follow::GainMap(field.x_m, field.displacement_m, friction, rig.friction.fingertip_m,
-                                made->envelope.most_gain);
+    made->map = follow::GainMap(field.x_m, field.displacement_m, field.finger_share, friction,
+                                rig.friction.fingertip_m, made->envelope.most_gain);
     if (target.control == follow::Control::closed) {
       made->loop.cutoff_Hz = loop_cutoff_Hz(*made);
       if (!(made->loop.cutoff_Hz > 0))

@@ -11,10 +11,10 @@
 
 namespace turnpoint::scene {
 
-/// Displacement under the rig's finger (m, peak, root of summed squares over the tones) at ascending places
-/// of the surface, at full gain.
+/// Displacement of the surface without a finger (m, peak, root of summed squares over the tones) at ascending
+/// places, at full gain, and the share of it that the rig's finger leaves under its fingertip at each place.
 struct FingerField {
-  std::vector<double> x_m, displacement_m;
+  std::vector<double> x_m, displacement_m, finger_share;
 };
 
 /// The largest distance of a tone from a resonance at which the plate's envelope is that of `follow`: half of

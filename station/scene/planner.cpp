@@ -283,13 +283,18 @@ void Planner::State::follow_finger(DrivePlan& plan) {
     const auto& of_tone = found->second;
     field.x_m = of_tone.x_m;
     field.displacement_m.resize(field.x_m.size());
-    for (std::size_t i = 0; i < field.x_m.size(); ++i)
-      field.displacement_m[i] =
-          std::hypot(field.displacement_m[i], tone.amplitude_m * of_tone.displacement[i]);
+    field.finger_share.resize(field.x_m.size());  // for now displacement under the finger
+    for (std::size_t i = 0; i < field.x_m.size(); ++i) {
+      const double free_m = tone.amplitude_m * of_tone.displacement[i];
+      field.displacement_m[i] = std::hypot(field.displacement_m[i], free_m);
+      field.finger_share[i] = std::hypot(field.finger_share[i], of_tone.share[i] * free_m);
+    }
     const auto [resonance, is_new] = resonances_Hz_.try_emplace(tone.frequency_Hz);
     if (is_new) resonance->second = physics::nearest_resonance_Hz(surface, tone.frequency_Hz);
     detunings.push_back({tone.frequency_Hz, resonance->second});
   }
+  for (std::size_t i = 0; i < field.x_m.size(); ++i)
+    field.finger_share[i] = field.displacement_m[i] > 0 ? field.finger_share[i] / field.displacement_m[i] : 1;
   plan.follow = follow_plan(rig, friction, plan, field, detunings);
   const auto gains = followed_gains(*plan.follow);
   if (plan.cues.pitch_Hz > 0 && gains.rms > 0) plan.cues.loudness_dB += 20 * std::log10(gains.rms);

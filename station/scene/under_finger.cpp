@@ -148,9 +148,11 @@ ToneUnderFinger tone_under_finger(const physics::Surface& surface, const rig::Ri
   plan.tones.push_back(std::move(tone));
   const auto finger = finger_of(rig);
   const auto loaded = solve(surface, finger, model, plan, 0);
-  ToneUnderFinger all{loaded.x_m, {}};
-  for (std::size_t i = 0; i < loaded.x_m.size(); ++i)
-    all.displacement.push_back(std::abs(loaded.fields[0].v[i]) * loaded.loads[0][i].share(finger));
+  ToneUnderFinger all{loaded.x_m, {}, {}};
+  for (std::size_t i = 0; i < loaded.x_m.size(); ++i) {
+    all.displacement.push_back(std::abs(loaded.fields[0].v[i]));
+    all.share.push_back(loaded.loads[0][i].share(finger));
+  }
   return all;
 }
 

@@ -20,11 +20,11 @@ physics::Finger finger_of(const rig::Rig& rig);
 /// and phase.
 std::vector<physics::Finger> fingers_of(const rig::Rig& rig);
 
-/// For a tone with an amplitude of 1 at the drive edge: the displacement under the rig's finger at evenly
-/// spaced points along the surface, ends included, as finger_figures() takes it for friction. Takes some 0.1
-/// s.
+/// For a tone with an amplitude of 1 at the drive edge: the displacement without a finger at evenly spaced
+/// points along the surface, ends included, and the share of it that the rig's finger leaves under its whole
+/// contact at each point, as finger_figures() takes them for friction. Takes some 0.1 s.
 struct ToneUnderFinger {
-  std::vector<double> x_m, displacement;
+  std::vector<double> x_m, displacement, share;
 };
 ToneUnderFinger tone_under_finger(const physics::Surface& surface, const rig::Rig& rig, physics::Model model,
                                   double frequency_Hz);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <stdexcept>
+#include <utility>
 
 #include "station/core/limits.hpp"
 #include "station/scene/planner.hpp"
@@ -99,6 +100,8 @@ simulation::Setup laboratory_of(const rig::Rig& rig) {
     room.finger.stroke_s = (room.finger.to_m - room.finger.from_m) / kStroke_m_s;
     room.finger.pause_s = kPause_s;
     room.finger.fingertip_m = rig.friction.fingertip_m;
+    room.finger.impedance_Ns_per_m = std::polar(rig.finger.impedance_Ns_per_m, rig.finger.phase_rad);
+    room.finger.contact_m = rig.finger.contact_m;
   } else {
     room.capture.reference = room.capture.bridge_a = room.capture.bridge_b = room.capture.lateral =
         std::nullopt;
@@ -119,6 +122,7 @@ SimulatedRoom::SimulatedRoom(const rig::Rig& rig, const std::function<void(simul
     : rig_(rig.capture.value_or(rig::Capture{})), plant_([&] {
         auto room = laboratory_of(rig);
         if (change) change(room);
+        impedance_Ns_per_m_ = std::exchange(room.finger.impedance_Ns_per_m, 0);
         return room;
       }()) {}
 
@@ -149,6 +153,7 @@ void SimulatedRoom::expect(std::span<const audio::PreparedBurst> bursts) {
                            0x1p-64 * plant_.setup().rate_Hz;
         if (apart != 0) window_s = std::max(window_s, std::min(kLongWindow_s, 10 / std::abs(apart)));
       }
+  plant_.set_impedance(follows ? impedance_Ns_per_m_ : 0);
   plant_.set_tones(frequencies, window_s);
 }
 

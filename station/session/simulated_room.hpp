@@ -1,4 +1,5 @@
 #pragma once
+#include <complex>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -15,7 +16,11 @@ namespace turnpoint::session {
 simulation::Setup laboratory_of(const rig::Rig& rig);
 
 /// The simulated laboratory behind the converter of a rig whose [capture] is `sim:`: the plate moves as its
-/// model says, pick-ups near the drive edge record it, and force cells feel the finger.
+/// model says, pick-ups near the drive edge record it, and force cells feel the finger. In trials that follow
+/// the finger it loads the plate with the impedance of the rig's [finger], because they are planned with
+/// friction over the displacement under the finger. All other trials are planned with friction over the
+/// displacement without a finger (protocols/finger.md): their table contains what the finger takes, so here
+/// it takes nothing.
 class SimulatedRoom {
  public:
   /// Throws std::logic_error if the rig captures nothing. A test may `change` the laboratory.
@@ -43,6 +48,7 @@ class SimulatedRoom {
 
  private:
   rig::Capture rig_;
+  std::complex<double> impedance_Ns_per_m_;  ///< of the finger, in trials that follow it
   simulation::Plant plant_;
   sensing::MovementWindow window_;
   bool marker_broken_ = false;

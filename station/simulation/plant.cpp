@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "physics/field.hpp"
+#include "physics/finger.hpp"
 
 namespace turnpoint::simulation {
 
@@ -87,7 +88,15 @@ const Plant::Gains& Plant::gains_for(double frequency_Hz) {
                                              physics::Normalise::none);
   for (const auto& v : field[0].v) squares.push_back(std::norm(v));
   auto under = physics::fingertip_average(x_m, squares, setup_.finger.fingertip_m);
-  return gains_.emplace(frequency_Hz, Gains{std::move(squares), std::move(under)}).first->second;
+  std::vector<double> share(x_m.size(), 1.0);
+  if (setup_.finger.impedance_Ns_per_m != 0.0) {
+    const physics::Finger finger{setup_.finger.impedance_Ns_per_m, 0.5 * setup_.finger.contact_m};
+    const auto loads = physics::finger_load(setup_.surface, frequency_Hz, x_m, finger);
+    std::transform(loads.begin(), loads.end(), share.begin(),
+                   [&](const auto& load) { return std::pow(load.share(finger), 2); });
+  }
+  return gains_.emplace(frequency_Hz, Gains{std::move(squares), std::move(under), std::move(share)})
+      .first->second;
 }
 
 std::size_t Plant::filter_for(double resonance) {
@@ -124,6 +133,15 @@ void Plant::set_tones(std::vector<double> frequency_Hz, double window_s) {
                                         : Tone{LockIn(f, setup_.rate_Hz, step_frames_, window), nullptr});
   }
   tones_ = std::move(tones);
+  prepare();
+  for (auto& tone : tones_)
+    tone.gains = &gains_for(tone.lock_in.frequency_Hz() * now_.frequency / now_.resonance);
+}
+
+void Plant::set_impedance(std::complex<double> impedance_Ns_per_m) {
+  if (impedance_Ns_per_m == setup_.finger.impedance_Ns_per_m) return;
+  setup_.finger.impedance_Ns_per_m = impedance_Ns_per_m;
+  gains_.clear();
   prepare();
   for (auto& tone : tones_)
     tone.gains = &gains_for(tone.lock_in.frequency_Hz() * now_.frequency / now_.resonance);
@@ -193,7 +211,8 @@ double Plant::shifted_edge_um() const {
 }
 
 double Plant::gain_at(std::size_t tone, double x_m) const {
-  return std::sqrt(between(tones_.at(tone).gains->under_fingertip, kGain_m, x_m));
+  const auto& gains = *tones_.at(tone).gains;
+  return std::sqrt(between(gains.under_fingertip, kGain_m, x_m) * between(gains.share, kGain_m, x_m));
 }
 
 double Plant::amplitude_um(double x_m) const {
@@ -205,10 +224,12 @@ double Plant::amplitude_um(double x_m) const {
   return std::sqrt(sum);
 }
 
-double Plant::amplitude_um_at_point(double x_m) const {
+/// Displacement at x under a fingertip whose middle is at `finger_m`.
+double Plant::amplitude_um_at_point(double x_m, double finger_m) const {
   double sum = 0;
   for (const auto& tone : tones_)
-    sum += between(tone.gains->squares, kGain_m, x_m) * std::norm(tone.lock_in.amplitude());
+    sum += between(tone.gains->squares, kGain_m, x_m) * between(tone.gains->share, kGain_m, finger_m) *
+           std::norm(tone.lock_in.amplitude());
   return std::sqrt(sum);
 }
 
@@ -220,7 +241,7 @@ double Plant::relative_friction(double x_m) const {
   for (int k = 0; k < kFingertipParts; ++k) {
     const double at_m = x_m + setup_.finger.fingertip_m * ((k + 0.5) / kFingertipParts - 0.5);
     if (at_m < 0 || at_m > setup_.surface.length_m) continue;
-    sum += setup_.friction.relative_friction(1e-6 * amplitude_um_at_point(at_m));
+    sum += setup_.friction.relative_friction(1e-6 * amplitude_um_at_point(at_m, x_m));
     ++parts;
   }
   return parts > 0 ? sum / parts : 1;

@@ -37,8 +37,10 @@ struct Truth {
 ///
 /// The pick-ups respond to any played signal. The finger feels only the tones that set_tones() named. Their
 /// amplitudes at the drive edge are measured in the played signal, and the model `mode` gives the amplitudes
-/// under the finger. Each part of the fingertip has the friction of the amplitude below it, and all parts
-/// press equally, so the finger's friction is their mean.
+/// under the finger. The finger's impedance reduces them by one factor under the whole fingertip, that of its
+/// place (physics::finger_load()), however hard it presses. Each part of the fingertip has the friction of
+/// the amplitude below it, and all parts press equally, so the finger's friction is their mean. The pick-ups,
+/// near the drive edge, do not notice the finger.
 ///
 /// Deterministic: the same setup, samples and calls give the same captured samples, however they are divided
 /// into blocks. Not thread-safe.
@@ -53,6 +55,9 @@ class Plant {
   /// without interruption. The finger feels their amplitudes half a `window_s` late; a shorter window than 10
   /// ms needs tones that are further apart (LockIn).
   void set_tones(std::vector<double> frequency_Hz, double window_s = 0.01);
+  /// The impedance with which the finger loads the surface from now on (Finger::impedance_Ns_per_m). Solves
+  /// the surface again for all tones, so call it between trials.
+  void set_impedance(std::complex<double> impedance_Ns_per_m);
   /// Adds a fault. It must begin at a frame that has not been captured yet.
   void add(const Fault& fault);
   /// Ends all faults with the next captured frame.
@@ -78,7 +83,8 @@ class Plant {
   /// Returns the complex amplitude z (um) with which this tone (an index) moves the drive edge, as it was
   /// half a window ago. The motion at frame n of the laboratory is Re(z exp(2 pi i f n / rate)).
   std::complex<double> tone_um(std::size_t tone) const;
-  /// Displacement under a fingertip at x (rms over its length), per displacement of the drive edge.
+  /// Displacement under a fingertip at x, which loads the surface (rms over its length), per displacement of
+  /// the drive edge.
   double gain_at(std::size_t tone, double x_m) const;
   /// Displacement at a pick-up per displacement of the drive edge, which moves at `frequency_Hz`. With
   /// FaultKind::frequency_off, this differs from the frequency that is played.
@@ -90,10 +96,11 @@ class Plant {
   double pickup_error() const { return filters_.front().second.fit_error(); }
 
  private:
-  /// The squared displacement and its mean over the fingertip, both relative to the squared displacement of
-  /// the drive edge, at positions kGain_m apart.
+  /// The squared displacement without a finger and its mean over the fingertip, both relative to the squared
+  /// displacement of the drive edge, and the share of the square that a finger at this place leaves, at
+  /// positions kGain_m apart.
   struct Gains {
-    std::vector<double> squares, under_fingertip;
+    std::vector<double> squares, under_fingertip, share;
   };
   static constexpr double kGain_m = 0.5e-3;
   struct Tone {
@@ -110,7 +117,7 @@ class Plant {
   void begin_step();
   void next_frame(std::span<double> out);
   double amplitude_um(double x_m) const;
-  double amplitude_um_at_point(double x_m) const;
+  double amplitude_um_at_point(double x_m, double finger_m) const;
   double relative_friction(double x_m) const;
   void write(std::span<double> out);
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <complex>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -96,6 +97,10 @@ struct Finger {
   double film_Hz = 300;  ///< cut-off of the low-pass with which friction follows the amplitude
   double contact_N_per_m = 1000;
   double fingertip_m = 0.010;  ///< length of the fingertip, over which friction is averaged
+  /// mechanical impedance with which the finger loads the surface at the frequencies of tones, and diameter
+  /// of its contact (physics/finger.hpp); at 0 the surface moves under the finger as without it
+  std::complex<double> impedance_Ns_per_m = 0;
+  double contact_m = 8e-3;
 };
 
 /// A dead weight and a lateral force on the surface at x, in addition to the finger.
@@ -117,7 +122,8 @@ enum class FaultKind {
   gap,              ///< `amount` captured frames are lost at `from_frame` (480)
   warmer,           ///< surface and cells are warmer by `amount` kelvin (10)
   sounding,         ///< the drive edge also moves at 27 kHz, by `amount` um (0.05), whatever is played
-  dead_bridge       ///< the captured channel of cell a, b or lateral (`index` 0, 1, 2) is exactly zero, without noise
+  dead_bridge  ///< the captured channel of cell a, b or lateral (`index` 0, 1, 2) is exactly zero, without
+               ///< noise
 };
 
 /// The name of the enumerator, with spaces instead of underscores: "transducer dead".

@@ -46,7 +46,7 @@ follow::Plan plan() {
     x_m.push_back(1e-3 * i);
     displacement_m.push_back(2.5e-6 * (0.7 + 0.3 * i / 200));
   }
-  plan.map = follow::GainMap(x_m, displacement_m, physics::FrictionMap{}, 0.008, 1);
+  plan.map = follow::GainMap(x_m, displacement_m, {}, physics::FrictionMap{}, 0.008, 1);
   plan.control = follow::Control::closed;
   follow::Part sine;
   sine.shape = follow::Shape::sine, sine.from = 0.5, sine.to = 0.8, sine.cycles_per_m = 250;

@@ -27,7 +27,7 @@ inline follow::GainMap map_of(const plant::Setup& setup, const physics::Friction
     x_m.push_back(setup.length_m * i / 400);
     displacement_m.push_back(1e-6 * plant::field_um(setup, x_m.back()));
   }
-  return follow::GainMap(x_m, displacement_m, friction, setup.fingertip_m, most_gain);
+  return follow::GainMap(x_m, displacement_m, {}, friction, setup.fingertip_m, most_gain);
 }
 
 }  // namespace lab

@@ -55,8 +55,39 @@ TEST_CASE("the map knows a limit of the gain and the displacement under the fing
   CHECK(std::isfinite(map.gain(NAN, 0.5)));
   // nothing moves there, and nothing is asked for
   const std::vector<double> ends{0, 0.1}, still{0, 0};
-  const follow::GainMap dead(ends, still, lab::table_of(s), 0.01, 1);
+  const follow::GainMap dead(ends, still, {}, lab::table_of(s), 0.01, 1);
   CHECK(dead.gain_for_displacement(0.05, 0) == 0);
+}
+
+TEST_CASE("a finger takes its share of the field under its whole fingertip", "[gain_map]") {
+  const plant::Setup s;
+  const auto table = lab::table_of(s);
+  std::vector<double> x_m, free_m, share;
+  for (int i = 0; i <= 800; ++i) {
+    x_m.push_back(s.length_m * i / 800);
+    free_m.push_back(1e-6 * plant::field_um(s, x_m.back()));
+    // it changes by a third within a fingertip
+    share.push_back(0.7 + 0.3 * std::sin(2 * 3.14159265358979 * x_m.back() / 0.03));
+  }
+  const follow::GainMap map(x_m, free_m, share, table, s.fingertip_m, 1);
+  double worst = 0, worst_back = 0, most = 0;
+  for (std::size_t i = 40; i < 600; i += 7)
+    for (double gain = 0.05; gain <= 1; gain += 0.05) {
+      const double felt = friction_under(s, x_m[i], gain * share[i]);
+      worst = std::max(worst, std::abs(map.relative_friction(x_m[i], gain) - felt));
+      worst_back =
+          std::max(worst_back, std::abs(map.relative_friction(x_m[i], map.gain(x_m[i], felt)) - felt));
+      most = std::max(most, std::abs(felt - friction_under(s, x_m[i], gain)));
+    }
+  CAPTURE(worst, worst_back, most);
+  CHECK(most > 0.3);
+  CHECK(worst < 0.006);
+  CHECK(worst_back < 0.006);
+  CHECK(map.most_displacement_m(x_m[300]) ==
+        Approx(share[300] * 1e-6 * plant::field_um(s, x_m[300])).epsilon(0.02));
+  CHECK_THROWS(follow::GainMap(x_m, free_m, std::vector<double>{1}, table, s.fingertip_m, 1));
+  share[3] = 1.5;
+  CHECK_THROWS(follow::GainMap(x_m, free_m, share, table, s.fingertip_m, 1));
 }
 
 TEST_CASE("it is said where a pattern cannot be met", "[gain_map]") {
@@ -95,9 +126,10 @@ TEST_CASE("impossible maps are refused", "[gain_map]") {
   const plant::Setup s;
   const auto table = lab::table_of(s);
   const std::vector<double> x{0, 0.1}, bad{1e-6, NAN}, good{1e-6, 1e-6};
-  CHECK_THROWS_AS(follow::GainMap(x, bad, table, 0.01, 1), std::invalid_argument);
-  CHECK_THROWS_AS(follow::GainMap(x, good, table, 0.01, 0), std::invalid_argument);
-  CHECK_THROWS_AS(follow::GainMap(x, good, table, NAN, 1), std::invalid_argument);
-  CHECK_THROWS_AS(follow::GainMap(std::vector<double>{0.1, 0.1}, good, table, 0, 1), std::invalid_argument);
-  CHECK_THROWS_AS(follow::GainMap(x, std::vector<double>{1e-6}, table, 0.01, 1), std::invalid_argument);
+  CHECK_THROWS_AS(follow::GainMap(x, bad, {}, table, 0.01, 1), std::invalid_argument);
+  CHECK_THROWS_AS(follow::GainMap(x, good, {}, table, 0.01, 0), std::invalid_argument);
+  CHECK_THROWS_AS(follow::GainMap(x, good, {}, table, NAN, 1), std::invalid_argument);
+  CHECK_THROWS_AS(follow::GainMap(std::vector<double>{0.1, 0.1}, good, {}, table, 0, 1),
+                  std::invalid_argument);
+  CHECK_THROWS_AS(follow::GainMap(x, std::vector<double>{1e-6}, {}, table, 0.01, 1), std::invalid_argument);
 }

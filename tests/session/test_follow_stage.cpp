@@ -27,8 +27,10 @@ rig::Rig rig_of(const TemporaryFolder& folder) {
   return rig;
 }
 
-/// Stiff cells and a steady finger, which strokes from the first moment on.
+/// Stiff cells and a steady, light finger, which strokes from the first moment on and does not load the
+/// surface.
 void quick(simulation::Setup& room) {
+  room.finger.impedance_Ns_per_m = 0;
   room.cells.normal_Hz = room.cells.lateral_Hz = 400;
   room.cells.damping = 0.15;
   room.finger.normal_noise = room.finger.friction_noise = 0;
@@ -55,8 +57,8 @@ struct Lab {
     wanted.displacement_m = 3e-6;
     drive = planner.plan(wanted);
     const auto profile = planner.profile(drive, 400);
-    plan.map =
-        follow::GainMap(profile.x_m, profile.displacement_m, planner.friction(), rig.friction.fingertip_m, 1);
+    plan.map = follow::GainMap(profile.x_m, profile.displacement_m, {}, planner.friction(),
+                               rig.friction.fingertip_m, 1);
     const auto& setup = room->plant().setup();
     plan.envelope.time_constant_s =
         1e-5;  // the simulated finger feels the drive edge, not the plate's ringing
@@ -263,6 +265,56 @@ TEST_CASE("each interval of a trial follows its own plan", "[session][follow]") 
       static_cast<std::size_t>((lab.ranges[0].end_frame + 9600 - row.signal_rows[1].start_frame) / 12);
   CHECK(std::isnan(gains.at(middle)));
   CHECK(lab.measured.size() == 2);
+}
+
+TEST_CASE("a plan's friction is what the simulated finger feels, which loads the surface",
+          "[session][follow]") {
+  const auto rig = rig::load(measured::kSource + "/deploy/rigs/simulated-following.toml");
+  scene::Scene wanted;
+  wanted.name = "even";
+  scene::ToneTarget tone_wanted;
+  tone_wanted.frequency_Hz = 29222, tone_wanted.displacement_m = 5e-6;
+  wanted.tones.push_back(tone_wanted);
+  scene::FollowTarget target;
+  target.pattern.base = 1;
+  wanted.follow = std::make_shared<const scene::FollowTarget>(target);
+  scene::Planner planner(rig);
+  const auto plan = planner.plan(wanted);
+  const auto& map = plan.follow->map;
+  double worst = 0, without = 0;
+  for (const double gain : {0.2, 0.5, 1.0}) {
+    // a finger that strokes slowly where the surface vibrates
+    session::SimulatedRoom room(rig, [](simulation::Setup& laboratory) {
+      laboratory.finger.normal_noise = laboratory.finger.friction_noise = 0;
+      laboratory.finger.from_m = 0.03, laboratory.finger.to_m = 0.115, laboratory.finger.stroke_s = 1.5;
+      laboratory.finger.pause_s = 0.1;
+    });
+    auto& plant = room.plant();
+    const auto& tone = plan.tones.at(0);
+    const auto stream = session::simulated_stream(rig);
+    room.expect(std::vector{audio::prepare(session::burst_of({plan}, {}, {}, 1.5, 192000),
+                                           audio::format_of(stream.output), stream.limits)});
+    plant.touch(2 * 192000);
+    const auto outputs = static_cast<std::size_t>(plant.setup().playback_channels);
+    std::vector<double> played(192 * outputs),
+        captured(192 * static_cast<std::size_t>(plant.setup().capture.count));
+    for (std::int64_t frame = 0; frame < 192000 * 3 / 2; frame += 192) {
+      for (std::int64_t k = 0; k < 192; ++k)
+        played[static_cast<std::size_t>(k) * outputs +
+               static_cast<std::size_t>(plant.setup().transducers[0].channel)] =
+            1e6 * gain * tone.amplitude_m / plant.setup().transducers[0].um_per_full_scale *
+            std::sin(2 * M_PI * std::fmod(tone.frequency_Hz / 192000 * static_cast<double>(frame + k), 1.0));
+      plant.advance(played, captured);
+      if (frame < 19200) continue;
+      const auto& finger = plant.truth().finger;
+      worst =
+          std::max(worst, std::abs(finger.relative_friction - map.relative_friction(finger.contact_m, gain)));
+      without = std::max(without, 1 - finger.relative_friction);
+    }
+  }
+  CAPTURE(worst, without);
+  CHECK(without > 0.8);
+  CHECK(worst < 0.03);
 }
 
 TEST_CASE("a stage without force cells refuses a scene that follows the finger", "[session][follow]") {
