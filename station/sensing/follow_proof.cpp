@@ -167,8 +167,13 @@ struct FollowProof::Expected {
       }
       transform.inv(filtered, made);
       for (auto& value : filtered) value *= line.expected[proof.pick_up_] * line.gain;
-      lines.push_back(filtered);
+      std::vector<Complex> integral(filtered.size());
+      for (std::size_t k = 1; k < filtered.size(); ++k)
+        integral[k] = integral[k - 1] + 0.5 * (filtered[k - 1] + filtered[k]);
+      integrals.push_back(std::move(integral));
+      lines.push_back(std::move(filtered));
     }
+    half_block = 0.5 * proof.blocks_.block_frames() / step;
     around = std::llround(kAround_s * rate);
   }
 
@@ -180,17 +185,46 @@ struct FollowProof::Expected {
     if (from < 0 || to >= static_cast<std::int64_t>(known.size())) return false;
     return std::all_of(known.begin() + from, known.begin() + to + 1, [](bool one) { return one; });
   }
+  /// Mean over the block whose middle is at this place. (Its value in the middle is not enough: a gain may
+  /// jump within a block.)
   Complex at(std::size_t line, double place) const {
-    const double last = static_cast<double>(lines[line].size() - 2);
-    const double p = std::clamp(place, 0.0, last);
+    return (integral_to(line, place + half_block) - integral_to(line, place - half_block)) / (2 * half_block);
+  }
+  /// How much the mean square over the block is above the square of its mean, summed over the lines. Sums
+  /// over a block do not see this.
+  double within(double place) const {
+    double sum = 0;
+    for (std::size_t l = 0; l < lines.size(); ++l) {
+      double squares = 0;
+      constexpr int parts = 8;
+      for (int k = 0; k < parts; ++k)
+        squares += std::norm(value(l, place + half_block * ((2 * k + 1.0) / parts - 1))) / parts;
+      sum += std::max(0.0, squares - std::norm(at(l, place)));
+    }
+    return sum;
+  }
+
+  double clamped(std::size_t line, double place) const {
+    return std::clamp(place, 0.0, static_cast<double>(lines[line].size() - 2));
+  }
+  Complex value(std::size_t line, double place) const {
+    const double p = clamped(line, place);
     const auto k = static_cast<std::size_t>(p);
     return lines[line][k] + (p - static_cast<double>(k)) * (lines[line][k + 1] - lines[line][k]);
   }
+  /// Of the straight lines between the points.
+  Complex integral_to(std::size_t line, double place) const {
+    const double p = clamped(line, place);
+    const auto k = static_cast<std::size_t>(p);
+    const double part = p - static_cast<double>(k);
+    return integrals[line][k] + part * (lines[line][k] + 0.5 * part * (lines[line][k + 1] - lines[line][k]));
+  }
 
   int step;
+  double half_block = 0;
   std::int64_t lead = 0, start_frame = 0, around = 0;
   std::vector<bool> known;
-  std::vector<std::vector<Complex>> lines;
+  std::vector<std::vector<Complex>> lines, integrals;
 };
 
 IntervalResult FollowProof::result(const CommandedEnvelope& commanded, std::optional<bool> in_contact) const {
@@ -217,7 +251,14 @@ IntervalResult FollowProof::result(const CommandedEnvelope& commanded, std::opti
     Complex product;    ///< of the samples with what is expected
     double power = 0;   ///< sum of squares of what is expected
     double energy = 0;  ///< sum of squares of the samples
+    double within =
+        0;  ///< sum of squares that is expected in addition, because the amplitude varies in blocks
     double remains() const { return std::max(0.0, energy - std::norm(product) / power); }
+    /// What was not expected. (For the lag, what is expected within blocks must not count: a lag at which
+    /// more is expected would look better.)
+    double unexpected() const {
+      return std::max(0.0, energy - std::norm(product) / power * (1 + within / power));
+    }
   };
   const auto match = [&](const std::vector<const Block*>& blocks, double lag_frames) {
     Match sum;
@@ -226,6 +267,7 @@ IntervalResult FollowProof::result(const CommandedEnvelope& commanded, std::opti
     for (const Block* block : blocks) {
       sum.energy += block->energy;
       const double at = expected.place(static_cast<double>(block->first_frame) + middle - lag_frames);
+      sum.within += 0.5 * frames * expected.within(at);
       for (std::size_t l = 0; l < lines_.size(); ++l) {
         x[l] = expected.at(l, at);
         phase[l] = phase_at(l, block->first_frame);
@@ -256,7 +298,7 @@ IntervalResult FollowProof::result(const CommandedEnvelope& commanded, std::opti
   const Complex scale = here.product / here.power;
   result.ratio_dB = in_dB(std::abs(scale));
   const double phase_deg = std::arg(scale) * 180 / M_PI;
-  result.residual_dB = in_dB(std::sqrt(here.remains() / std::max(std::norm(scale) * here.power, 1e-300)));
+  result.residual_dB = in_dB(std::sqrt(here.unexpected() / std::max(std::norm(scale) * here.power, 1e-300)));
   result.envelope_error_dB = result.residual_dB;
 
   // The lag, if it is known well enough. A part of the blocks is enough.
