@@ -107,6 +107,39 @@ void FollowLoop::prepare(const FollowPlans& plans, std::span<const audio::Prepar
   next_ = std::move(trial);
 }
 
+std::string DelayCheck::sentence() const {
+  const auto stated = fmt::format(
+      "the rig states {:.2f} ms as the delay of its converters (\"converter_delay_ms\")", 1e3 * stated_s);
+  if (tight())
+    return fmt::format(
+        "{}, but {:.2f} to {:.2f} ms are needed: {} gains come too late, and the surface rests; state {:.1f} "
+        "ms",
+        stated, 1e3 * least_s, 1e3 * most_s, too_short() ? "all" : "some", std::ceil(1e4 * most_s) / 10);
+  if (too_long())
+    return fmt::format(
+        "{}, but {:.2f} ms are enough: the surface follows the finger {:.2f} ms later than it could", stated,
+        1e3 * most_s, 1e3 * (stated_s - most_s));
+  return fmt::format("{}, and {:.2f} ms are needed", stated, 1e3 * most_s);
+}
+
+std::optional<DelayCheck> FollowLoop::check_delay(const Alignment& alignment) const {
+  if (!next_) return std::nullopt;
+  std::uint32_t version = 0;
+  std::int64_t least = 0, most = 0;
+  do {
+    version = ahead_version_.load();
+    if (version == 0 || ahead_numbering_.load() != alignment.numbering) return std::nullopt;
+    least = least_ahead_.load(), most = most_ahead_.load();
+  } while (version % 2 != 0 || version != ahead_version_.load());
+  const auto& timing = next_->timing;
+  const auto buffer = std::int64_t{timing.buffer_periods} * timing.period_frames;
+  const auto seconds = [&](std::int64_t frames) {
+    return static_cast<double>(frames - alignment.shift - buffer) / timing.rate_Hz;
+  };
+  return DelayCheck{timing.converter_s, seconds(least), seconds(most),
+                    static_cast<double>(timing.period_frames) / timing.rate_Hz};
+}
+
 void FollowLoop::begin(std::span<const Burst> bursts, const std::optional<sensing::Readings>& tare,
                        const Alignment& alignment) {
   static_cast<void>(take());  // what was left of the trial before
@@ -209,8 +242,26 @@ Followed FollowLoop::take() {
   return std::exchange(followed_, {});
 }
 
+/// A gain for playback frame f must have come when frames up to f have been rendered.
+void FollowLoop::watch_delay(std::int64_t captured_end, std::uint32_t numbering) noexcept {
+  if (numbering != ahead_.numbering) ahead_ = {};
+  ahead_.numbering = numbering;
+  const std::int64_t ahead = stream_.counters().frames - captured_end;
+  ahead_.least = std::min(ahead_.least, ahead);
+  ahead_.most = std::max(ahead_.most, ahead);
+  if (++ahead_.blocks < kAheadBlocks) return;
+  ahead_version_.fetch_add(1);
+  ahead_numbering_.store(numbering);
+  least_ahead_.store(ahead_.least);
+  most_ahead_.store(ahead_.most);
+  ahead_version_.fetch_add(1);
+  ahead_ = {};
+  ahead_.numbering = numbering;
+}
+
 void FollowLoop::captured(std::int64_t first_frame, std::uint32_t numbering,
                           std::span<const std::int32_t> samples) noexcept {
+  watch_delay(first_frame + static_cast<std::int64_t>(samples.size()) / channels_, numbering);
   if (Trial* const offered = offered_.load(std::memory_order_acquire); offered != trial_) {
     trial_ = offered;
     taken_.store(trial_->number, std::memory_order_release);

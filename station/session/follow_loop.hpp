@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "station/audio/alsa_capture.hpp"
@@ -28,6 +29,22 @@ follow::Bridges bridges_of(const sensing::FingerSetup& finger, const sensing::Re
 struct Alignment {
   std::int64_t shift = 0;
   std::uint32_t numbering = 0;
+};
+
+/// How the converters' delay that a plan was made with compares with what the loop sees: how far the stream
+/// has rendered when a period has been captured. Right if it is neither too short nor too long.
+struct DelayCheck {
+  double stated_s = 0;
+  /// With this delay the gains would come just in time, at the best and at the worst of the captured periods
+  /// of the last tenth of a second. Below 0 if the device buffers less than was planned.
+  double least_s = 0, most_s = 0;
+  double period_s = 0;
+
+  bool too_short() const { return stated_s < least_s; }           ///< no gain would ever come in time
+  bool tight() const { return stated_s < most_s; }                ///< not all gains would
+  bool too_long() const { return stated_s > most_s + period_s; }  ///< more than a period is wasted
+  /// Says which of these it is, with both delays.
+  std::string sentence() const;
 };
 
 /// What the intervals of a trial did that follow the finger.
@@ -62,6 +79,9 @@ class FollowLoop final : public audio::CaptureListener {
                const std::optional<sensing::FingerSetup>& finger);
   /// True if something follows the finger in the trial for which prepare() was called last.
   bool prepared() const { return next_ != nullptr; }
+  /// Compares the delay that the prepared trial was planned with. Empty if nothing is prepared, or if too
+  /// little was captured since this numbering began.
+  std::optional<DelayCheck> check_delay(const Alignment& alignment) const;
   /// Begins the prepared trial, whose bursts were scheduled with these numbers and frames. Without a `tare`
   /// the forces are not known, so all of them rest.
   struct Burst {
@@ -92,6 +112,7 @@ class FollowLoop final : public audio::CaptureListener {
   void offer(std::unique_ptr<Trial> trial);
   void drop_unplayed();
   void update(Trial& trial, std::int64_t captured_end) noexcept;
+  void watch_delay(std::int64_t captured_end, std::uint32_t numbering) noexcept;
 
   audio::Stream& stream_;
   const int channels_;
@@ -100,6 +121,18 @@ class FollowLoop final : public audio::CaptureListener {
   std::unique_ptr<audio::Ring<follow::Recorded, 4096>> done_ =
       std::make_unique<audio::Ring<follow::Recorded, 4096>>();
   std::atomic<std::int64_t> not_recorded_{0};
+  /// Frames rendered minus frames captured, at the ends of captured blocks: extremes over kAheadBlocks of
+  /// them.
+  struct Ahead {
+    std::int64_t least = INT64_MAX, most = INT64_MIN;
+    std::uint32_t numbering = 0;
+    int blocks = 0;
+  };
+  static constexpr int kAheadBlocks = 200;
+  /// The newest complete one. A sequence lock: the capture writes, and an odd number means that it does so
+  /// now.
+  std::atomic<std::uint32_t> ahead_version_{0}, ahead_numbering_{0};
+  std::atomic<std::int64_t> least_ahead_{0}, most_ahead_{0};
   // used by the session only
   std::unique_ptr<Trial> next_;
   Trial* current_ = nullptr;                 ///< the trial that was begun last; one of kept_
@@ -115,6 +148,7 @@ class FollowLoop final : public audio::CaptureListener {
   Followed followed_;
   // used by the capture only
   Trial* trial_ = nullptr;
+  Ahead ahead_;
 };
 
 }  // namespace turnpoint::session

@@ -95,6 +95,7 @@ class RealStage : public Stage {
       if (loop_->prepared()) {
         const auto alignment = capture_->feed().alignment();
         const auto zero = alignment ? watch.zero() : std::nullopt;
+        if (alignment) compare_delay(*alignment);
         loop_->begin(followed_of(presented_), zero, alignment.value_or(Alignment{}));
         if (!zero)
           inputs_.push({now_ns(), Fault{FaultKind::capture,
@@ -246,6 +247,16 @@ class RealStage : public Stage {
     if (now >= clocks_due_ns_) look_at_clocks(now);
   }
 
+  /// If the stated delay of the converters is so short that the surface could only rest, the trial is void.
+  /// Otherwise it is noted once if it could be better.
+  void compare_delay(const Alignment& alignment) {
+    const auto check = loop_->check_delay(alignment);
+    if (!check) return;
+    if (check->too_short()) return inputs_.push({now_ns(), Fault{FaultKind::capture, check->sentence()}});
+    if ((check->tight() || check->too_long()) && !std::exchange(delay_told_, true))
+      inputs_.push({now_ns(), input::Notice{check->sentence()}});
+  }
+
   /// Passes on the trigger codes that were found in the captured signal, and reports the captured pulses of
   /// other devices.
   void take_captured() {
@@ -366,6 +377,7 @@ class RealStage : public Stage {
   Inputs& inputs_;
   std::unique_ptr<audio::Stream> stream_;
   std::optional<Triggers> triggers_;
+  bool delay_told_ = false;         ///< that the stated delay of the converters could be better
   std::optional<FollowLoop> loop_;  ///< empty if nothing is captured; outlives the capture, which calls it
   std::optional<sensing::FingerSetup> finger_;
   std::unique_ptr<TrialCapture> capture_;  ///< null if nothing is captured

@@ -43,7 +43,7 @@ class Card {
     capture_ = std::make_unique<audio::DeviceCapture>(inputs);
     loop_ = std::make_unique<session::FollowLoop>(*stream_, 4);
     capture_->listen(*loop_);
-    run(0.05);
+    run(0.15);
     const auto shared = std::make_shared<const follow::Plan>(plan);
     audio::Burst burst;
     burst.length_frames = static_cast<std::int64_t>(192000 * seconds);
@@ -63,6 +63,7 @@ class Card {
     const std::int64_t shift = fake_pcm().played - fake_pcm().captured - loop_delay;
     const std::array bursts{session::FollowLoop::Burst{scheduled[0].burst, scheduled[0].start_frame,
                                                        scheduled[0].start_frame + prepared.length_frames}};
+    delay = loop_->check_delay({shift, 0});
     loop_->begin(bursts, sensing::Readings{}, {shift, 0});
   }
   ~Card() { fake_pcm().wires = nullptr; }
@@ -94,6 +95,7 @@ class Card {
   session::Followed followed() { return loop_->take(); }
   const audio::DeviceStream& stream() const { return *stream_; }
 
+  std::optional<session::DelayCheck> delay;  ///< before the burst
   bool captures = true;
   std::int64_t jump_at = -1;  ///< frame of time at which the force doubles
 
@@ -189,6 +191,36 @@ TEST_CASE("if the card's capture stalls, what is played rests within 10 ms", "[s
   CHECK(Card::gain_at(from + 1920) == Approx(0.1).margin(0.002));
   CHECK(Card::gain_at(from + 9600) == Approx(0.1).margin(0.002));
   REQUIRE(card.followed().late.size() == 1);
+}
+
+TEST_CASE("the stated delay of the converters is compared with that of the card", "[session][card][follow]") {
+  const auto s = finger();
+  const auto stated_for = [&](std::int64_t stated_frames, std::int64_t loop_delay) {
+    auto plan = lab::plan_of(s);
+    plan.timing.converter_s = static_cast<double>(stated_frames) / 192000;
+    return Card(s, plan, loop_delay, 0.1).delay.value();
+  };
+  for (const std::int64_t loop_delay : {0, 48}) {
+    CAPTURE(loop_delay);
+    const auto right = stated_for(loop_delay, loop_delay);
+    CAPTURE(right.least_s * 192000, right.most_s * 192000);
+    // On this card a period is captured just before the next one is played, so a period less would do.
+    CHECK(192000 * right.most_s == Approx(static_cast<double>(loop_delay - kPeriod)));
+    CHECK(192000 * right.least_s >= static_cast<double>(loop_delay - 2 * kPeriod));
+    CHECK_FALSE(right.tight());
+    CHECK_FALSE(right.too_long());
+    const auto late = stated_for(loop_delay, loop_delay + 3 * kPeriod);
+    CHECK(late.too_short());
+    CHECK_FALSE(late.too_long());
+    const auto early = stated_for(loop_delay + 2 * kPeriod, loop_delay);
+    CHECK(early.too_long());
+    CHECK_FALSE(early.tight());
+  }
+  const auto said = stated_for(96, 480).sentence();
+  CAPTURE(said);
+  CHECK(said.find("states 0.50 ms") != std::string::npos);
+  CHECK(said.find("all gains come too late") != std::string::npos);
+  CHECK(said.find("are needed") != std::string::npos);
 }
 
 TEST_CASE(
