@@ -49,7 +49,15 @@ follow::Bridges bridges_of(const sensing::FingerSetup& finger, const sensing::Re
   return bridges;
 }
 
-FollowLoop::FollowLoop(audio::Stream& stream, int channels) : stream_(stream), channels_(channels) {}
+FollowLoop::FollowLoop(audio::Stream& stream, int channels) : stream_(stream), channels_(channels) {
+  lock({system::range_of(*this), system::range_of(*done_)});
+}
+
+/// An ordinary stream, which needs no rights, locks nothing.
+void FollowLoop::lock(const std::vector<system::MemoryRange>& memory) {
+  if (!stream_.rights().asked) return;
+  if (const auto rights = system::lock_memory(memory); !rights.memory_locked) not_locked_ = rights.note;
+}
 
 FollowLoop::~FollowLoop() = default;
 
@@ -104,6 +112,7 @@ void FollowLoop::prepare(const FollowPlans& plans, std::span<const audio::Prepar
   } catch (const std::invalid_argument& problem) {
     refuse(problem.what());
   }
+  lock({system::range_of(*trial), system::range_of(trial->all)});
   next_ = std::move(trial);
 }
 
@@ -164,7 +173,10 @@ void FollowLoop::begin(std::span<const Burst> bursts, const std::optional<sensin
 
 void FollowLoop::end() {
   current_ = nullptr;
-  if (std::exchange(active_, false)) offer(std::make_unique<Trial>());
+  if (!std::exchange(active_, false)) return;
+  auto nothing = std::make_unique<Trial>();
+  lock({system::range_of(*nothing)});
+  offer(std::move(nothing));
 }
 
 /// Hands a trial to the capture's thread, and frees those that it no longer uses.

@@ -15,6 +15,7 @@
 #include "station/sensing/follow_proof.hpp"
 #include "station/sensing/force_calibration.hpp"
 #include "station/sensing/trial_finger.hpp"
+#include "station/system/rights.hpp"
 
 namespace turnpoint::session {
 
@@ -68,7 +69,8 @@ struct Followed {
 /// functions are for the session thread.
 class FollowLoop final : public audio::CaptureListener {
  public:
-  /// The stream must outlive this object; `channels` is the number of captured channels.
+  /// The stream must outlive this object; `channels` is the number of captured channels. If the stream asked
+  /// for real-time rights, the memory of the loop and of each trial is locked.
   FollowLoop(audio::Stream& stream, int channels);
   ~FollowLoop() override;
 
@@ -77,6 +79,8 @@ class FollowLoop final : public audio::CaptureListener {
   /// for a plan that cannot be followed.
   void prepare(const FollowPlans& plans, std::span<const audio::PreparedBurst> bursts,
                const std::optional<sensing::FingerSetup>& finger);
+  /// Why memory could not be locked; empty if it is, or need not be.
+  const std::string& not_locked() const { return not_locked_; }
   /// True if something follows the finger in the trial for which prepare() was called last.
   bool prepared() const { return next_ != nullptr; }
   /// Compares the delay that the prepared trial was planned with. Empty if nothing is prepared, or if too
@@ -109,6 +113,7 @@ class FollowLoop final : public audio::CaptureListener {
 
  private:
   struct Trial;
+  void lock(const std::vector<system::MemoryRange>& memory);
   void offer(std::unique_ptr<Trial> trial);
   void drop_unplayed();
   void update(Trial& trial, std::int64_t captured_end) noexcept;
@@ -138,6 +143,7 @@ class FollowLoop final : public audio::CaptureListener {
   Trial* current_ = nullptr;                 ///< the trial that was begun last; one of kept_
   std::deque<std::unique_ptr<Trial>> kept_;  ///< the capture may still use them
   std::uint64_t last_number_ = 0;
+  std::string not_locked_;
   bool active_ = false;  ///< a trial was begun, and has not ended
   struct Begun {
     std::size_t interval = 0;

@@ -115,6 +115,9 @@ class RealStage : public Stage {
   void follow(const FollowPlans& plans, std::span<const audio::PreparedBurst> intervals) override {
     if (!loop_) return Stage::follow(plans, intervals);
     loop_->prepare(plans, intervals, finger_);
+    if (!loop_->not_locked().empty() && !std::exchange(lock_told_, true))
+      inputs_.push({now_ns(), input::Notice{"the memory that follows the finger is not locked: " +
+                                            loop_->not_locked()}});
   }
   Followed followed() override { return loop_ ? loop_->take() : Followed{}; }
 
@@ -377,6 +380,7 @@ class RealStage : public Stage {
   Inputs& inputs_;
   std::unique_ptr<audio::Stream> stream_;
   std::optional<Triggers> triggers_;
+  bool lock_told_ = false;          ///< that the loop's memory is not locked
   bool delay_told_ = false;         ///< that the stated delay of the converters could be better
   std::optional<FollowLoop> loop_;  ///< empty if nothing is captured; outlives the capture, which calls it
   std::optional<sensing::FingerSetup> finger_;

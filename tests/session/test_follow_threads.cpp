@@ -1,6 +1,8 @@
 #include <atomic>
 #include <cmath>
+#include <fstream>
 #include <memory>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -10,6 +12,66 @@
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
+
+namespace {
+
+/// Locked memory of this process, in kB.
+int locked_kB() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.rfind("VmLck:", 0) == 0) return std::stoi(line.substr(6));
+  return -1;
+}
+
+sensing::FingerSetup cells_of_a_rig() {
+  sensing::FingerSetup cells;
+  cells.calibration = sensing::ForceCalibration({{{12, 0, 0}, {12, 0, 3600}, {0, 12, 0}}}, {});
+  return cells;
+}
+
+audio::Burst burst_that_follows() {
+  audio::Burst burst;
+  burst.length_frames = 9600;
+  burst.ramp.frames = 960;
+  burst.tones.count = 1;
+  burst.tones.tones[0] = {30000, 0.5, 0, 0};
+  burst.following = {1, 0, 960, 960, 1920};
+  return burst;
+}
+
+}  // namespace
+
+TEST_CASE("the memory of the loop and of its trials is locked, if that of its stream is",
+          "[session][follow][realtime]") {
+  // The heap of the first thread is locked with the program. Memory of other threads, such as the session's,
+  // is not.
+  std::thread([] {
+    audio::StreamConfig config;
+    config.output.period_frames = 96;
+    config.output.periods = 2;
+    const auto stream = audio::open_realtime(config);
+    if (!stream->rights().memory_locked) {
+      WARN("skipped: memory cannot be locked here, " << stream->rights().note << "; sudo tests/run");
+      return;
+    }
+    // what the heap has grown since is locked too, so that it does not count below
+    static_cast<void>(system::lock_memory({}));
+    const int before_kB = locked_kB();
+    auto loop = std::make_unique<session::FollowLoop>(*stream, 4);
+    const int with_ring_kB = locked_kB();
+    CAPTURE(before_kB, with_ring_kB);
+    CHECK(with_ring_kB - before_kB > 400);
+    CHECK(loop->not_locked().empty());
+    const auto plan = std::make_shared<const follow::Plan>(lab::plan_of({}));
+    const auto prepared = audio::prepare(burst_that_follows(), {192000, 2, 24});
+    static_cast<void>(system::lock_memory({}));
+    const int before_trial_kB = locked_kB();
+    loop->prepare({plan}, {&prepared, 1}, cells_of_a_rig());
+    const int with_trial_kB = locked_kB();
+    CAPTURE(before_trial_kB, with_trial_kB);
+    CHECK(with_trial_kB - before_trial_kB > 100);
+  }).join();
+}
 
 TEST_CASE("session, capture and audio threads work on the loop at the same time",
           "[session][follow][threads]") {
@@ -29,18 +91,14 @@ TEST_CASE("session, capture and audio threads work on the loop at the same time"
     }
   });
   const auto plan = std::make_shared<const follow::Plan>(lab::plan_of({}));
-  sensing::FingerSetup cells;
-  cells.calibration = sensing::ForceCalibration({{{12, 0, 0}, {12, 0, 3600}, {0, 12, 0}}}, {});
+  const auto cells = cells_of_a_rig();
   std::size_t happened = 0;
+  int compared = 0;
   for (int trial = 0; trial < 30; ++trial) {
-    audio::Burst burst;
-    burst.length_frames = 9600;
-    burst.ramp.frames = 960;
-    burst.tones.count = 1;
-    burst.tones.tones[0] = {30000, 0.5, 0, 0};
-    burst.following = {1, 0, 960, 960, 1920};
+    const auto burst = burst_that_follows();
     const auto prepared = audio::prepare(burst, {192000, 2, 24});
     loop.prepare({plan}, {&prepared, 1}, cells);
+    compared += loop.check_delay({0, 0}) || loop.check_delay({0, 1}) ? 1 : 0;
     const auto scheduled = stream->schedule_soon(burst);
     // frames of the capture and of the playback are not related here, so the interval is long enough for any
     const std::vector<session::FollowLoop::Burst> bursts{{scheduled.burst, 0, std::int64_t{1} << 40}};
@@ -59,5 +117,6 @@ TEST_CASE("session, capture and audio threads work on the loop at the same time"
   }
   over = true;
   capture.join();
+  CHECK(compared > 0);
   CHECK(happened >= 20);  // at least one period or one late gain in nearly every trial
 }
