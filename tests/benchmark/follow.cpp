@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <memory>
 #include <random>
+#include <stdexcept>
 #include <vector>
 
 #include "station/audio/synth.hpp"
 #include "station/follow/follower.hpp"
+#include "station/session/follow_loop.hpp"
 #include "tests/benchmark/stopwatch.hpp"
 
 namespace turnpoint::benchmark {
@@ -17,13 +21,18 @@ namespace {
 constexpr int kRepeats = 15;
 constexpr int kRate_Hz = 192000, kChannels = 6, kPeriod = 96, kPeriods = 4000, kCaptured = 64;
 
-void synthesise() {
+audio::Burst burst_of(int tones) {
   audio::Burst burst;
   burst.start_frame = 9600;
   burst.length_frames = kPeriods * kPeriod - 2 * 9600;
-  burst.tones.count = 8;
-  for (int i = 0; i < 8; ++i)
+  burst.tones.count = tones;
+  for (int i = 0; i < tones; ++i)
     burst.tones.tones[static_cast<std::size_t>(i)] = {22000.0 + 3000 * i, 0.05, 0.3 * i, 0};
+  return burst;
+}
+
+void synthesise() {
+  const auto burst = burst_of(8);
   const audio::Format format{kRate_Hz, 2, 24};
   std::vector<std::int32_t> block(2 * kPeriod);
   audio::Synth synth(format);
@@ -83,12 +92,53 @@ void follow_finger(const std::vector<std::int32_t>& frames, follow::BridgeWindow
   }
 }
 
+/// The whole way of a trial, as session and stream join it: each captured period goes to the loop, which
+/// sends its gains through the stream's ring, and the synthesis multiplies its tones by them. The captured
+/// forces are those of a finger of 2.5 N that rests at 150 mm.
+void join(const std::vector<std::int32_t>& frames, const std::shared_ptr<const follow::Plan>& plan,
+          int tones) {
+  audio::StreamConfig config;
+  config.output.rate_Hz = kRate_Hz;
+  config.output.period_frames = kPeriod;
+  config.output.periods = 2;
+  config.virtual_lead_frames = 2 * kPeriod;
+  config.samples = audio::Samples::rendered;
+  const auto stream = audio::open_synchronous(config);
+  session::FollowLoop loop(*stream, kChannels);
+  auto burst = burst_of(tones);
+  burst.following = {1, 0, 960, 960, 1920};
+  const auto prepared = audio::prepare(burst, audio::format_of(stream->config().output));
+  sensing::FingerSetup cells;
+  cells.bridges.channels = kChannels;
+  cells.bridges.reference_amplitude = 0.5;
+  cells.calibration = sensing::ForceCalibration({{{12.5, 0, 0}, {12.5, 0, 3750}, {0, 12.5, 0}}}, {});
+  loop.prepare({plan}, {&prepared, 1}, cells);
+  const auto scheduled = stream->schedule_together({&prepared, 1});
+  const std::array bursts{session::FollowLoop::Burst{scheduled[0].burst, scheduled[0].start_frame,
+                                                     scheduled[0].start_frame + prepared.length_frames}};
+  loop.begin(bursts, sensing::Readings{}, {});
+  for (std::int64_t k = 0; k < kPeriods; ++k) {
+    loop.captured(k * kPeriod, 0,
+                  std::span(frames).subspan(static_cast<std::size_t>(k % kCaptured * kPeriod * kChannels),
+                                            kPeriod * kChannels));
+    stream->advance(kPeriod);
+    if (k % 1000 != 0) continue;
+    while (stream->poll()) {
+    }
+    loop.gather();
+  }
+  const auto followed = loop.take();
+  if (followed.periods.size() < kPeriods / 2 || followed.periods.back().update.following < 1)
+    throw std::logic_error("the joined way did not follow");
+}
+
 }  // namespace
 
 Report bench_follow() {
   const auto frames = captured();
   const follow::BridgeWindow window(bridges(), {}, {});
-  const follow::Follower fresh(plan());
+  const auto shared = std::make_shared<const follow::Plan>(plan());
+  const follow::Follower fresh(*shared);
   const std::vector<Work> works{
       {"synthesis of eight tones", synthesise},
       {"following the finger, whole update",
@@ -96,7 +146,9 @@ Report bench_follow() {
          auto follower = fresh;
          follow_finger(frames, window, &follower);
        }},
-      {"of it: forces from four captured channels", [&] { follow_finger(frames, window, nullptr); }}};
+      {"of it: forces from four captured channels", [&] { follow_finger(frames, window, nullptr); }},
+      {"joined: loop, ring of gains, synthesis of one tone", [&] { join(frames, shared, 1); }},
+      {"joined: loop, ring of gains, synthesis of eight tones", [&] { join(frames, shared, 8); }}};
   Report report;
   report.name = "follow";
   report.title = fmt::format(
