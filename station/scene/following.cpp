@@ -369,6 +369,27 @@ void check_cells(const Plan& plan, double resonance_Hz,
   }
 }
 
+/// Refuses parts that would never be felt, because they lie beyond the surface or where they do not act.
+void check_places(const Plan& follow) {
+  const double last_m = follow.map.last_m();
+  for (int i = 0; i < follow.pattern.part_count; ++i) {
+    const auto& part = follow.pattern.parts[static_cast<std::size_t>(i)];
+    if (std::isfinite(part.begin_m) && part.begin_m >= last_m)
+      throw Unreachable(phrase("part %1 begins at %2 mm, beyond the surface, which is %3 mm long",
+                               {plain(i + 1), mm(part.begin_m), mm(last_m)}));
+    if (part.trigger.event == follow::Event::place &&
+        (part.trigger.threshold <= 0 || part.trigger.threshold >= last_m))
+      throw Unreachable(
+          phrase("the event of part %1 is at %2 mm, which no finger passes: the surface is %3 mm long",
+                 {plain(i + 1), mm(part.trigger.threshold), mm(last_m)}));
+    if (part.shape != Shape::edge && part.shape != Shape::bump) continue;
+    const auto [begin_m, end_m] = stretch_of(part, follow.map);
+    if (part.place_m + 0.5 * part.width_m >= begin_m && part.place_m - 0.5 * part.width_m <= end_m) continue;
+    throw Unreachable(phrase("part %1 is to change at %2 mm, but it acts from %3 to %4 mm only",
+                             {plain(i + 1), mm(part.place_m), mm(begin_m), mm(end_m)}));
+  }
+}
+
 /// A part with begin and end promises its stretch.
 void check_promises(const DrivePlan& plan, const Plan& follow) {
   for (int i = 0; i < follow.pattern.part_count; ++i) {
@@ -430,6 +451,7 @@ std::shared_ptr<const Plan> follow_plan(const rig::Rig& rig, const physics::Fric
   } catch (const std::invalid_argument& error) {
     throw Unreachable(plain(error.what()));
   }
+  check_places(*made);
   check_promises(plan, *made);
   check_cells(*made, resonance_Hz, target.speeds_m_s);
   for (const auto& texture : textures_of(*made)) {

@@ -31,8 +31,8 @@ struct Detuning {
 /// without captured force cells whose resonance is known, with too long a delay, with tones too near to the
 /// cells' carrier, away from a resonance, or of different time constants, with a texture that the plate
 /// cannot present at the speeds that the scene asks for in either direction, with something that is too fast
-/// for the cells, and where a part with begin and end asks
-/// for friction that cannot be reached between them.
+/// for the cells, with a part that lies where it does not act or an event that no finger reaches, and where a
+/// part with begin and end asks for friction that cannot be reached between them.
 std::shared_ptr<const follow::Plan> follow_plan(const rig::Rig& rig, const physics::FrictionMap& friction,
                                                 const DrivePlan& plan, const FingerField& field,
                                                 const std::vector<Detuning>& detunings);

@@ -213,6 +213,32 @@ TEST_CASE("a part with begin and end is refused where it cannot be reached; one 
   CHECK_THAT(refusal(rig, that_follows(vibrating(1e-8), sine)), ContainsSubstring("part 1: from 30 to"));
 }
 
+TEST_CASE("a part that would never be felt is refused", "[scene][follow]") {
+  const auto rig = following();
+  follow::Part edge;
+  edge.shape = follow::Shape::edge, edge.from = 1, edge.to = 0.8;
+  edge.begin_m = 0.05, edge.end_m = 0.1, edge.place_m = 0.075;
+  CHECK(refusal(rig, that_follows(vibrating(), {edge})).empty());
+  edge.place_m = 0.11;
+  CHECK_THAT(refusal(rig, that_follows(vibrating(), {edge})),
+             ContainsSubstring("part 1 is to change at 110 mm, but it acts from 50 to 100 mm only"));
+  edge.width_m = 0.03;  // its slope reaches into the stretch
+  CHECK(refusal(rig, that_follows(vibrating(), {edge})).empty());
+  edge.shape = follow::Shape::bump, edge.width_m = 0.01;
+  CHECK_THAT(refusal(rig, that_follows(vibrating(), {edge})), ContainsSubstring("is to change at 110 mm"));
+  follow::Part begins;
+  begins.to = 0.8, begins.begin_m = 0.31;
+  CHECK_THAT(refusal(rig, that_follows(vibrating(), {begins})),
+             ContainsSubstring("part 1 begins at 310 mm, beyond the surface, which is 300 mm long"));
+  follow::Part event;
+  event.to = 0.8, event.begin_m = 0.05, event.end_m = 0.1;
+  event.trigger = {follow::Event::place, 0.06};
+  CHECK(refusal(rig, that_follows(vibrating(), {event})).empty());
+  event.trigger.threshold = 0.5;
+  CHECK_THAT(refusal(rig, that_follows(vibrating(), {event})),
+             ContainsSubstring("the event of part 1 is at 500 mm, which no finger passes"));
+}
+
 TEST_CASE(
     "two patterns on the same tones have plans of their own; a closed loop has the cut-off of its delay",
     "[scene][follow]") {
