@@ -491,6 +491,13 @@ std::optional<core::Phrase> remark_on(const rig::Rig& rig, const DrivePlan& plan
     return phrase(
         "whether the plate can present the texture depends on the finger's speed, which is not known: "
         "give \"speed_mm_s\" in [sensing]");
+  const auto& target = *plan.scene.follow;
+  if (target.unit == FollowUnit::coefficient && target.control == follow::Control::open &&
+      !target.resting_friction)
+    return phrase(
+        "\"resting_friction\" is not given, so the surface at rest is taken to have a coefficient of "
+        "friction of "
+        "1: a finger that has another one feels that many times what is asked for");
   return std::nullopt;
 }
 

@@ -66,8 +66,8 @@ std::vector<follow::Unmet> unmet_of(const DrivePlan& plan);
 /// Says so for people, in the unit of the scene: the stretch, what is asked for, and what is reached there.
 core::Phrase in_words(const DrivePlan& plan, const follow::Unmet& unmet);
 
-/// What a person should know about a plan although the rig can present it: force cells that are slow, or a
-/// texture for which no speed is given.
+/// What a person should know about a plan although the rig can present it: force cells that are slow, a
+/// texture for which no speed is given, or a coefficient of friction without that of the surface at rest.
 std::optional<core::Phrase> remark_on(const rig::Rig& rig, const DrivePlan& plan);
 
 /// What is asked for and what is reached, along the surface, in the unit of the scene (displacements in m),

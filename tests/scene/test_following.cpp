@@ -336,6 +336,20 @@ TEST_CASE("slow cells are refused also without a texture, and without a speed", 
   CHECK(refusal(rig, scene) == "");
   CHECK(remark_on(rig, Planner(rig).plan(scene)));
   CHECK_FALSE(remark_on(following(), Planner(following()).plan(scene)));
+  // An open loop takes its word for the friction at rest; a closed one measures it.
+  FollowTarget target;
+  target.pattern.base = 0.8;
+  target.unit = FollowUnit::coefficient;
+  const auto remarked = [&] {
+    auto held = vibrating();
+    held.follow = std::make_shared<const FollowTarget>(target);
+    return remark_on(following(), Planner(following()).plan(held)).has_value();
+  };
+  CHECK(remarked());
+  target.resting_friction = 1;
+  CHECK_FALSE(remarked());
+  target.resting_friction.reset(), target.control = follow::Control::closed;
+  CHECK_FALSE(remarked());
   rig.capture->cells_resonance_Hz = 20;
   CHECK_THAT(refusal(rig, scene), ContainsSubstring("fingers change their movement"));
 }
