@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 #include <stdexcept>
+#include <tuple>
 
 namespace turnpoint::core {
 
@@ -128,7 +129,31 @@ bool holds(const With& with, const Keys& keys, const Value& table) {
   return is_word(entry->value.string, with.words);
 }
 
+bool alike(const Keys& one, const Keys& other) {
+  const auto also_in_conditions = [](const Key& a, const Key& b) {
+    return core::alike(a, b) &&
+           std::ranges::equal(a.conditions, b.conditions, [](const With& x, const With& y) {
+             return x.key == y.key && x.words == y.words && x.absent == y.absent;
+           });
+  };
+  return std::ranges::equal(one.list, other.list, also_in_conditions) &&
+         one.exactly_one == other.exactly_one && one.at_least_one == other.at_least_one &&
+         one.fewest == other.fewest && !one.named == !other.named &&
+         (!one.named || also_in_conditions(*one.named, *other.named));
+}
+
 }  // namespace
+
+bool alike(const Key& one, const Key& other) {
+  const auto said = [](const Key& key) {
+    return std::tuple(key.name, key.kind, key.help, key.range.low, key.range.high, key.range.ends,
+                      std::string(key.range.unit), key.infinite, key.words, key.pattern, key.form,
+                      key.fallback, key.otherwise, key.needed, key.fewest, key.most);
+  };
+  return said(one) == said(other) && !one.keys == !other.keys &&
+         (!one.keys || alike(*one.keys, *other.keys)) &&
+         std::ranges::equal(one.forms, other.forms, [](const Key& a, const Key& b) { return alike(a, b); });
+}
 
 const Keys* tables_of(const Key& key) {
   if (key.keys) return key.keys.get();

@@ -119,6 +119,9 @@ Key several(std::string name, std::vector<Key> forms, std::string help);
 Key any(std::string name, std::string help);
 }  // namespace key
 
+/// Whether two declarations say the same, apart from the conditions of the keys themselves.
+bool alike(const Key& one, const Key& other);
+
 /// The keys of the tables that a value of this key can be; nullptr if it can be none.
 const Keys* tables_of(const Key& key);
 

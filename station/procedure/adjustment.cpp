@@ -74,9 +74,16 @@ void read_starts(core::TableReader& reader, Spec& spec) {
 }  // namespace
 
 extern const Description adjustment{
-    Kind::adjustment,
     "adjustment",
     Choice::listed,
+    [] {
+      using namespace core::key;
+      return list_keys().and_also(
+          {numbers("start", any_level,
+                   "where the slider starts: below or above, as seen from the middle of the list"),
+           numbers("start_below", any_level, "where the slider starts below"),
+           numbers("start_above", any_level, "where the slider starts above; as many as below")});
+    },
     [](core::TableReader& reader, Spec& spec) {
       read_starts(reader, spec);
       read_list(reader, spec);

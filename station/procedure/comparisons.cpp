@@ -137,9 +137,21 @@ void validate_comparisons(const Spec& spec, std::vector<Problem>& problems) {
 }  // namespace
 
 extern const Description comparisons{
-    Kind::comparisons,
     "comparisons",
     Choice::listed,
+    []() -> core::Keys {
+      using namespace core::key;
+      return {
+          numbers("values", any_level, "the stimuli that are compared with each other").required(),
+          strings("against",
+                  "the factors of the other intervals, in order: one for all pairs of the values (in both "
+                  "orders), two for all triads, three for all quadruples")
+              .holding(1, 3)
+              .required(),
+          integer("repeats", 1, 10000,
+                  "how often each pair is presented in each order, or each triad or quadruple")
+              .required()};
+    },
     [](core::TableReader& reader, Spec& spec) {
       spec.values = reader.numbers("values");
       spec.repeats = reader.integer("repeats");

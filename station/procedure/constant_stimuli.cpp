@@ -218,9 +218,14 @@ std::optional<Problem> order_problem(const Spec& spec, const Context& context) {
 }
 
 extern const Description constant_stimuli{
-    Kind::constant_stimuli,
     "constant-stimuli",
     Choice::listed,
+    [] {
+      using namespace core::key;
+      core::Keys keys{numbers("values", any_level, "the levels").required()};
+      keys.and_also(list_keys());
+      return keys.and_also({table("stop", right_of_last_keys(), "when it ends before all trials")});
+    },
     [](core::TableReader& reader, Spec& spec) {
       spec.values = reader.numbers("values");
       read_list(reader, spec);

@@ -24,13 +24,15 @@ enum class Choice {
 };
 
 /// Everything that the rest of the station needs to know about one kind of procedure. Each kind defines its
-/// own description; the table in procedure.cpp lists them.
+/// own description; the list in spec.hpp has all of them.
 struct Description {
-  Kind kind;
   const char* name;  ///< name of the kind in a protocol, such as "up-down"
   Choice choice;
-  /// Reads the keys of this kind from a [[procedure]] table. The keys name, kind, level and copy have already
-  /// been read.
+  /// Declares the keys with which this kind chooses its levels, in the order of a form. Declarations that
+  /// several kinds share are in keys.hpp. If the answers determine the levels, "order" is added for all of
+  /// them.
+  core::Keys (*keys)();
+  /// Reads these keys from a [[procedure]] table. The keys name, kind, level and copy have already been read.
   void (*read)(core::TableReader& reader, Spec& spec);
   /// Appends all problems of a specification to `problems`.
   void (*validate)(const Spec& spec, std::vector<Problem>& problems);
@@ -42,6 +44,9 @@ struct Description {
 };
 
 const Description& description(Kind kind);
+/// The keys of a [[procedure]] table with which procedures of all kinds choose their levels, each with the
+/// kinds that declare it.
+core::Keys procedure_keys();
 /// True if the answers determine the levels.
 inline bool follows_answers(const Spec& spec) { return description(spec.kind).choice != Choice::listed; }
 

@@ -12,6 +12,43 @@ using core::TableReader;
 
 namespace {
 
+core::Keys stop_rules() {
+  using namespace core::key;
+  return {
+      integer("trials", 1, 100000, "ends after so many trials"),
+      integer("reversals", 1, 10000, "ends after so many reversals"),
+      integer("min_trials", 1, 100000, "but not before so many trials"),
+      integer("max_trials", 1, 100000, "but in any case after so many trials")
+          .without_it(
+              "400, or four times what the rules ask for if that is more (10 trials for each reversal)"),
+      number("threshold_sd", positive_step,
+             "QUEST+, psi and others with a posterior: ends when the threshold's standard deviation is at "
+             "most this"),
+      number("entropy_nats", {-100, 100}, "the same for the entropy of the posterior")};
+}
+
+core::Key stop_table(core::Keys rules) {
+  rules.and_also(right_of_last_keys());
+  rules.list.push_back(core::key::word("rule", {"or", "and"}, "whether one of several rules is enough")
+                           .without_it("needed with several rules"));
+  return core::key::table("stop", std::move(rules), "when it ends").required();
+}
+
+core::Key max_run_key() {
+  using namespace core::key;
+  return several(
+      "max_run",
+      {integer("", 1, 1000, ""), table("",
+                                       core::Keys{}.with_free_names(integer(
+                                           "FACTOR", 1, 1000, "longest run of one value of this factor")),
+                                       "")},
+      "most trials in a row with the same right answer; or with the same value of each named factor");
+}
+
+core::Key order_table(const core::Keys& keys) {
+  return core::key::table("order", keys, "the order of the trials");
+}
+
 void read_max_run(TableReader& order, Spec& spec) {
   const auto* table = order.take("max_run");
   if (!table || table->kind != core::Value::Kind::table) {
@@ -43,6 +80,81 @@ void read_order(TableReader& reader, Spec& spec) {
 }
 
 }  // namespace
+
+core::Key scale_key() {
+  return core::key::word(
+             "scale", {"linear", "log10", "dB"},
+             "on which scale steps are counted, and level and threshold compared: \"linear\" for differences "
+             "(also of levels in dB), else for ratios")
+      .by_default("\"linear\"");
+}
+
+core::Key stop_key() { return stop_table(stop_rules()); }
+
+core::Key track_stop_key() {
+  return stop_table(stop_rules().and_also(
+      {core::key::integer("limit_steps", 1, 1000, "ends after so many steps in a row that min or max refuses")
+           .by_default("10")}));
+}
+
+core::Keys right_of_last_keys() {
+  using namespace core::key;
+  return {
+      integer("right", 1, 1000, "ends as soon as so many answers were right (or those that it tracks) ...")
+          .only_with("of_last"),
+      integer("of_last", 1, 1000, "... of so many last ones; suits training").only_with("right")};
+}
+
+core::Key tracks_key() {
+  return core::key::string("tracks", "id of the answer that it follows instead of correctness");
+}
+
+core::Keys list_keys() {
+  using namespace core::key;
+  return {
+      integer("repeats", 1, 10000, "how often each level is presented").required(),
+      strings("balance",
+              "factors whose levels are combined equally often with each level (and with each other)")
+          .holding(0),
+      order_table(
+          {word("shuffle", {"within-repeat", "within-block", "none"}, "among which trials the order is drawn")
+               .by_default("\"within-repeat\"")
+               .only_without("after_each_other"),
+           strings("after_each_other",
+                   "factors of which each combination of values comes equally often after each other "
+                   "one; the level, or those of \"balance\""),
+           integer("back", 1, 5,
+                   "how many trials back that holds: 2 for each value after each pair of values")
+               .by_default("1")
+               .only_with("after_each_other"),
+           table("never_after",
+                 core::Keys{}.with_free_names(
+                     list("FACTOR", {numbers("", any_level, "").holding(2, 2), strings("", "").holding(2, 2)},
+                          "pairs of its values")),
+                 "pairs of values, of which the second never comes right after the first"),
+           max_run_key()})};
+}
+
+core::Key runs_key() { return order_table({max_run_key()}); }
+
+core::Keys range_keys() {
+  using namespace core::key;
+  return {number("min", any_level, "lowest level").required(),
+          number("max", any_level, "highest level").required()};
+}
+
+core::Keys span_keys() {
+  core::Keys keys{core::key::number("start", any_level, "the first level").required()};
+  return keys.and_also(range_keys());
+}
+
+core::Key step_key() { return core::key::number("step", positive_step, "the step").required(); }
+
+core::Key target_key() {
+  return core::key::number("target", {0, 1, Range::Ends::open},
+                           "proportion of right answers (or of those that it tracks) on which it converges")
+      .required();
+}
 
 void read_runs(TableReader& reader, Spec& spec) {
   const auto* table = reader.maybe_table("order");

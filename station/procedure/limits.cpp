@@ -232,6 +232,32 @@ double series_trials(const Spec& spec) {
 
 namespace {
 
+core::Keys limits_keys() {
+  using namespace core::key;
+  const auto starts = [](const char* name, const char* help) {
+    return several(
+        name,
+        {numbers("", any_level, ""),
+         table("", {interval("uniform", any_level, "each series draws its start between these").required()},
+               "")},
+        help);
+  };
+  core::Keys keys{string("tracks", "id of the answer that is more frequent at higher levels").required()};
+  keys.and_also(range_keys());
+  return keys.and_also(
+      {step_key(),
+       starts("start_ascending",
+              "levels at which ascending series start: each is used equally often, or each series draws one"),
+       starts("start_descending", "levels at which descending series start, in the same forms"),
+       integer("series", 1, 1000, "number of series; with both directions, half of them each").required(),
+       integer("n_change", 1, 20, "new answers in a row that end a series; with 2, a slip does not")
+           .by_default("1"),
+       word("directions", {"alternate", "random"},
+            "the directions take turns (the first is drawn), or are shuffled, each equally often")
+           .by_default("\"alternate\""),
+       scale_key()});
+}
+
 SeriesStarts read_starts(core::TableReader& reader, const std::string& key) {
   const auto* value = reader.take(key);
   if (!value) return {};
@@ -309,9 +335,9 @@ void validate_limits(const Spec& spec, std::vector<Problem>& problems) {
 }  // namespace
 
 extern const Description limits{
-    Kind::limits,
     "limits",
     Choice::series,
+    limits_keys,
     read_limits,
     validate_limits,
     [](const Spec& spec, const Context&, const core::DrawKey& key) -> std::unique_ptr<Procedure> {

@@ -1,51 +1,47 @@
 #include "station/procedure/procedure.hpp"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
 #include "station/procedure/description.hpp"
+#include "station/procedure/keys.hpp"
 
 namespace turnpoint::procedure {
 
 using core::phrase, core::plain;
 
-// The kinds are listed here explicitly. They could not register themselves: a linker leaves out an object
-// file of a static library if nothing refers to it.
-extern const Description constant_stimuli;
-extern const Description up_down;
-extern const Description weighted_up_down;
-extern const Description quest_plus;
-extern const Description psi;
-extern const Description psi_marginal;
-extern const Description zest;
-extern const Description best_pest;
-extern const Description adjustment;
-extern const Description accelerated_stochastic_approximation;
-extern const Description limits;
-extern const Description program;
-extern const Description comparisons;
+#define TURNPOINT_DESCRIPTION(kind) extern const Description kind;
+TURNPOINT_PROCEDURES(TURNPOINT_DESCRIPTION)
+#undef TURNPOINT_DESCRIPTION
 
 namespace {
 
-constexpr std::array kDescriptions{
-    &constant_stimuli, &up_down, &weighted_up_down, &quest_plus, &psi,
-    &psi_marginal,     &zest,    &best_pest,        &adjustment, &accelerated_stochastic_approximation,
-    &limits,           &program, &comparisons,
-};
+#define TURNPOINT_ADDRESS(kind) &kind,
+constexpr std::array kDescriptions{TURNPOINT_PROCEDURES(TURNPOINT_ADDRESS)};
+#undef TURNPOINT_ADDRESS
+
+/// Adds a key of one kind of procedure: to the kinds of the same declaration, or after those of the same
+/// name.
+void add(core::Keys& all, core::Key key, const std::string& kind) {
+  auto place = all.list.end();
+  for (auto known = all.list.begin(); known != all.list.end(); ++known) {
+    if (known->name != key.name) continue;
+    if (core::alike(*known, key)) return known->conditions.front().words.push_back(kind);
+    place = known + 1;
+  }
+  all.list.insert(place, key.only_with("kind", {kind}));
+}
 
 }  // namespace
 
-const Description& description(Kind kind) {
-  for (const auto* entry : kDescriptions)
-    if (entry->kind == kind) return *entry;
-  throw std::logic_error("procedure: this kind has no description in the table");
-}
+const Description& description(Kind kind) { return *kDescriptions.at(static_cast<std::size_t>(kind)); }
 
 const char* name(Kind kind) { return description(kind).name; }
 
 std::optional<Kind> parse_kind(const std::string& text) {
-  for (const auto* entry : kDescriptions)
-    if (text == entry->name) return entry->kind;
+  for (std::size_t i = 0; i < kDescriptions.size(); ++i)
+    if (text == kDescriptions[i]->name) return static_cast<Kind>(i);
   return std::nullopt;
 }
 
@@ -53,6 +49,17 @@ std::vector<std::string> kind_names() {
   std::vector<std::string> names;
   for (const auto* entry : kDescriptions) names.emplace_back(entry->name);
   return names;
+}
+
+core::Keys procedure_keys() {
+  core::Keys all;
+  for (const auto* entry : kDescriptions) {
+    for (const auto& key : entry->keys().list) add(all, key, entry->name);
+    if (entry->choice != Choice::listed) add(all, runs_key(), entry->name);
+  }
+  // When it ends stands last, as in the pages' examples.
+  std::ranges::stable_partition(all.list, [](const core::Key& key) { return key.name != "stop"; });
+  return all;
 }
 
 std::vector<Problem> validate(const Spec& spec) {

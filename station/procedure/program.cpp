@@ -35,6 +35,21 @@ class StandIn final : public Procedure {
   int trials_, presented_ = 0;
 };
 
+core::Keys program_keys() {
+  using namespace core::key;
+  core::Keys keys{tracks_key()};
+  keys.and_also(range_keys());
+  return keys.and_also(
+      {string("program", "file of a separate program that chooses the levels, as seen from this file")
+           .required(),
+       number("limit_s", {0.05, 60, core::Range::Ends::closed, "s"},
+              "longest time that the program may take for each reply")
+           .by_default("2"),
+       table("settings", core::Keys{}.with_free_names(any("NAME", "what the program gets as it is")),
+             "what the program gets as it is"),
+       stop_key()});
+}
+
 void read_program(core::TableReader& reader, Spec& spec) {
   read_tracks(reader, spec);
   auto& program = spec.program;
@@ -80,9 +95,9 @@ std::unique_ptr<Procedure> StandIns::procedure(const Spec& spec, const core::Dra
 }
 
 extern const Description program{
-    Kind::program,
     "program",
     Choice::program,
+    program_keys,
     read_program,
     validate_program,
     [](const Spec& spec, const Context& context, const core::DrawKey& key) -> std::unique_ptr<Procedure> {

@@ -19,6 +19,100 @@ using core::phrase, core::plain;
 
 namespace {
 
+/// The forms of a grid of values.
+std::vector<core::Key> grid_forms() {
+  using namespace core::key;
+  const auto whole = [](const char* name) {
+    return integer(name, 2, most_grid_points, "number of values").required();
+  };
+  return {
+      table("",
+            {number("from", any_level, "first value").required(),
+             number("to", any_level, "last value").required(),
+             number("step", positive_step, "from each value to the next").required()},
+            ""),
+      table("",
+            {number("from", any_level, "first value").required(),
+             number("to", any_level, "last value").required(), whole("count")},
+            ""),
+      table("",
+            {number("log_from", {1e-9, 1e9}, "first value").required(),
+             number("log_to", {1e-9, 1e9}, "last value; the ratio from each value to the next is the same")
+                 .required(),
+             whole("count")},
+            ""),
+      table("", {numbers("values", any_level, "the values, in ascending order").required()}, "")};
+}
+
+core::Key grid(const char* name, const char* help) { return core::key::several(name, grid_forms(), help); }
+
+core::Key parameter_grid(const char* name, const char* help) {
+  using namespace core::key;
+  auto forms = grid_forms();
+  forms.push_back(
+      table("", {word("tied", {"lapse"}, "the same value as the lapse rate: for guess").required()}, ""));
+  return several(name, std::move(forms), help);
+}
+
+core::Key prior(const char* name) {
+  using namespace core::key;
+  core::Keys keys{table("normal",
+                        {number("mean", any_level, "mean").required(),
+                         number("sd", positive_step, "standard deviation").required()},
+                        "a normal distribution"),
+                  numbers("weights", {0, 1e12}, "one weight for each value of the grid")};
+  return table(name, keys.one_of({"normal", "weights"}), "how plausible each value is beforehand")
+      .without_it("all alike");
+}
+
+/// The keys of every procedure with a posterior, and those of this kind.
+core::Keys grid_keys(const core::Keys& second, const core::Keys& choosing) {
+  using namespace core::key;
+  core::Keys grids{
+      parameter_grid("threshold", "threshold"),
+      parameter_grid(
+          "gradient",
+          "change of the threshold per unit of the second factor; with a scale of ratios in decades or dB"),
+      parameter_grid("floor", "lowest threshold, with a second factor"),
+      parameter_grid("slope", "slope; let the values begin at 0.5"),
+      parameter_grid("criterion",
+                     "with function = \"signal-detection\", instead of guess: the criterion in standard "
+                     "deviations of the noise"),
+      parameter_grid("guess", "guess rate: 0.5 for two answers, 0.333 for three"),
+      parameter_grid("lapse", "lapse rate")};
+  core::Keys priors;
+  for (const auto& parameter : kParameters) priors.list.push_back(prior(parameter.name));
+  core::Keys keys{tracks_key(), scale_key(),
+                  word("function", {"weibull", "normal", "logistic", "signal-detection"},
+                       "the assumed psychometric function")
+                      .required(),
+                  grid("stimuli", "the levels from which it chooses").required()};
+  keys.and_also(second);
+  keys.and_also({table("grid", grids, "the values of each parameter").required(),
+                 table("prior", priors,
+                       "what is believed before the first trial, for each parameter; even without it")});
+  keys.and_also(choosing);
+  return keys.and_also({stop_key()});
+}
+
+core::Keys threshold_keys() { return grid_keys({}, {}); }
+
+core::Keys posterior_keys() {
+  using namespace core::key;
+  std::vector<std::string> parameters;
+  for (const auto& parameter : kParameters) parameters.emplace_back(parameter.name);
+  return grid_keys({table("second",
+                          {string("level", "the second factor that it sets").required(),
+                           grid("stimuli", "the values from which it chooses").required(),
+                           number("origin", any_level,
+                                  "the value at which grid.threshold applies; choose it near the middle")
+                               .by_default("0")},
+                          "a second dimension, along which the threshold changes")},
+                   {words("nuisance", parameters, "psi-marginal: parameters that are not to be estimated"),
+                    word("select", {"min-expected-entropy"}, "how it chooses the next level")
+                        .by_default("\"min-expected-entropy\"")});
+}
+
 /// True if this parameter must have a grid: `grid.gradient` with a second dimension, `grid.criterion` with
 /// signal detection, and all others except the floor. With signal detection there is no guess rate.
 bool needs_grid(const Spec& spec, const std::string& parameter) {
@@ -245,20 +339,22 @@ std::optional<double> share_at_threshold(const Spec& spec, double least, double 
 
 }  // namespace
 
-extern const Description quest_plus{Kind::quest_plus,   "quest-plus",    Choice::posterior, read_posterior,
-                                    validate_posterior, make_quest_plus, share_at_threshold};
+extern const Description quest_plus{"quest-plus",       Choice::posterior, posterior_keys,    read_posterior,
+                                    validate_posterior, make_quest_plus,   share_at_threshold};
 
-extern const Description psi{Kind::psi,          "psi",           Choice::posterior, read_posterior,
-                             validate_posterior, make_quest_plus, share_at_threshold};
+extern const Description psi{
+    "psi",           Choice::posterior, posterior_keys, read_posterior, validate_posterior,
+    make_quest_plus, share_at_threshold};
 
-extern const Description psi_marginal{Kind::psi_marginal, "psi-marginal",  Choice::posterior, read_posterior,
-                                      validate_posterior, make_quest_plus, share_at_threshold};
+extern const Description psi_marginal{"psi-marginal",    Choice::posterior,  posterior_keys,
+                                      read_posterior,    validate_posterior, make_quest_plus,
+                                      share_at_threshold};
 
 extern const Description zest{
-    Kind::zest,        "zest", Choice::posterior, read_grids, validate_at_threshold, make_quest_plus,
-    share_at_threshold};
+    "zest",          Choice::posterior, threshold_keys, read_grids, validate_at_threshold,
+    make_quest_plus, share_at_threshold};
 
-extern const Description best_pest{Kind::best_pest,       "best-pest",     Choice::posterior, read_grids,
-                                   validate_at_threshold, make_quest_plus, share_at_threshold};
+extern const Description best_pest{"best-pest",           Choice::posterior, threshold_keys,    read_grids,
+                                   validate_at_threshold, make_quest_plus,   share_at_threshold};
 
 }  // namespace turnpoint::procedure

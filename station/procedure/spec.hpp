@@ -15,21 +15,28 @@
 
 namespace turnpoint::procedure {
 
-enum class Kind {
-  constant_stimuli,
-  up_down,
-  weighted_up_down,
-  quest_plus,
-  psi,
-  psi_marginal,
-  zest,
-  best_pest,
-  adjustment,
-  accelerated_stochastic_approximation,
-  limits,
-  program,
-  comparisons
-};
+/// All kinds of procedures, in the order of pages and forms. Each is the name of its Description, which one
+/// of the files of this folder defines. The kinds could not register themselves: a linker leaves out an
+/// object file of a static library if nothing refers to it.
+#define TURNPOINT_PROCEDURES(KIND)           \
+  KIND(constant_stimuli)                     \
+  KIND(up_down)                              \
+  KIND(weighted_up_down)                     \
+  KIND(quest_plus)                           \
+  KIND(psi)                                  \
+  KIND(psi_marginal)                         \
+  KIND(zest)                                 \
+  KIND(best_pest)                            \
+  KIND(adjustment)                           \
+  KIND(accelerated_stochastic_approximation) \
+  KIND(limits)                               \
+  KIND(program)                              \
+  KIND(comparisons)
+
+#define TURNPOINT_ENUMERATOR(kind) kind,
+enum class Kind { TURNPOINT_PROCEDURES(TURNPOINT_ENUMERATOR) };
+#undef TURNPOINT_ENUMERATOR
+
 using core::Function;
 enum class Scale { linear, log10, dB };
 enum class Shuffle { within_repeat, within_block, none };

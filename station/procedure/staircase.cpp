@@ -108,6 +108,34 @@ std::map<std::string, Estimate> Staircase::estimates() const {
 
 namespace {
 
+core::Keys staircase_keys(const core::Keys& of_this_kind) {
+  using namespace core::key;
+  core::Keys keys{tracks_key()};
+  keys.and_also(span_keys());
+  keys.and_also(
+      {numbers("step", positive_step,
+               "step sizes in both directions: each reversal moves on to the next, and the last stays"),
+       numbers("step_down", positive_step,
+               "step sizes down, if those up differ; weighted-up-down needs these only")});
+  keys.and_also(of_this_kind);
+  return keys.and_also(
+      {integer("discard_reversals", 0, 1000,
+               "first reversals that the estimate leaves out; 4 if the start is far from the threshold")
+           .by_default("0"),
+       scale_key(), track_stop_key()});
+}
+
+core::Keys up_down_keys() {
+  using namespace core::key;
+  return staircase_keys(
+      {numbers("step_up", positive_step, "step sizes up"),
+       integer("n_down", 1, 20, "right answers in a row that lower the level").required(),
+       integer("n_up", 1, 20, "wrong answers in a row that raise the level").by_default("1"),
+       integer("initial_down", 1, 20, "`n_down` before the first reversal").without_it("`n_down`")});
+}
+
+core::Keys weighted_keys() { return staircase_keys({target_key()}); }
+
 void read_steps(core::TableReader& reader, Spec& spec) {
   spec.step = reader.maybe_numbers("step");
   spec.step_down = reader.maybe_numbers("step_down");
@@ -175,11 +203,10 @@ std::optional<double> staircase_target(const Spec& spec, double, double) {
 
 }  // namespace
 
-extern const Description up_down{Kind::up_down,      "up-down",      Choice::track,   read_staircase,
+extern const Description up_down{"up-down",          Choice::track,  up_down_keys,    read_staircase,
                                  validate_staircase, make_staircase, staircase_target};
 
-extern const Description weighted_up_down{Kind::weighted_up_down, "weighted-up-down", Choice::track,
-                                          read_staircase,         validate_staircase, make_staircase,
-                                          staircase_target};
+extern const Description weighted_up_down{"weighted-up-down", Choice::track,  weighted_keys,   read_staircase,
+                                          validate_staircase, make_staircase, staircase_target};
 
 }  // namespace turnpoint::procedure

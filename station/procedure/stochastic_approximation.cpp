@@ -51,9 +51,13 @@ class StochasticApproximation : public Track {
 }  // namespace
 
 extern const Description accelerated_stochastic_approximation{
-    Kind::accelerated_stochastic_approximation,
     "accelerated-stochastic-approximation",
     Choice::track,
+    [] {
+      core::Keys keys{tracks_key()};
+      keys.and_also(span_keys());
+      return keys.and_also({step_key(), target_key(), scale_key(), track_stop_key()});
+    },
     [](core::TableReader& reader, Spec& spec) {
       read_tracks(reader, spec);
       read_scale(reader, spec);

@@ -5,8 +5,7 @@
 #include "station/core/parts.hpp"
 #include "station/core/trial.hpp"
 #include "station/follow/pattern.hpp"
-#include "station/procedure/procedure_keys.hpp"
-#include "station/procedure/spec.hpp"
+#include "station/procedure/description.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/protocol/triggers.hpp"
 

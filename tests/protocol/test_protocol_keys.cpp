@@ -17,7 +17,7 @@ std::string page() {
          "work\n"
          "together. This page and `protocol.schema.json`, which editors read, are made from "
          "the\n"
-         "declarations in `station/protocol/protocol_keys.cpp` and `station/procedure/procedure_keys.cpp`\n"
+         "declarations in `station/protocol/protocol_keys.cpp` and in the files of `station/procedure`\n"
          "(`test_protocol \"[.write]\"` writes both).\n\n"
          "\"Number or expression\" is a number, or arithmetic on factors in quotes, such as `\"150 + "
          "offset_mm\"`.\n"
