@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 
 #include "station/analysis/first_passage.hpp"
 #include "station/analysis/proportion.hpp"
@@ -69,7 +68,7 @@ class Posterior {
     for (const auto& trial : trials) {
       const double window = trial.deadline_s ? 2 * std::max(*trial.deadline_s, trial.time_s) : longest;
       if (trial.outcome == DiffusionTrial::Outcome::answered)
-        answers_[trial.difficulty].push_back({trial.correct, trial.time_s, -std::log(window)});
+        answers_[trial.difficulty].push_back({trial.correct, trial.time_s, 1 / window});
       else
         ++rest[{static_cast<double>(trial.difficulty),
                 trial.outcome == DiffusionTrial::Outcome::late ? 1.0 : 0.0, trial.time_s, window}];
@@ -111,14 +110,17 @@ class Posterior {
   }
 
   double operator()(const Vector& theta) const {
+    const auto at = shared(theta);
     double sum = shared_part(theta);
-    for (std::size_t i = 0; i < answers_.size() && sum < kImpossible; ++i) sum += part(theta, i);
+    for (std::size_t i = 0; i < answers_.size() && sum < kImpossible; ++i)
+      sum += part(at, drift(theta, i), i);
     return std::isfinite(sum) && sum < kImpossible ? sum : kImpossible;
   }
 
   double log_likelihood(const Vector& theta) const {
+    const auto at = shared(theta);
     double sum = 0;
-    for (std::size_t i = 0; i < answers_.size(); ++i) sum += likelihood(theta, i);
+    for (std::size_t i = 0; i < answers_.size(); ++i) sum += likelihood(at, drift(theta, i), i);
     return sum;
   }
 
@@ -140,43 +142,57 @@ class Posterior {
 
   /// What the answers to one difficulty and the prior of its drift contribute.
   double part(const Vector& theta, std::size_t difficulty) const {
-    double sum = likelihood(theta, difficulty);
-    if (options_.method == DiffusionOptions::Method::posterior) {
-      const double v = theta[first_drift_ + static_cast<Eigen::Index>(difficulty)];
-      sum -= v * v / (2 * kDriftPriorSd * kDriftPriorSd);
-    }
-    return std::isfinite(sum) ? -sum : kImpossible;
+    return part(shared(theta), drift(theta, difficulty), difficulty);
   }
 
  private:
   struct Answer {
     bool correct;
-    double time_s, log_contaminant;
+    double time_s;
+    double contaminant;  ///< density (1/s) of the times of contaminants
   };
   struct Censored {
     bool late;
     double time_s, log_contaminant, count;
   };
 
-  double likelihood(const Vector& theta, std::size_t difficulty) const {
-    const auto at = shared(theta);
-    const Diffusion d = at.diffusion(theta[first_drift_ + static_cast<Eigen::Index>(difficulty)]);
+  double drift(const Vector& theta, std::size_t difficulty) const {
+    return theta[first_drift_ + static_cast<Eigen::Index>(difficulty)];
+  }
+
+  double part(const Shared& at, double v, std::size_t difficulty) const {
+    double sum = likelihood(at, v, difficulty);
+    if (options_.method == DiffusionOptions::Method::posterior)
+      sum -= v * v / (2 * kDriftPriorSd * kDriftPriorSd);
+    return std::isfinite(sum) ? -sum : kImpossible;
+  }
+
+  double likelihood(const Shared& at, double v, std::size_t difficulty) const {
+    const Diffusion d = at.diffusion(v);
     double sum = 0;
     const FirstPassageDensity wrong(d, false), right(d, true);
-    const auto log_density = [&](const Answer& answer) {
-      return (answer.correct ? right : wrong).log_at(answer.time_s - at.nondecision_s);
-    };
     if (!contaminants_) {
-      for (const auto& answer : answers_[difficulty]) sum += log_density(answer);
+      for (const auto& answer : answers_[difficulty])
+        sum += (answer.correct ? right : wrong).log_at(answer.time_s - at.nondecision_s);
       for (const auto& trial : censored_[difficulty]) sum += trial.count * undecided(d, trial, at);
       return sum;
     }
     const double log_share = std::log(at.contaminants), log_rest = std::log1p(-at.contaminants);
     const double p = upper_probability(d);
-    for (const auto& answer : answers_[difficulty])
-      sum += log_add(
-          log_rest + log_density(answer),
-          log_share + answer.log_contaminant + std::log(contaminant_share(answer.correct ? p : 1 - p)));
+    const double by_chance[] = {at.contaminants * contaminant_share(1 - p),
+                                at.contaminants * contaminant_share(p)};
+    // The logarithm of a product takes less time than those of its factors. No factor is 0, because of the
+    // contaminants.
+    double product = 1;
+    for (const auto& answer : answers_[difficulty]) {
+      product *=
+          (1 - at.contaminants) * (answer.correct ? right : wrong).at(answer.time_s - at.nondecision_s) +
+          by_chance[answer.correct ? 1 : 0] * answer.contaminant;
+      if (product > 1e-100 && product < 1e100) continue;
+      sum += std::log(product);
+      product = 1;
+    }
+    sum += std::log(product);
     for (const auto& trial : censored_[difficulty])
       sum += trial.count * log_add(log_rest + undecided(d, trial, at), log_share + trial.log_contaminant);
     return sum;
@@ -360,6 +376,7 @@ class Sampler {
         mixture = log_add(mixture, density(proposals_[k], at_.back()));
       mixture_.push_back(mixture);
     }
+    sort_new(n);
   }
 
   /// The draws so far. They are worth as many independent ones as the least certain of the quantiles that are
@@ -379,16 +396,16 @@ class Sampler {
     for (auto& w : sample.weight) w /= sum;
     sample.effective = kPosteriorDraws;
     const double tail = (1 - confidence) / 2;
-    std::vector<std::size_t> order(at_.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    // The values stand side by side in memory, which makes sorting several times faster.
-    std::vector<double> value(at_.size());
+    // weight up to each draw, in the order of a parameter, and the sum of the squares of the weights
+    std::vector<double> below(at_.size()), squares(at_.size());
     for (Eigen::Index k = 0; k < at_[0].size(); ++k) {
-      for (std::size_t i = 0; i < at_.size(); ++i) value[i] = at_[i][k];
-      std::sort(order.begin(), order.end(),
-                [&](std::size_t a, std::size_t b) { return value[a] < value[b]; });
-      std::vector<double> below;  // weight up to each draw
-      for (const auto i : order) below.push_back((below.empty() ? 0 : below.back()) + sample.weight[i]);
+      const auto& order = sorted_[static_cast<std::size_t>(k)];
+      double weight = 0, square = 0;
+      for (std::size_t i = 0; i < order.size(); ++i) {
+        const double w = sample.weight[order[i]];
+        below[i] = weight += w;
+        squares[i] = square += w * w;
+      }
       const auto quantile_at = [&](double p) {
         const auto found = std::lower_bound(below.begin(), below.end(), p) - below.begin();
         return at_[order[std::min(static_cast<std::size_t>(found), order.size() - 1)]][k];
@@ -396,9 +413,9 @@ class Sampler {
       const double width = quantile_at(1 - tail) - quantile_at(tail);
       for (const double p : {tail, 0.5, 1 - tail}) {
         // the variance of the weight below the quantile, and what it means for the quantile
-        double variance = 0;
-        for (std::size_t i = 0; i < order.size(); ++i)
-          variance += std::pow(sample.weight[order[i]] * ((below[i] <= p ? 1 : 0) - p), 2);
+        const auto up_to = std::upper_bound(below.begin(), below.end(), p) - below.begin();
+        const double low = up_to == 0 ? 0 : squares[static_cast<std::size_t>(up_to) - 1];
+        const double variance = (1 - p) * (1 - p) * low + p * p * (square - low);
         sample.effective = std::min(sample.effective, p * (1 - p) / variance);
         const double error = std::sqrt(variance);
         sample.error_of_width =
@@ -409,6 +426,22 @@ class Sampler {
   }
 
  private:
+  /// Sorts the draws of the last round into the order of each parameter.
+  void sort_new(Eigen::Index parameters) {
+    sorted_.resize(static_cast<std::size_t>(parameters));
+    std::vector<double> value(
+        at_.size());  // side by side in memory, which makes sorting several times faster
+    for (Eigen::Index k = 0; k < parameters; ++k) {
+      auto& order = sorted_[static_cast<std::size_t>(k)];
+      for (std::size_t i = 0; i < at_.size(); ++i) value[i] = at_[i][k];
+      const auto lower = [&](std::size_t a, std::size_t b) { return value[a] < value[b]; };
+      const auto old = static_cast<std::ptrdiff_t>(order.size());
+      for (auto i = order.size(); i < at_.size(); ++i) order.push_back(i);
+      std::sort(order.begin() + old, order.end(), lower);
+      std::inplace_merge(order.begin(), order.begin() + old, order.end(), lower);
+    }
+  }
+
   static constexpr int kFreedom = 6;
   struct Proposal {
     Vector centre;
@@ -424,7 +457,8 @@ class Sampler {
   const Posterior& f_;
   std::vector<Proposal> proposals_;
   std::vector<Vector> at_;
-  std::vector<double> height_, mixture_;  // logarithms of the densities of posterior and proposals
+  std::vector<double> height_, mixture_;          // logarithms of the densities of posterior and proposals
+  std::vector<std::vector<std::size_t>> sorted_;  // the draws in the order of each parameter
 };
 
 /// Returns draws of equal weight (systematic resampling), in random order: the reports of differences pair

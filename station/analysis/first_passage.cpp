@@ -173,25 +173,27 @@ FirstPassageDensity::FirstPassageDensity(const Diffusion& diffusion, bool upper)
   drift_away_ = seen.drift_away;
   variance_ = diffusion.drift_sd * diffusion.drift_sd;
   per_boundary2_ = 1 / (seen.separation * seen.separation);
-  constant_ = std::log(per_boundary2_);
-  for (int k = 1; k <= kSines; ++k) {
+  // The density itself has terms up to k = 5; only a delay needs all of them, and their rates.
+  const int terms = diffusion.delay_range_s > 0 ? kSines : 5;
+  for (int k = 1; k <= terms; ++k) {
     const auto i = static_cast<std::size_t>(k - 1);
-    sines_[i] = weighted_sine(k, relative_, opposite_);
+    sines_[i] = diffusion.start == 0.5 ? k * std::array{0, 1, 0, -1}[static_cast<std::size_t>(k % 4)]
+                                       : weighted_sine(k, relative_, opposite_);
     rates_[i] = 0.5 * (drift_away_ * drift_away_ + kPi * kPi * k * k * per_boundary2_);
   }
 }
 
-/// The density of the passage through 0 of a driftless diffusion between 0 and 1, at the time u. The terms are
-/// powers of two exponentials.
-double FirstPassageDensity::log_driftless(double u) const {
-  if (!(u > 1e-290)) return kNever;
+/// The density of the passage through 0 of a driftless diffusion between 0 and 1, at the time u. The terms
+/// are powers of two exponentials.
+FirstPassageDensity::Scaled FirstPassageDensity::driftless(double u) const {
+  if (!(u > 1e-290)) return {0, 0};
   const double w = relative_;
   if (u >= kShortDensity) {
-    const double q = std::exp(-kPi * kPi / 2 * u), q3 = q * q * q, q8 = q3 * q3 * q * q, q15 = q8 * q3 * q3 * q;
+    const double q = std::exp(-kPi * kPi / 2 * u), q3 = q * q * q, q8 = q3 * q3 * q * q,
+                 q15 = q8 * q3 * q3 * q;
     const double sum =
         sines_[0] + q3 * sines_[1] + q8 * sines_[2] + q15 * sines_[3] + q8 * q8 * q8 * sines_[4];
-    if (!(sum > 0)) return kNever;
-    return std::log(kPi * sum) - kPi * kPi / 2 * u;
+    return {std::max(0.0, kPi * sum), -kPi * kPi / 2 * u};
   }
   // (w + 2k) exp(-((w + 2k)^2 - w^2) / 2u), in pairs of k and -k, so that a start close to the other boundary
   // loses no digits
@@ -212,17 +214,35 @@ double FirstPassageDensity::log_driftless(double u) const {
     sum += (2 + w) * up - (2 - w) * down + both * ((4 + w) * up * up - (4 - w) * down * down) +
            both3 * ((6 + w) * up * up * up - (6 - w) * down * down * down);
   }
-  if (!(sum > 0)) return kNever;
-  if (u < 1e-60) return std::log(sum) - w * w / (2 * u) - 1.5 * std::log(u) - 0.5 * std::log(2 * kPi);
-  return std::log(sum / (std::sqrt(2 * kPi * u) * u)) - w * w / (2 * u);
+  if (!(sum > 0)) return {0, 0};
+  if (u < 1e-60) return {sum / std::sqrt(2 * kPi), -w * w / (2 * u) - 1.5 * std::log(u)};
+  return {sum / (std::sqrt(2 * kPi * u) * u), -w * w / (2 * u)};
+}
+
+FirstPassageDensity::Scaled FirstPassageDensity::without_delay(double t) const {
+  const double v = drift_away_, z = distance_;
+  auto density = driftless(t * per_boundary2_);
+  density.factor *= per_boundary2_;
+  if (variance_ == 0) {
+    density.exponent += -v * z - 0.5 * v * v * t;
+  } else {
+    const double spread = 1 + variance_ * t;
+    density.factor /= std::sqrt(spread);
+    density.exponent += (variance_ * z * z - 2 * v * z - v * v * t) / (2 * spread);
+  }
+  return density;
 }
 
 double FirstPassageDensity::log_without_delay(double t) const {
-  const double v = drift_away_, z = distance_;
-  if (variance_ == 0) return -v * z - 0.5 * v * v * t + log_driftless(t * per_boundary2_) + constant_;
-  const double spread = 1 + variance_ * t;
-  return (variance_ * z * z - 2 * v * z - v * v * t) / (2 * spread) - 0.5 * std::log(spread) +
-         log_driftless(t * per_boundary2_) + constant_;
+  const auto density = without_delay(t);
+  return density.factor > 0 ? std::log(density.factor) + density.exponent : kNever;
+}
+
+double FirstPassageDensity::at(double time_s) const {
+  if (diffusion_.delay_range_s > 0) return std::exp(log_at(time_s));
+  if (!(time_s > 0)) return 0;
+  const auto density = without_delay(time_s);
+  return density.factor * std::exp(density.exponent);
 }
 
 /// Logarithm of the probability of arriving between two times, from the sum of sines; for a fixed drift, and
@@ -241,7 +261,7 @@ double FirstPassageDensity::log_between(double from_s, double to_s) const {
     sum += sines_[k] / rates_[k] * left * (1 - gone);
   }
   if (!(sum > 0)) return kNever;
-  return std::log(kPi * sum) - rates_[0] * from_s - drift_away_ * distance_ + constant_;
+  return std::log(kPi * per_boundary2_ * sum) - rates_[0] * from_s - drift_away_ * distance_;
 }
 
 double FirstPassageDensity::log_at(double time_s) const {
@@ -261,11 +281,12 @@ double FirstPassageDensity::log_at(double time_s) const {
   return log_arrivals(std::max(from_s, 0.0), time_s, [](double) { return 1.0; }) - std::log(range_s);
 }
 
-/// Logarithm of the integral of weight(t) times the density without delay, from one time to another, which may
-/// be infinite. All that is summed is positive, so nothing cancels. Panels go from `to_s` (or from where the
-/// density is large) to shorter times, and then to longer ones. In a panel the density changes by a factor of
-/// about e^5 at most for each of the three reasons that it has: the way to the boundary (z^2 / 2t), the way
-/// between the boundaries (pi^2 t / 2 a^2), and the drift's exponent, whose slope is -d^2 / 2 (1 + sd^2 t)^2.
+/// Logarithm of the integral of weight(t) times the density without delay, from one time to another, which
+/// may be infinite. All that is summed is positive, so nothing cancels. Panels go from `to_s` (or from where
+/// the density is large) to shorter times, and then to longer ones. In a panel the density changes by a
+/// factor of about e^5 at most for each of the three reasons that it has: the way to the boundary (z^2 / 2t),
+/// the way between the boundaries (pi^2 t / 2 a^2), and the drift's exponent, whose slope is -d^2 / 2 (1 +
+/// sd^2 t)^2.
 template <class Weight>
 double FirstPassageDensity::log_arrivals(double from_s, double to_s, const Weight& weight) const {
   const double z2 = distance_ * distance_, fall = 0.5 * kPi * kPi * per_boundary2_;
@@ -309,12 +330,14 @@ double FirstPassageDensity::log_arrivals(double from_s, double to_s, const Weigh
 double log_distribution(const Diffusion& diffusion, bool upper, double time_s) {
   if (!(time_s > 0)) return kNever;
   const double range_s = diffusion.delay_range_s;
-  if (diffusion.drift_sd == 0 && range_s == 0) return log_distribution_of(seen_from(diffusion, upper), time_s);
+  if (diffusion.drift_sd == 0 && range_s == 0)
+    return log_distribution_of(seen_from(diffusion, upper), time_s);
   const FirstPassageDensity density(diffusion, upper);
   const double from_s = std::max(time_s - range_s, 0.0);
   const double whole = density.log_arrivals(0, from_s, [](double) { return 1.0; });
   if (range_s == 0) return whole;
-  return log_sum(whole, density.log_arrivals(from_s, time_s, [&](double t) { return (time_s - t) / range_s; }));
+  return log_sum(whole,
+                 density.log_arrivals(from_s, time_s, [&](double t) { return (time_s - t) / range_s; }));
 }
 
 double log_tail(const Diffusion& diffusion, bool upper, double time_s) {
@@ -322,7 +345,8 @@ double log_tail(const Diffusion& diffusion, bool upper, double time_s) {
   if (diffusion.drift_sd == 0 && range_s == 0) return log_tail_of(seen_from(diffusion, upper), time_s);
   const FirstPassageDensity density(diffusion, upper);
   const auto above = [&](double from_s) {
-    return density.log_arrivals(std::max(from_s, 0.0), std::numeric_limits<double>::infinity(), [](double) { return 1.0; });
+    return density.log_arrivals(std::max(from_s, 0.0), std::numeric_limits<double>::infinity(),
+                                [](double) { return 1.0; });
   };
   if (range_s == 0 || time_s <= 0) return above(time_s);
   const auto late = [&](double t) { return (t - time_s + range_s) / range_s; };
@@ -337,8 +361,11 @@ double log_survival(const Diffusion& diffusion, double time_s) {
 
 double upper_probability(const Diffusion& diffusion) {
   const auto seen = seen_from(diffusion, true);
-  if (diffusion.drift_sd == 0) return std::exp(-seen.drift_away * seen.distance + log_ever(seen));
-  return std::exp(std::min(0.0, log_tail(diffusion, true, 0)));
+  if (diffusion.drift_sd > 0) return std::exp(std::min(0.0, log_tail(diffusion, true, 0)));
+  const double v = std::fabs(seen.drift_away);
+  if (v * seen.separation < 1e-8) return std::exp(-seen.drift_away * seen.distance + log_ever(seen));
+  return std::exp(-(seen.drift_away + v) * seen.distance) *
+         std::expm1(-2 * v * seen.separation * seen.opposite) / std::expm1(-2 * v * seen.separation);
 }
 
 }  // namespace turnpoint::analysis
