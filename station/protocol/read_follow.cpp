@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "station/core/number.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/follow_target.hpp"
 #include "station/protocol/reading.hpp"
@@ -269,6 +270,12 @@ void check_follow(const Reading& reading) {
       for (const auto& name : interval)
         refuse(name, phrase("it is one end of a change within an interval"),
                phrase("let an \"event\" of a part make the change"));
+  if (protocol.task.kind == TaskKind::adjustment)
+    for (const auto& interval : protocol.task.intervals)
+      if (const auto parts = parts_of(protocol.task, interval); !parts.empty() && !parts.back().scenes.empty())
+        refuse(parts.back().scenes.back(),
+               phrase("it is what the slider moves, which such a scene cannot do while it is presented"),
+               phrase("a staircase, as in matching-held-friction.toml"));
   if (const auto& signal = protocol.timing.signal; signal && signal->by == ResponseSignal::By::buzz)
     refuse(signal->scene, phrase("it is a buzz"), phrase("a scene that does not follow the finger"));
   for (const auto& part : protocol.plan)

@@ -429,3 +429,29 @@ TEST_CASE("protocols that follow the finger are checked with their cues, and wha
   CHECK(told.problems.empty());
   CHECK(accuracy(told, "amplitude at the wide end") > 0.95);
 }
+
+TEST_CASE("friction that differs before a fall keeps the highest vibration from telling whether it fell",
+          "[check]") {
+  const std::string root = TURNPOINT_SOURCE_DIR;
+  rehearsal::CheckOptions options;
+  options.sessions = 1;
+  const auto vibration = [&](const std::string& path) {
+    const auto check = rehearsal::check(path, root + "/deploy/rigs/simulated-following.toml", options);
+    for (const auto& problem : check.problems) UNSCOPED_INFO(format(problem));
+    CHECK(check.problems.empty());
+    CHECK(check.warnings.empty());
+    for (const auto& report : check.cues.reports)
+      if (report.cue == "amplitude at the wide end") return report.accuracy;
+    return -1.0;
+  };
+  const auto shipped = root + "/protocols/change-while-pressing.toml";
+  CHECK(vibration(shipped) == Approx(0.75).margin(0.01));
+  const TemporaryFolder folder;
+  const auto fixed = folder / "fixed.toml";
+  std::ofstream(fixed) << [&] {
+    auto text = core::read_file(shipped);
+    const std::string drawn = "levels = [0.7, 0.75, 0.8, 0.85]";
+    return text.replace(text.find(drawn), drawn.size(), "levels = [0.8]");
+  }();
+  CHECK(vibration(fixed) == Approx(1.0).margin(0.01));
+}
