@@ -59,6 +59,14 @@ std::optional<Figure> finger_figure(const Summary& summary);
 /// boundary, the second the friction on both sides; open markers are single trials. A third panel shows the
 /// friction along the strip.
 std::optional<Figure> friction_figure(const Summary& summary);
+/// Plots asked, commanded and felt friction over the place of the finger, in a chart for each scene,
+/// condition and direction. Empty if too few intervals have friction anywhere.
+std::optional<Figure> followed_figure(const Summary& summary);
+/// Plots how far felt is from asked friction over the place of the finger, in a chart for each scene and
+/// condition. Empty as followed_figure() is.
+std::optional<Figure> deviation_figure(const Summary& summary);
+/// True if what was asked for at a place differs clearly between the intervals of one scene and condition.
+bool asked_differs(const Summary& summary);
 /// Plots friction along the strip beside the planned boundary, with bars of one standard error. Empty without
 /// curves.
 std::optional<Chart> strip_chart(const std::vector<analysis::FrictionCurve>& curves,

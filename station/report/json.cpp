@@ -425,6 +425,26 @@ Json task_json(const Summary& summary) {
             {"friction", curve.friction},
             {"se", curve.se}};
   });
+  json["following"] = list_of(summary.followed, [](const auto& entry) {
+    Json condition{{"condition", entry.condition}, {"trials", entry.trials}, {"faultless", entry.faultless}};
+    for (const auto& row : kFollowing) condition[row.key] = value(entry.*row.value);
+    return condition;
+  });
+  json["friction_over_place"] = list_of(data.followed_places, [](const auto& places) -> Json {
+    const auto spreads = [](const std::vector<analysis::Spread>& list) {
+      return list_of(list, [](const auto& one) -> Json {
+        return {{"median", value(one.median)}, {"low", value(one.low)}, {"high", value(one.high)}};
+      });
+    };
+    return {{"condition", places.condition},
+            {"scene", places.scene},
+            {"direction", places.narrow ? "towards the narrow end" : "towards the wide end"},
+            {"place_mm", places.place_mm},
+            {"asked", spreads(places.asked)},
+            {"commanded", spreads(places.commanded)},
+            {"felt", spreads(places.felt)},
+            {"felt_minus_asked", spreads(places.deviation)}};
+  });
   json["repeated_trials"] = list_of(data.repeats, [](const auto& at) -> Json {
     return {{"level", value(at.level)}, {"presented", at.presented}, {"repeated", at.repeated}};
   });

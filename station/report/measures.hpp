@@ -3,6 +3,7 @@
 
 #include "station/analysis/dependence.hpp"
 #include "station/analysis/finger.hpp"
+#include "station/analysis/followed.hpp"
 #include "station/analysis/trade.hpp"
 
 namespace turnpoint::report {
@@ -50,6 +51,20 @@ inline constexpr Measure<Touched> kFinger[] = {
     {"mu_low", "report.friction_smooth", &Touched::mu_low, "", "", false, "", true},
     {"mu_high", "report.friction_rough", &Touched::mu_high, "", "", false, "", true},
     {"felt_minus_planned_mm", "figure.felt", &Touched::shift_mm, "", "", false, "", true}};
+
+using Following = analysis::FollowedCondition;
+inline constexpr Measure<Following> kFollowing[] = {
+    {"mu_asked", "report.mu_asked", &Following::mu_asked, "asked friction", "", false, "", true},
+    {"mu_commanded", "report.mu_commanded", &Following::mu_commanded, "commanded friction"},
+    {"mu_felt", "report.mu_felt", &Following::mu_felt, "felt friction", "", false, "", true},
+    {"follow_lag_ms", "report.follow_lag", &Following::lag_ms, "lag of felt friction", "ms"},
+    {"follow_inside", "report.follow_inside", &Following::inside, "felt friction within 10 %", "", false, "",
+     true},
+    {"follow_share", "report.follow_share", &Following::share, "time that follows the finger", "", false, "",
+     true},
+    {"envelope_error_dB", "report.envelope_error", &Following::envelope_error_dB, "error of the envelope",
+     "dB"},
+    {"envelope_lag_us", "report.envelope_lag", &Following::envelope_lag_us, "lag of the envelope", "us"}};
 
 inline constexpr const char *kStimulusBefore = "effect of the stimulus before",
                             *kAnswerBefore = "effect of the answer before";

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "station/analysis/finger.hpp"
+#include "station/analysis/followed.hpp"
 #include "station/analysis/forced_choice.hpp"
 #include "station/analysis/group.hpp"
 #include "station/analysis/psychometric_fit.hpp"
@@ -141,6 +142,10 @@ struct SessionData : LevelAnalysis {
   std::vector<analysis::FingerTrial> finger;
   /// friction along the strip; empty if no force cells recorded data
   std::vector<analysis::FrictionCurve> strip;
+  /// answered trials, without practice, whose scenes follow the finger
+  std::vector<analysis::FollowedTrial> followed;
+  /// friction over place in these trials; empty if no scene asks for friction, or too few trials have it
+  std::vector<analysis::FollowedPlaces> followed_places;
   /// trials repeated because of the finger's movement, by level; empty if the protocol repeats none
   std::vector<analysis::RepeatedTrials> repeats;
   /// measured vibration of each trial; empty if no pick-up measured the surface

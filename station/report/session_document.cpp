@@ -840,6 +840,45 @@ void add_finger(const Summary& summary, Document& document) {
       "Student\u2019s t over trials; for a single trial, 1.96 standard errors.");
 }
 
+/// Friction that was asked for and felt under the finger, and whether the surface followed it.
+void add_following(const Summary& summary, Document& document) {
+  const auto& conditions = summary.followed;
+  if (conditions.empty()) return;
+  document.heading(phrase("report.following"));
+  document.figure("friction-over-place", followed_figure(summary));
+  document.figure("felt-minus-asked", deviation_figure(summary));
+  if (summary.data.followed_places.empty())
+    document.remark(plain(
+        "Friction over place is not drawn: nowhere did a sliding finger feel a scene that asks for friction "
+        "in 3 or more intervals. A finger that presses without sliding feels no friction."));
+  else if (asked_differs(summary))
+    document.remark(plain(
+        "What was asked for at one place differs between the intervals of a scene, because a factor changes "
+        "or moves it: the medians of asked and felt friction are then not what any interval presented. "
+        "Compare felt minus asked friction, or the trials in the signal \u201cfollow\u201d."));
+  auto table = table_of(conditions, &Following::condition);
+  for (const auto& row : kFollowing) table.rows.push_back(row_of(row, conditions));
+  auto& cells = table.rows.emplace_back();
+  cells.push_back(head("Trials recorded / without a fault of following"));
+  for (const auto& entry : conditions)
+    cells.push_back(count(std::to_string(entry.trials) + " / " + std::to_string(entry.faultless)));
+  document.table(std::move(table));
+  if (std::ranges::any_of(conditions, [](const auto& entry) { return entry.trials < 3; }))
+    document.remark(plain("With fewer than 3 trials, a condition has no means."));
+  document.explain(
+      "Answered trials without practice. The table is about the interval presented last, the figure about "
+      "all "
+      "intervals. Friction is measured only while the finger slides, and each measurement is compared with "
+      "what was asked at the place and time at which it was made, in places of 1 mm, where 3 or more "
+      "intervals "
+      "have one. Commanded is what the friction table and the modelled vibration make of what was asked. If "
+      "the protocol does not state the friction of the surface at rest (" +
+      Text("resting_friction", Look::code) +
+      "), asked and commanded friction are scaled in each interval so that commanded and felt have the same "
+      "mean: only the variation is then compared, not the height. Error and lag of the envelope are what "
+      "pick-ups say. 95 % intervals: Student\u2019s t over trials; for shares on the logit scale.");
+}
+
 void add_station(const SessionData& data, Document& document) {
   if (data.health.empty()) return;
   document.heading(phrase("report.station"));
@@ -894,6 +933,7 @@ Document document(const Summary& summary) {
   add_before(summary, document);
   add_course(summary, document);
   add_finger(summary, document);
+  add_following(summary, document);
   if (!data.measured.empty()) {
     document.heading("Vibration of the surface");
     document.explain("Open markers: void, because the vibration was too far from the plan.");

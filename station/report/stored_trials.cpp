@@ -113,6 +113,12 @@ void add_finger(const core::TrialRow& row, const analysis::TrialRecord& trial, S
   data.finger.push_back(std::move(added));
 }
 
+void add_followed(const core::TrialRow& row, const analysis::TrialRecord& trial, SessionData& data) {
+  if (!row.follow.followed.empty() && trial.type != core::TrialType::practice &&
+      trial.outcome == core::Outcome::answered)
+    data.followed.push_back({row.trial_index, trial.instruction, row.follow});
+}
+
 /// True for a block in which the finger only strokes the surface and no question is asked.
 bool nothing_asked(const protocol::Protocol& protocol, const std::string& block) {
   return std::any_of(protocol.plan.begin(), protocol.plan.end(), [&](const auto& part) {
@@ -288,6 +294,7 @@ void add_trials(const std::vector<core::BlockRecord>& blocks, const protocol::Pr
       data.trials.push_back(record_of(row, block->start, protocol));
       assign(protocol, data.trials.back());
       add_finger(row, data.trials.back(), data);
+      add_followed(row, data.trials.back(), data);
     }
   }
   for (const auto& [level, at] : repeats) data.repeats.push_back(at);

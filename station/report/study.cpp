@@ -173,6 +173,9 @@ void add_measures(const Summary& summary, StudyPerson& person) {
       measures.add(curve.condition, kLagTime + at, "s", std::optional(point.time_s));
     }
   }
+  for (const auto& entry : summary.followed)
+    for (const auto& row : kFollowing)
+      measures.add(entry.condition, row.name, row.unit, entry.*row.value);
   for (const auto& entry : summary.dependences)
     for (const auto& row : kBefore)
       if (*row.name != '\0')

@@ -469,6 +469,7 @@ Summary summarise(const SessionData& data, int scale_sessions) {
   summary.confidence = analysis::accuracy_by_confidence(data.trials);
   summary.fatigue = analysis::fatigue(data.trials);
   summary.finger = analysis::finger(data.finger, data.conditions);
+  summary.followed = analysis::followed(data.followed, data.conditions);
   const auto count = std::max<std::size_t>(1, data.parts.size());
   for (std::size_t part = 0; part < count; ++part) add_levels(part_of(data, part), scale_sessions, summary);
   if (data.design == Design::adjustment || judges(data.design)) return summary;

@@ -56,6 +56,8 @@ struct Summary {
   std::vector<analysis::Dependence> dependences;
   /// force and friction of the finger; empty if no force cells recorded data
   std::optional<analysis::Finger> finger;
+  /// scenes that follow the finger; empty if none does
+  std::vector<analysis::FollowedCondition> followed;
 };
 
 /// Returns only the psychometric fits: one to all trials, or one per instruction if there are several

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <map>
 #include <set>
@@ -18,6 +19,7 @@
 #include "station/report/stored_trials.hpp"
 #include "station/session/planned_session.hpp"
 #include "station/store/open.hpp"
+#include "station/store/signal_code.hpp"
 #include "station/store/stored_signals.hpp"
 
 namespace turnpoint::view {
@@ -248,6 +250,103 @@ void add_strip(const std::string& path, const store::StoredSession& stored, repo
   data.strip = curves_of(along);
 }
 
+/// The updates of a scene that follows the finger, as the signal kFollowStream has them.
+class Updates {
+ public:
+  explicit Updates(const core::SignalRow& signal, double frames_per_s)
+      : values_(store::decode(signal)),
+        first_frame_(static_cast<double>(signal.start_frame)),
+        frames_per_point_(frames_per_s / signal.rate_Hz),
+        points_per_ms_(1e-3 * signal.rate_Hz) {
+    for (std::size_t c = 0; c < signal.channels.size(); ++c) channels_[signal.channels[c].name] = c;
+    has_friction_ = std::ranges::any_of(
+        signal.channels, [](const auto& channel) { return channel.name == "asked" && channel.unit.empty(); });
+  }
+
+  /// False if the scenes ask for a displacement.
+  bool has_friction() const { return has_friction_; }
+
+  /// The points between two frames at which the finger slid and the surface followed it. What was asked is
+  /// that of the time at which the friction was measured.
+  std::vector<analysis::FollowedPoint> between(std::int64_t first_frame, std::int64_t end_frame) const {
+    std::vector<analysis::FollowedPoint> points;
+    const auto count = at("felt").size();
+    double last_measured = -1;
+    for (std::size_t k = 0; k < count; ++k) {
+      const double felt = at("felt")[k];
+      const double measured = static_cast<double>(k) - points_per_ms_ * at("age")[k];
+      const double frame = first_frame_ + frames_per_point_ * measured;
+      if (!std::isfinite(felt) || !(measured > last_measured + 0.5) ||
+          frame < static_cast<double>(first_frame) || frame >= static_cast<double>(end_frame))
+        continue;
+      const auto before = static_cast<std::size_t>(measured);
+      if (!followed(before) || !followed(before + 1)) continue;
+      last_measured = measured;
+      const double along = measured - static_cast<double>(before);
+      const auto value = [&](const char* channel) {
+        return (1 - along) * at(channel)[before] + along * at(channel)[before + 1];
+      };
+      analysis::FollowedPoint point{value("place"), value("speed") > 0, value("asked"), value("commanded"),
+                                    felt};
+      if (std::isfinite(point.place_mm) && point.asked > 0 && std::isfinite(point.commanded))
+        points.push_back(point);
+    }
+    return points;
+  }
+
+ private:
+  const std::vector<double>& at(const char* channel) const { return values_.at(channels_.at(channel)); }
+  bool followed(std::size_t k) const {
+    return k < at("fault").size() && at("fault")[k] == 0 && at("following")[k] >= 1;
+  }
+
+  std::vector<std::vector<double>> values_;
+  std::map<std::string, std::size_t> channels_;
+  double first_frame_, frames_per_point_, points_per_ms_;
+  bool has_friction_ = false;
+};
+
+/// Makes the mean of what was commanded that of what was felt.
+void scale_commanded(std::vector<analysis::FollowedPoint>& points) {
+  double commanded = 0, felt = 0;
+  for (const auto& point : points) commanded += point.commanded, felt += point.felt;
+  if (!(commanded > 0)) return;
+  for (auto& point : points) point.asked *= felt / commanded, point.commanded *= felt / commanded;
+}
+
+/// Adds friction over place, from the stored updates of the trials whose scenes follow the finger.
+void add_followed_places(const std::string& path, const store::StoredSession& stored,
+                         const protocol::Protocol& protocol, report::SessionData& data) {
+  const auto rate_Hz = store::playback_rate_Hz(stored.session.start);
+  if (data.followed.empty() || !rate_Hz) return;
+  std::map<int, const core::TrialRow*> rows;
+  for (const auto& block : stored.blocks)
+    for (const auto& row : block.trials) rows[row.trial_index] = &row;
+  std::map<int, std::string> conditions;
+  for (const auto& trial : data.followed) conditions[trial.trial_index] = trial.condition;
+  std::vector<analysis::FollowedPath> paths;
+  auto database = store::open_reader(path);
+  store::SignalReader signals(database, stored.session.session_id, core::kFollowStream);
+  while (const auto signal = signals.next()) {
+    const auto found = conditions.find(signal->trial_index);
+    if (found == conditions.end()) continue;
+    const Updates updates(signal->row, *rate_Hz);
+    if (!updates.has_friction()) continue;
+    int interval = -1;
+    for (const auto& tone : rows.at(signal->trial_index)->tones) {
+      const auto scene = protocol.scenes.find(tone.scene);
+      if (tone.interval_index == interval || scene == protocol.scenes.end() || !scene->second.follow)
+        continue;
+      interval = tone.interval_index;
+      auto points = updates.between(tone.onset_frame, tone.onset_frame + tone.length_frames);
+      const auto& follow = *scene->second.follow;
+      if (!follow.resting_friction && follow.unit != scene::FollowUnit::coefficient) scale_commanded(points);
+      paths.push_back({found->second, tone.scene, std::move(points)});
+    }
+  }
+  data.followed_places = analysis::friction_over_place(paths);
+}
+
 }  // namespace
 
 std::vector<analysis::FrictionCurve> curves_of(const session::AlongStrip& along) {
@@ -322,6 +421,7 @@ report::SessionData data_of_task(const std::string& database, const store::Store
   add_health(stored, data);
   data.measured = measured_trials(own.blocks);
   add_strip(database, own, data);
+  add_followed_places(database, own, protocol::of_task(protocol, task), data);
   return data;
 }
 

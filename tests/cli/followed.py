@@ -3,6 +3,8 @@ its two signals come through a killed program, exports, a merge, a backup, a ser
 import csv
 import glob
 import gzip
+import json
+import math
 import os
 import shutil
 import signal
@@ -132,6 +134,69 @@ class Followed(unittest.TestCase):
                     felt.append(float(point["felt"]))
             self.assertGreater(len(felt), 500)
             self.assertAlmostEqual(statistics.fmean(felt), row[COLUMNS.index("mu_felt") + 1], delta=0.02)
+
+    def test_the_report_has_what_the_exported_signals_say(self):
+        """Friction over place of the report, from the exported points alone, by linear interpolation in time."""
+        report = json.loads(run("report", "--db", self.whole, "--json"))
+        _, points = exported(self.whole, self.path("for-report"))
+        counted = {index for index, in select(self.whole, "SELECT trial_index FROM trial JOIN block USING (session_id, "
+                                                          "block_index, attempt) WHERE practice = 0 AND outcome = 'answered'")}
+        starts = {row[0]: (row[2], row[3]) for row in signals_of(self.whole) if row[1] == "follow"}
+        tones = select(self.whole, "SELECT DISTINCT trial_index, scene, onset_frame, length_frames FROM tone")
+        series = {}
+        for point in points["follow"]:
+            series.setdefault(int(point["trial_index"]), []).append(point)
+        cells = {}  # (scene, direction, bin): asked and felt friction of each interval
+        for index, scene, onset, length in tones:
+            if index not in counted:
+                continue
+            first, rate = starts[index]
+            rows = [{name: float("nan") if value == "n/a" else float(value) for name, value in row.items()
+                     if name in ("place_mm", "speed_mm_s", "asked", "commanded", "felt", "age_ms", "following", "fault")}
+                    for row in series[index]]
+            means, commanded, felt, last = {}, 0.0, 0.0, -1.0
+            for k, row in enumerate(rows):
+                at = k - 1e-3 * row["age_ms"] * rate
+                frame = first + at * 192000 / rate
+                if math.isnan(row["felt"]) or at < 0 or not onset <= frame < onset + length or at <= last + 0.5:
+                    continue
+                a, b = rows[int(at)], rows[int(at) + 1]
+                if a["fault"] or b["fault"] or min(a["following"], b["following"]) < 1:
+                    continue
+                last = at
+                then = {name: (1 - at % 1) * a[name] + at % 1 * b[name] for name in ("place_mm", "speed_mm_s", "asked", "commanded")}
+                if math.isnan(then["place_mm"]):
+                    continue
+                felt, commanded = felt + row["felt"], commanded + then["commanded"]
+                means.setdefault((then["speed_mm_s"] > 0, math.floor(then["place_mm"])), []).append((then["asked"], row["felt"]))
+            for (narrow, place), values in means.items():  # the file does not state the friction at rest
+                cells.setdefault((scene, narrow, place), []).append(
+                    (statistics.fmean(asked for asked, _ in values) * felt / commanded, statistics.fmean(f for _, f in values)))
+        self.assertEqual({places["scene"] for places in report["friction_over_place"]}, {"standard", "comparison"})
+        compared = 0
+        for places in report["friction_over_place"]:
+            narrow = places["direction"] == "towards the narrow end"
+            expected = {place + 0.5 for (scene, towards, place), values in cells.items()
+                        if scene == places["scene"] and towards == narrow and len(values) >= 3}
+            self.assertEqual(set(places["place_mm"]), expected)
+            for i, place in enumerate(places["place_mm"]):
+                values = cells[(places["scene"], narrow, math.floor(place))]
+                self.assertAlmostEqual(places["asked"][i]["median"], statistics.median(a for a, _ in values), delta=1e-3)
+                self.assertAlmostEqual(places["felt"][i]["median"], statistics.median(f for _, f in values), delta=1e-3)
+                self.assertAlmostEqual(places["felt_minus_asked"][i]["median"],
+                                       statistics.median(f / a - 1 for a, f in values), delta=5e-3)
+                compared += 1
+        self.assertGreater(compared, 100)
+        # and the table is the mean over trials of the columns
+        table, = report["following"]
+        self.assertEqual((table["trials"], table["faultless"]), (len(counted), len(counted)))
+        for name in COLUMNS[1:]:
+            values = [dict(zip(COLUMNS, row[1:]))[name] for row in columns_of(self.whole) if row[0] in counted]
+            values = [value for value in values if value is not None]
+            if len(values) < 3:
+                self.assertIsNone(table[name])
+            else:
+                self.assertAlmostEqual(table[name]["value"], statistics.fmean(values), delta=0.01 * abs(statistics.fmean(values)), msg=name)
 
     def test_a_killed_session_goes_on_with_the_same_trials(self):
         database = self.path("killed.sqlite")

@@ -175,8 +175,29 @@ class Reading(unittest.TestCase):
     def test_the_examples_of_the_page_run(self):
         examples = re.findall(r"```python\n(.*?)```", Path(README).read_text(encoding="utf-8"), re.S)
         self.assertGreaterEqual(len(examples), 2)
+        root, short, followed = Path(README).parents[2], self.folder / "short.toml", self.folder / "followed.sqlite"
+        text = (root / "protocols/matching-held-friction.toml").read_text(encoding="utf-8")
+        self.assertEqual((text.count("trials = 40"), text.count("break_after = { trials = 20, min_s = 20 }")), (1, 1))
+        short.write_text(text.replace("trials = 40", "trials = 3").replace("break_after = { trials = 20, min_s = 20 }\n", ""),
+                         encoding="utf-8")
+        subprocess.run([TURNPOINT, "run", short, "--rig", root / "deploy/rigs/simulated-following.toml", "--participant", "P01", "--db",
+                        followed, "--headless", "--observer", "sim", "--seed", "3"], check=True, stdout=subprocess.DEVNULL)
+        follow = 0
         for example in examples:
-            exec(example.replace("lab.sqlite", str(self.database)), {})
+            names = {}
+            uses = 'stream="follow"' in example
+            exec(example.replace("lab.sqlite", str(followed if uses else self.database)), names)
+            if not uses:
+                continue
+            follow += 1
+            median = names["over_place"].median()
+            self.assertGreater(len(median), 100)
+            # The coefficient is held: felt friction is near what was asked for, except in the first moments.
+            self.assertLess((median.felt / median.asked_then - 1).abs().median(), 0.15)
+            trials = turnpoint.read(followed).trials
+            self.assertTrue((trials.followed == "ok").all())
+            self.assertAlmostEqual(names["updates"].felt.mean(), trials.mu_felt.mean(), delta=0.1)
+        self.assertEqual(follow, 1)
 
 
 if __name__ == "__main__":

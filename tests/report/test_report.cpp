@@ -425,6 +425,59 @@ TEST_CASE("The report has the finger's force, speed and friction only if force c
   CHECK(unfelt.find("Friction along the strip") == std::string::npos);
 }
 
+TEST_CASE("Friction over place has the medians of intervals, each of which counts once in a place",
+          "[report]") {
+  auto data = speed_accuracy(6);
+  CHECK(summarise(data).followed.empty());
+  CHECK(to_html(summarise(data)).find("Friction that follows the finger") == std::string::npos);
+  // Four intervals of one scene: felt friction is 10, 20, 30 and 80 % above the asked one, and the slowest
+  // finger has a hundred points in a place. Only two of them are at 61.5 mm.
+  std::vector<analysis::FollowedPath> paths;
+  for (const auto& [share, points] : {std::pair(1.1, 100), {1.2, 1}, {1.3, 5}, {1.8, 2}}) {
+    auto& path = paths.emplace_back(analysis::FollowedPath{"", "grating", {}});
+    for (int k = 0; k < points; ++k) path.points.push_back({60.2, false, 0.5, 0.4, 0.5 * share});
+    path.points.push_back({62.7, true, 0.6, 0.6, 0.6 * share});
+    if (share > 1.25) path.points.push_back({61.5, false, 0.5, 0.4, 0.5});
+  }
+  data.followed_places = analysis::friction_over_place(paths);
+  REQUIRE(data.followed_places.size() == 2);
+  const auto &narrow = data.followed_places[0], &wide = data.followed_places[1];
+  CHECK(narrow.narrow);
+  CHECK(narrow.place_mm == std::vector{62.5});
+  CHECK(wide.place_mm == std::vector{60.5});  // two intervals are too few
+  CHECK(wide.felt[0].median == Approx(0.625));
+  CHECK(wide.felt[0].low == Approx(0.5 * 1.175));
+  CHECK(wide.commanded[0].median == Approx(0.4));
+  CHECK(wide.deviation[0].median == Approx(0.25));
+  CHECK(wide.deviation[0].high == Approx(0.425));
+  for (int k = 0; k < 4; ++k) {
+    core::FollowRow row;
+    row.followed = k < 3 ? "ok" : "lifted";
+    row.mu_asked = 0.5 + 0.01 * k, row.mu_felt = 0.6, row.share = 1.0;
+    if (k < 2) row.lag_ms = 3;
+    data.followed.push_back({k, "", row});
+  }
+  const auto summary = summarise(data);
+  REQUIRE(summary.followed.size() == 1);
+  CHECK(summary.followed[0].trials == 4);
+  CHECK(summary.followed[0].faultless == 3);
+  CHECK(summary.followed[0].mu_asked->value == Approx(0.515));
+  CHECK_FALSE(summary.followed[0].lag_ms);  // of two trials
+  CHECK_FALSE(asked_differs(summary));
+  CHECK(followed_figure(summary)->charts.size() == 2);
+  CHECK(deviation_figure(summary)->charts.size() == 1);
+  const auto html = to_html(summary);
+  CHECK(html.find("Friction that follows the finger") != std::string::npos);
+  CHECK(html.find("is not drawn") == std::string::npos);
+  data.followed_places.clear();
+  const auto pressed = to_html(summarise(data));
+  CHECK(pressed.find("A finger that presses without sliding feels no friction") != std::string::npos);
+  CHECK_FALSE(followed_figure(summarise(data)));
+  paths[0].points[0].asked = 30, paths[1].points[0].asked = 0.8, paths[2].points[0].asked = 1.5;
+  data.followed_places = analysis::friction_over_place(paths);
+  CHECK(asked_differs(summarise(data)));
+}
+
 TEST_CASE("The label of a threshold has the digits of the table, and the criterion that the protocol says",
           "[report]") {
   const auto summary = summarise(speed_accuracy(28));

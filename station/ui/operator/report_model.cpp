@@ -70,6 +70,8 @@ QStringList ReportModel::picture_names() const {
                                                        {"levels", "live.levels"},
                                                        {"finger", "report.finger"},
                                                        {"friction", "live.friction"},
+                                                       {"friction-over-place", "report.following"},
+                                                       {"felt-minus-asked", "report.felt_minus_asked"},
                                                        {"vibration", "report.vibration"}};
   QStringList names;
   for (const auto& figure : pages_.figures) names += QString(keys.at(figure.name));
