@@ -196,7 +196,10 @@ Keys follow_part() {
           .only_with("shape", {"noise"}),
       numbers("samples", {0, 1, Ends::closed}, "one cycle of a table: 0 is `from`, 1 is `to`")
           .holding(2, follow::kTableSamples)
-          .required()
+          .without_it("for a table: required, or samples_file")
+          .only_with("shape", {"table"}),
+      string("samples_file",
+             "CSV file with these numbers, one in each line, beside the protocol file; a session stores them")
           .only_with("shape", {"table"}),
       word("combine", {"replace", "add"},
            "whether it takes the place of the parts before it, or is added to them")

@@ -175,8 +175,15 @@ FollowPart read_part(const Value& table, const std::string& path, Findings& find
     reader.problem("shape", phrase("a gradient needs \"begin_mm\" and \"end_mm\""),
                    phrase("say between which places the value changes, in mm from the wide end"));
   if (word == "table") {
-    reader.require("samples");
-    part.samples = reader.numbers("samples");
+    if (reader.has("samples") && reader.has("samples_file"))
+      reader.problem("samples_file", phrase("the table has both \"samples\" and \"samples_file\""),
+                     phrase("give one of them"));
+    // parse() has put the numbers of a file in its place
+    if (reader.has("samples_file"))
+      (void)reader.string("samples_file");
+    else
+      reader.require("samples");
+    part.samples = reader.maybe_numbers("samples");
   }
   if (word == "noise") {
     if (!reader.has("period_mm"))
@@ -272,7 +279,8 @@ void check_follow(const Reading& reading) {
                phrase("let an \"event\" of a part make the change"));
   if (protocol.task.kind == TaskKind::adjustment)
     for (const auto& interval : protocol.task.intervals)
-      if (const auto parts = parts_of(protocol.task, interval); !parts.empty() && !parts.back().scenes.empty())
+      if (const auto parts = parts_of(protocol.task, interval);
+          !parts.empty() && !parts.back().scenes.empty())
         refuse(parts.back().scenes.back(),
                phrase("it is what the slider moves, which such a scene cannot do while it is presented"),
                phrase("a staircase, as in matching-held-friction.toml"));

@@ -1,8 +1,10 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <system_error>
 
+#include "station/core/number.hpp"
 #include "station/core/read_file.hpp"
 #include "station/core/toml.hpp"
 #include "station/protocol/protocol.hpp"
@@ -266,4 +268,81 @@ TEST_CASE("a file with far too many items, keys or bytes is refused within a sec
   const TemporaryFolder folder;
   std::ofstream(folder / "p.toml") << demo << "# " << std::string(core::most_text_bytes, '#') << "\n";
   CHECK_THROWS_AS(protocol::load(folder / "p.toml"), core::BadInput);
+}
+
+TEST_CASE("the samples of a table can stand in a file, and a session stores them with the protocol",
+          "[protocol]") {
+  const TemporaryFolder folder;
+  auto text = core::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/grating-periods.toml");
+  const auto exchange = [&text](const std::string& from, const std::string& to) {
+    const auto at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    text.replace(at, from.size(), to);
+  };
+  exchange("shape = \"sine\"", "shape = \"table\", samples_file = \"grating.csv\"");
+  exchange("shape = \"sine\"", "samples_file = 'grating.csv', shape = \"table\"");
+  const auto file = folder / "p.toml", table = folder / "grating.csv";
+  std::ofstream(file) << text;
+  const auto write = [&table](const std::string& numbers) { std::ofstream(table) << numbers; };
+  const auto refused = [&] {
+    try {
+      protocol::load(file);
+    } catch (const core::BadInput& error) {
+      std::string all;
+      for (const auto& problem : error.problems()) all += format(problem) + "\n";
+      return all;
+    }
+    return std::string("not refused");
+  };
+  const auto contains = [](const std::string& all, const std::string& what) {
+    return all.find(what) != std::string::npos;
+  };
+  CHECK(contains(refused(), file + ":25:"));
+  CHECK(contains(refused(), "grating.csv cannot be read"));
+  write(
+      "\xEF\xBB\xBF"
+      "share\r\n0\r\n0.25\r\n1\r\n  0.125 \r\n\r\n");
+  const auto loaded = protocol::load(file);
+  const auto samples = [](const protocol::Protocol& from, const char* scene) {
+    return from.scenes.at(scene).follow->parts.at(0).samples;
+  };
+  const std::vector<double> expected{0, 0.25, 1, 0.125};
+  CHECK(samples(loaded, "standard") == expected);
+  CHECK(samples(loaded, "comparison") == expected);
+  CHECK(contains(loaded.source, "samples = [0, 0.25, 1, 0.125]"));
+  CHECK_FALSE(contains(loaded.source, "samples_file"));
+  CHECK(contains(loaded.source, "\n# samples of line 25: grating.csv, SHA-256 " +
+                                    core::sha256(core::read_file(table)) + "\n# samples of line "));
+  CHECK(loaded.sha256 == core::sha256(loaded.source));
+  // All lines but those of the tables are as they were, so messages name the lines of the file.
+  std::istringstream before(text), after(loaded.source);
+  int others = 0;
+  for (std::string was, is; std::getline(before, was) && std::getline(after, is);)
+    others += was != is ? 1 : 0;
+  CHECK(others == 2);
+  // A resumed session needs no file, and what is stored is never completed again.
+  std::filesystem::remove(table);
+  const auto resumed = protocol::parse(loaded.source, "elsewhere/p.toml");
+  CHECK(samples(resumed, "standard") == expected);
+  CHECK(resumed.source == loaded.source);
+  write("0\n0.5\n1\n");
+  CHECK(protocol::load(file).sha256 != loaded.sha256);
+  write("0\n0.5\n\n1.5\n");
+  CHECK(contains(refused(), "grating.csv:4:1: \"1.5\" is not a number from 0 to 1"));
+  write("0\n0,5\n");
+  CHECK(contains(refused(), "grating.csv:2:1: \"0,5\" is not a number"));
+  write("share\nshare\n0\n1\n");
+  CHECK(contains(refused(), "grating.csv:2:1:"));
+  write("nan\n0\n1\n");
+  CHECK(contains(refused(), "grating.csv:1:1:"));
+  write("1\n");
+  CHECK(contains(refused(), "has 1 numbers; allowed: 2 to 2048"));
+  std::string many;
+  for (int k = 0; k < 2049; ++k) many += "0.5\n";
+  write(many);
+  CHECK(contains(refused(), "has 2049 numbers; allowed: 2 to 2048"));
+  write("0\n1\n");
+  exchange("samples_file = \"grating.csv\"", "samples_file = \"grating.csv\", samples = [0, 1]");
+  std::ofstream(file) << text;
+  CHECK(contains(refused(), "both \"samples\" and \"samples_file\""));
 }
