@@ -3,6 +3,7 @@ its two signals come through a killed program, exports, a merge, a backup, a ser
 import csv
 import glob
 import gzip
+import hashlib
 import json
 import math
 import os
@@ -76,6 +77,13 @@ class Followed(unittest.TestCase):
                          ("trials = 6\n", "trials = 1\n"), ("break_after = { trials = 20, min_s = 20 }\n", "")):
             assert old in text, old
             text = text.replace(old, new)
+        # The standard is a table from a file, of which a session keeps the numbers.
+        standard = '{ shape = "sine", from = 0.4, to = 0.8, period_mm = 6.0,'
+        assert standard in text
+        text = text.replace(standard, '{ shape = "table", samples_file = "wave.csv", from = 0.4, to = 0.8, period_mm = 6.0,')
+        cls.wave = os.path.join(cls.folder, "wave.csv")
+        with open(cls.wave, "w", encoding="utf-8") as file:
+            file.writelines(f"{0.5 + 0.5 * math.sin(2 * math.pi * k / 64):.4f}\n" for k in range(64))
         cls.protocol = os.path.join(cls.folder, "short.toml")
         with open(cls.protocol, "w", encoding="utf-8") as file:
             file.write(text)
@@ -106,6 +114,13 @@ class Followed(unittest.TestCase):
             self.assertLessEqual(empty, {"follow_lag_ms", "envelope_lag_us"})  # stated only if they are well known
             self.assertGreater(values["follow_share"], 0.9)
         run("verify", "--db", self.whole)
+
+    def test_the_stored_protocol_has_the_numbers_of_the_table(self):
+        (stored, digest), = select(self.whole, "SELECT text, sha256 FROM protocol")
+        self.assertNotIn("samples_file", stored)
+        self.assertIn("samples = [0.5, 0.549, 0.5975, ", stored)
+        self.assertIn(": wave.csv, SHA-256 ", stored)
+        self.assertEqual(digest, hashlib.sha256(stored.encode()).hexdigest())
 
     def test_the_exported_signal_says_what_the_column_says(self):
         trials, points = exported(self.whole, self.path("export"))
@@ -211,7 +226,11 @@ class Followed(unittest.TestCase):
         self.assertEqual(process.wait(), -signal.SIGKILL, "the session was over before it was killed")
         before, signals = columns_of(database), signals_of(database)
         self.assertLess(len(before), len(columns_of(self.whole)))
-        run("resume", "--db", database, "--headless", "--policy", "resume")
+        os.rename(self.wave, self.wave + ".away")
+        try:
+            run("resume", "--db", database, "--headless", "--policy", "resume")
+        finally:
+            os.rename(self.wave + ".away", self.wave)
         after = columns_of(database)
         self.assertEqual(after[:len(before)], before)
         self.assertEqual(signals_of(database)[:len(signals)], signals)
