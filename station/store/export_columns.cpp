@@ -268,6 +268,7 @@ ExportColumns trial_columns(const std::vector<ExportedFactor>& factors) {
        "envelope_lag_us"});
   add(columns, previous, {"level", "correct_response", "response", "correct", "outcome"});
   add(columns, trial, {"again"});
+  add(columns, previous, {"procedure"});
   columns.push_back(columns_version());
   add_factors(columns, at, factors);
   return columns;

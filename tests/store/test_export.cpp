@@ -42,7 +42,7 @@ const char* const kHeader =
     "followed,mu_asked,mu_commanded,mu_felt,follow_lag_ms,follow_inside,follow_share,envelope_error_db,"
     "envelope_lag_us,"
     "previous_level,previous_correct_response,previous_response,previous_correct,previous_outcome,"
-    "again,columns_version";
+    "again,previous_procedure,columns_version";
 
 }  // namespace
 
@@ -69,7 +69,7 @@ TEST_CASE("trials.csv has all fixed columns in order, and the factors at their p
           "n/a,0.1.0,2,3.5,flagged,level,-0.75,-55,12.5,1,0.75,2.5,ok,2.25,9,0.5,0.0625,0.875,"
           "80.5,0.6875,0.25,0.8125,150.5,0.375,0.625,-1.5,0.625,-57.5,-82.25,late "
           "lifted,0.5,0.5625,0.59375,1.75,0.875,0.9375,-32.5,"
-          "62.5,n/a,n/a,n/a,n/a,n/a,6,2");
+          "62.5,n/a,n/a,n/a,n/a,n/a,6,n/a,2");
   CHECK(sample::contains(lines[5], ",mode,first,n/a,n/a,timeout,n/a,n/a,n/a,go_cue,n/a,"));
 }
 
@@ -176,14 +176,14 @@ TEST_CASE("a line of trials.csv has the trial before it, in the same attempt and
   const auto files = export_data(db, folder / "out", {});
   const auto lines = lines_of(sample::bytes_of(files[0].path), "\r\n");
   REQUIRE(lines.size() == 8);
-  const std::string none = ",n/a,n/a,n/a,n/a,n/a,6,2";
+  const std::string none = ",n/a,n/a,n/a,n/a,n/a,6,n/a,2";
   CHECK(lines[1].ends_with(none));
-  CHECK(lines[2].ends_with(",-3,first,first,1,answered,6,2"));
-  CHECK(lines[3].ends_with(",first,n/a,n/a,timeout,6,2"));
+  CHECK(lines[2].ends_with(",-3,first,first,1,answered,6,staircase,2"));
+  CHECK(lines[3].ends_with(",first,n/a,n/a,timeout,6,staircase,2"));
   CHECK(lines[4].ends_with(none));  // another attempt
-  CHECK(lines[5].ends_with(",first,second,0,answered,6,2"));
+  CHECK(lines[5].ends_with(",first,second,0,answered,6,staircase,2"));
   CHECK(lines[6].ends_with(none));  // after the session was resumed
-  CHECK(lines[7].ends_with(",first,first,1,answered,6,2"));
+  CHECK(lines[7].ends_with(",first,first,1,answered,6,staircase,2"));
 }
 
 TEST_CASE("each value of each table is in its own column", "[store]") {

@@ -17,7 +17,7 @@ TEXTS = ("participant_id participant_code session_id run_mode protocol_id protoc
          "response_time_quality station_id calibration_id software_version proof proof_cause sensing scene reason kind value "
          "status status_reason started protocol_path rig_name rig_sha256 rig_path language observer kernel realtime_rights "
          "consent_version annotations checksum columns_version stream file followed finger self_test check verdict unit what "
-         "questionnaire item answer previous_correct_response previous_response previous_outcome").split()
+         "questionnaire item answer previous_procedure previous_correct_response previous_response previous_outcome").split()
 
 
 @dataclass(frozen=True)
