@@ -155,6 +155,7 @@ extern const Description comparisons{
     [](core::TableReader& reader, Spec& spec) {
       spec.values = reader.numbers("values");
       spec.repeats = reader.integer("repeats");
+      reader.require("against");
       spec.against = reader.maybe_strings("against");
     },
     validate_comparisons,
