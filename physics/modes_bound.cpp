@@ -20,7 +20,7 @@ constexpr double profile_margin = 8, peak_margin = 4, edge_margin = 5;
 constexpr double level_share = 2, position_share = 1.25;
 constexpr double near_rad = 3;  // phase on either side of the last maximum that counts as near
 // how much larger the bounds are when the other solution is coarser, because it shares more of the error
-constexpr double coarser_share = 1.5, thick_coarser_share = 2.5;
+constexpr double coarser_share = 1.5;
 // If it is the coarsest one, and differs by less than `close` of the largest |v|, the error of `modes` is
 // much smaller than the difference: at most 0.18 of it for |v| on 340 random surfaces, and on those on which
 // two solutions were found to agree by chance. (Near a resonance both may be wrong by as much as they
@@ -36,20 +36,22 @@ constexpr double points_per_radian = 3;
 // random surfaces. Plates under tension have thin boundary layers along their clamped sides. The field of a
 // clamped plate's piston jumps at the corners of the drive edge. A coarse solution is never assumed to be
 // better than one at the default resolution; its phase at the drive edge is less exact than |v|. With much
-// loss, an error of the wavenumber changes how much the wave decays as well, by a constant over Q.
+// loss, an error of the wavenumber changes how much the wave decays as well, by a constant over Q, and by
+// more on a plate on whose wide end several modes propagate.
 constexpr double membrane_accuracy = 2e-3, plate_accuracy = 2.5e-3, tense_plate_accuracy = 5e-3,
                  thick_plate_accuracy = 4e-3, plate_piston_accuracy = 0.15;
 constexpr double coarse_thick_accuracy = 1e-2, coarse_tense_accuracy = 3.5e-2, coarse_membrane_phase = 3e-3,
                  coarse_plate_phase = 1.8e-2, coarse_thick_phase = 1.2e-2, coarse_decay = 0.04,
-                 coarse_plate_decay = 0.3, coarse_thick_decay = 0.15;
+                 coarse_plate_decay = 0.12, coarse_wide_plate_decay = 0.3, coarse_thick_decay = 0.15,
+                 wide = 3.2;
 // how much the square of the largest slope of the sides adds to that, relative to it
 constexpr double steep_share = 0.25;
 // What a resonance of a higher mode adds. That of a coarse solution shows in its difference from `mode`; this
-// is more than what the margins of that difference did not hold. It grows with the square, because a
-// resonance that the coarse solution has at another frequency does not show at all.
+// is more than what the margins of that difference did not hold. On membranes it grows with the square,
+// because a resonance that the coarse solution has at another frequency does not show at all.
 constexpr double membrane_resonance = 5e-4, plate_resonance = 6e-3, thick_plate_resonance = 6e-4,
-                 coarse_membrane_resonance = 1e-4, coarse_plate_resonance = 4e-4,
-                 coarse_resonance_square = 2e-5;
+                 coarse_membrane_resonance = 1e-4, coarse_membrane_square = 2e-5,
+                 coarse_plate_resonance = 7e-4;
 
 // A solution, scaled to a drive edge whose centre moves by 1.
 struct Line {
@@ -81,6 +83,15 @@ std::optional<double> edge_m(const Line& one, const Edge& edge) {
   return edge.kind == Edge::Kind::percent ? one.line->level_m(edge.level) : one.peak_m;
 }
 
+// True if the boundary layers along the clamped sides of a plate under tension, sqrt(D/N), are so thin that
+// few polynomials across the strip do not follow them.
+bool has_thin_layers(const Surface& surface, double f) {
+  constexpr double thin = 0.2;  // of the cut-off half-width
+  const double tension_N_m = line_tension_N_per_m(surface);
+  const double thin_m = thin * cut_off_half_width_m(surface, f);
+  return bending_stiffness_N_m(surface).value_or(0) < tension_N_m * thin_m * thin_m;
+}
+
 }  // namespace
 
 bool modes_bound_applies(const Surface& surface) {
@@ -88,7 +99,7 @@ bool modes_bound_applies(const Surface& surface) {
   return surface.drive != DriveShape::piston || !Dispersion(surface).clamped_bending();
 }
 
-AssumedError assumed_error(const Surface& surface, const ModeBound& first, Resolution resolution) {
+AssumedError assumed_error(const Surface& surface, double f, const ModeBound& first, Resolution resolution) {
   const bool plate = Dispersion(surface).clamped_bending(), thick = surface.theory != PlateTheory::kirchhoff,
              coarse = resolution == Resolution::coarsest;
   double quiet = !plate                                ? membrane_accuracy
@@ -99,20 +110,22 @@ AssumedError assumed_error(const Surface& surface, const ModeBound& first, Resol
   double phase = quiet;
   if (coarse) {
     if (plate && thick) quiet = std::max(quiet, coarse_thick_accuracy);
-    if (plate && surface.tension_Pa > 0) quiet = std::max(quiet, coarse_tense_accuracy);
-    quiet += (!plate  ? coarse_decay
-              : thick ? coarse_thick_decay
-                      : coarse_plate_decay) /
+    if (plate && has_thin_layers(surface, f)) quiet = std::max(quiet, coarse_tense_accuracy);
+    const bool wide_end = half_width_m(surface, 0) > wide * cut_off_half_width_m(surface, f);
+    quiet += (!plate     ? coarse_decay
+              : thick    ? coarse_thick_decay
+              : wide_end ? coarse_wide_plate_decay
+                         : coarse_plate_decay) /
              surface.quality_factor;
     phase = std::max(quiet, !plate ? coarse_membrane_phase : thick ? coarse_thick_phase : coarse_plate_phase);
   }
   const double steep = plate && !coarse ? 1 : 1 + steep_share * first.steepest * first.steepest;
   const double near = first.resonance - 1;
-  const double resonance = (coarse  ? plate ? coarse_plate_resonance : coarse_membrane_resonance
-                            : plate ? thick ? thick_plate_resonance : plate_resonance
-                                    : membrane_resonance) *
-                               near +
-                           (coarse ? coarse_resonance_square * near * near : 0);
+  const double each =
+      coarse  ? plate ? coarse_plate_resonance : coarse_membrane_resonance + coarse_membrane_square * near
+      : plate ? thick ? thick_plate_resonance : plate_resonance
+              : membrane_resonance;
+  const double resonance = each * near;
   return {quiet * steep + resonance, phase * steep + resonance};
 }
 
@@ -187,15 +200,14 @@ std::optional<ModesBound> modes_bound(const Surface& surface, double f, const Ed
   const Taper taper(surface);
   const auto steepness = [&taper](double x) { return 1 + taper.slope(x) * taper.slope(x); };
   const bool lossy = Dispersion(surface).wave_quality(f, surface.quality_factor) < lossy_wave_below;
+  const bool thick = surface.theory == PlateTheory::mindlin;
   struct Factors {
     double profile, share;
   };
   const auto factors = [&](double difference) -> Factors {
     if (comparison == Comparison::finer) return {profile_margin, 1};
-    const bool thick = surface.theory == PlateTheory::mindlin;
-    const double coarser = thick ? thick_coarser_share : coarser_share;
     if (comparison == Comparison::coarser || !(difference < close))
-      return {coarser * profile_margin, coarser};
+      return {coarser_share * profile_margin, coarser_share};
     return {coarsest_profile_margin, !thick  ? coarsest_share
                                      : lossy ? lossy_thick_share
                                              : thick_coarsest_share};
@@ -208,10 +220,14 @@ std::optional<ModesBound> modes_bound(const Surface& surface, double f, const Ed
   bound.jump = apart->jump;
   bound.shape = shape.profile * apart->shape + floor;
   bound.drive = drive.profile * apart->drive + floor;
-  bound.level_dB =
-      8.686 * (share(drive) * (peak_margin * apart->ln_gain +
-                               level_share * steepness(apart->peak_m.value_or(0)) * apart->near_drive) +
-               floor);
+  // A coarser solution of a thick plate has fewer functions, but no lower degree, so that it may agree all
+  // around the last maximum; then what it differs by anywhere counts.
+  const double near_drive = thick && comparison == Comparison::coarser
+                                ? std::max(apart->near_drive, apart->drive)
+                                : apart->near_drive;
+  bound.level_dB = 8.686 * (share(drive) * (peak_margin * apart->ln_gain +
+                                            level_share * steepness(apart->peak_m.value_or(0)) * near_drive) +
+                            floor);
   if (edge.kind == Edge::Kind::turning) return bound;
   const double cut = cut_off_half_width_m(surface, f);
   const double near_m =

@@ -26,7 +26,8 @@ struct AssumedError {
   double shape, drive;
 };
 enum class Resolution { usual, coarsest };
-AssumedError assumed_error(const Surface& surface, const ModeBound& first, Resolution resolution);
+AssumedError assumed_error(const Surface& surface, double frequency_Hz, const ModeBound& first,
+                           Resolution resolution);
 
 // True if the error of `modes` can be bounded by comparing two solutions. It cannot for a clamped plate that
 // is driven by a piston, because both solutions have much the same error at the corners.

@@ -25,7 +25,7 @@ namespace {
 constexpr double probe_margin = 1.9, field_margin = 1.25, point_margin = 2;
 // The largest difference of |v| from a coarse solution for which these margins hold. Near a resonance of a
 // clamped plate, a coarse solution may be as wrong as it is different.
-constexpr double largest_difference = 0.4, largest_at_resonance = 0.12, resonant_above = 2;
+constexpr double largest_difference = 0.4, largest_at_resonance = 0.1, resonant_above = 2;
 // the least fall between a last maximum and the drive edge for which the maximum counts as certain; more if
 // the solution may be wrong by a quarter of it
 constexpr double certain_fall = 0.05;
@@ -157,7 +157,7 @@ void add_sides(RungEstimate& e, const PlanRequest& request, const Reference& ref
 // `conditioning` says how much the field is larger than the motion of the drive edge.
 RungEstimate assumed_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference,
                               const ModeBound& first, Resolution resolution, double conditioning) {
-  const AssumedError assumed = assumed_error(surface, first, resolution);
+  const AssumedError assumed = assumed_error(surface, reference.f, first, resolution);
   RungEstimate e;
   e.cost_s = cost_s(surface, reference.f, Model::modes, request.points);
   const bool drive = request.normalise != Normalise::peak;
@@ -334,7 +334,7 @@ RungEstimate coarsely_compared_mode(const Surface& surface, const PlanRequest& r
         std::max(one.conditioning, coarse[i]->drive_conditioning(wavenumber_per_m(surface, one.f)));
     const RungEstimate own =
         assumed_estimate(surface, request, one, one.bound, Resolution::coarsest, conditioning);
-    const double shape = assumed_error(surface, one.bound, Resolution::coarsest).shape;
+    const double shape = assumed_error(surface, one.f, one.bound, Resolution::coarsest).shape;
     const bool resonant = one.bound.resonance > resonant_above && Dispersion(surface).clamped_bending();
     const Margins margins{field_margin, point_margin, std::max(certain_fall, 4 * shape),
                           resonant ? largest_at_resonance : largest_difference};
@@ -389,11 +389,15 @@ std::string numbers(const RungEstimate& e, const Tolerance& tolerance) {
 }
 
 // True if a coarse solution of `modes` may show that `mode` suffices, whose bounds are known without one. It
-// may not if there is no last maximum.
+// may not if there is no last maximum, or if what is assumed of the coarse solution is beyond the tolerance.
 bool hopeful(const Surface& surface, const PlanRequest& request, const std::vector<Reference>& references,
              const RungEstimate& mode) {
-  return (Dispersion(surface).clamped_bending() || inside(mode, request.tolerance, hopeless)) &&
-         std::ranges::all_of(references, [](const Reference& one) { return one.peak_m.has_value(); });
+  if (!Dispersion(surface).clamped_bending() && !inside(mode, request.tolerance, hopeless)) return false;
+  return std::ranges::all_of(references, [&](const Reference& one) {
+    return one.peak_m &&
+           inside(assumed_estimate(surface, request, one, one.bound, Resolution::coarsest, one.conditioning),
+                  request.tolerance);
+  });
 }
 
 // Solves for `modes`, and compares it with coarser solutions, which may be known already, and then with finer

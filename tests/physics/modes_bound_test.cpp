@@ -361,8 +361,9 @@ void Campaign::add_sketch(int number, const Surface& s, const CollocatedField& t
   if (!apart || apart->jump) return;
   const ModeBound first = mode_bound(s, frequency_Hz, 1, first_mode.last_peak_m());
   const bool resonant = first.resonance > 2 && bending_modelled(s) && s.edges == Edges::clamped;
-  if (apart->shape > (resonant ? 0.12 : 0.4)) return;
-  const double assumed = assumed_error(s, first, Resolution::coarsest).shape + first.sides.shape;
+  if (apart->shape > (resonant ? 0.1 : 0.4)) return;
+  const double assumed =
+      assumed_error(s, frequency_Hz, first, Resolution::coarsest).shape + first.sides.shape;
   const double off = errors(s, *coarse, 0, truth, Normalise::peak).amplitude;
   const double rest = off - 0.25 * apart->shape;
   write(number, "sketch", "amplitude", assumed, std::max(1e-12, rest));

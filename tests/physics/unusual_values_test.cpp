@@ -176,6 +176,22 @@ void surface_calls(Calls& calls, const std::string& what, const Surface& s, doub
         all.push_back(one.real()), all.push_back(one.imag());
     return all;
   });
+  MapOptions half;
+  half.edge = Edge::percent(0.5);
+  on("boundary_reach_m", [&] {
+    const Reach reach = boundary_reach_m(s, half);
+    return Numbers{reach.first_m, reach.last_m};
+  });
+  on("answer_at_boundary", [&] {
+    Numbers all;
+    add(all, answer_at_boundary(s, half, 0.5 * s.length_m));
+    return all;
+  });
+  on("finger_edge_shift_m", [&] {
+    Numbers all;
+    add(all, finger_edge_shift_m(finger_load(s, f, finger_sweep_m(s), {}), half.edge, {}));
+    return all;
+  });
   on("boundary_budget", [&] { return Numbers{boundary_budget(s, f, 0.5 * s.length_m).total_m}; });
   on("level_budget", [&] {
     const LevelBudget budget = level_budget(s, f, 0.5 * s.length_m);
@@ -405,6 +421,7 @@ TEST_CASE("unusual values: in every other argument", "[physics][unusual]") {
       Numbers all;
       const BoundaryMap map(s, {Edge::percent(0.5), {}, {}, {}});
       add(all, map.frequency_Hz(v)), add(all, map.boundary_m(v)), add(all, map.at_boundary(v));
+      add(all, answer_at_boundary(s, {Edge::percent(0.5), {}, {}, {}}, v));
       add(all, solve_frequency_Hz(s, {Edge::percent(0.5), {}, {}, {}}, v));
       return all;
     });
