@@ -22,6 +22,8 @@ constexpr double shape_margin = 1.8, gain_margin = 2.3, near_margin = 3;
 // Relative error of what higher_modes() computes on small slopes: it sees the phases of the standing waves
 // only to first order. The square of the slope is added.
 constexpr double first_order_error = 0.1;
+// Beyond this natural logarithm of the level's error, first order says nothing of it.
+constexpr double first_order_gain = 2;
 // Constants of the other bounds. They were measured on random surfaces, see the header. W, W' and W'' are the
 // half-width and its derivatives. Shifts of an edge are in units of the cut-off half-width.
 // amplitude of higher modes of a clamped plate, divided by |W'| W(0) / (cut-off half-width)
@@ -30,7 +32,7 @@ constexpr double curvature_shift = 0.2;  // shift of an edge, divided by |W''| W
 constexpr double slope_shift = 0.1;  // shift of an edge, divided by |W'|^3; twice this for the last maximum
 // On a clamped plate, the transverse shape of `mode` is exact only at the cut-off, so its phase drifts
 // between the drive edge and the cut-off.
-constexpr double plate_drift = 1.5e-3;  // phase error in radians, divided by k times the turning point's x
+constexpr double plate_drift = 1.7e-3;  // phase error in radians, divided by k times the turning point's x
 // Of a thick plate with straight sides, `mode` has the shapes at the drive edge and at the turning point.
 // With the widening of the strip between these two (the ratio of its half-widths minus 1), the phase error of
 // its wave at the drive edge is at most 2.4 times
@@ -148,7 +150,7 @@ double bound_membrane(ModeBound& bound, const Surface& surface, double f, double
   bound.resonance = higher.resonance;
   bound.shape = std::min(largest, shape_margin * margin * (higher.field + higher.phase) + equation);
   bound.drive = bound.shape + std::min(1e6, std::expm1(std::min(gain, 20.0)));
-  bound.level_dB = std::min(largest_dB, 20 / std::numbers::ln10 * gain);
+  bound.level_dB = gain > first_order_gain ? largest_dB : 20 / std::numbers::ln10 * gain;
   // On sides with a slope above 1, an expansion in the slope says little: higher modes of any size may start
   // from the drive edge.
   const double unknown = std::max(0.0, square - 1) * std::exp(-ln_decay(surface, f, 2, 0, near));
