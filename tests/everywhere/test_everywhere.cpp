@@ -128,8 +128,8 @@ struct Recorded {
 
 constexpr Recorded kSessions[] = {
     {"demo", "bda7b44a5a1ce1ab", "99a930b8032aed3f"},
-    {"boundary-constant", "b00ab55acb68f700", "2bfac089950ea6a3"},
-    {"boundary-adaptive", "60c35b42c44ba56d", "4999a71d7306cc3a"},
+    {"boundary-constant", "b00ab55acb68f700", "c331b39a801ae9c4"},
+    {"boundary-adaptive", "60c35b42c44ba56d", "264b19625d990d7b"},
     {"boundary-adjustment", "20488ee64d19916e", "57e1e850803a6273"},
     {"friction-2ifc", "f254fac43e67db5f", "9eea4be7ac753c59"},
     {"friction-staircase", "73be2a4b407a38ee", "59166cc9296dd387"},
@@ -146,7 +146,7 @@ constexpr Recorded kSessions[] = {
     {"friction-4ifc", "3ede10aa7ad28604", "64d5c3c1dddfe0b2"},
     {"friction-time-limit", "f69f132afbca3235", "edf57a000a356226"},
     {"friction-abx", "c95786baf94d2faf", "81a6d1b7adaa8862"},
-    {"limits-boundary", "f095f41207962b6a", "8d35ed030edf1940"},
+    {"limits-boundary", "f095f41207962b6a", "66498d619f44db92"},
     {"response-signal", "ef371dbbfaebe6ce", "5d99f9739e94ada6"},
     {"response-signal-buzz", "ef371dbbfaebe6ce", "ea2cd51dacda0434"},
     {"response-signal-flash", "ef371dbbfaebe6ce", "5d99f9739e94ada6"},
