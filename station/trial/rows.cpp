@@ -73,7 +73,7 @@ void fill_result(core::TrialRow& row, const Result& result, const TrialSpec& spe
   timing.decision_time_s = seconds(result.decision_time_ns);
   timing.movement_time_s = seconds(result.movement_time_ns);
   given.extra_touches = result.extra_touches;
-  if (protocol.task.again > 0 && !spec.strokes) given.again = result.again;
+  if (protocol::of_task(protocol, spec.task).task.again > 0 && !spec.strokes) given.again = result.again;
   row.presented.xruns = result.xruns;
   if (!spec.correct) given.correct.reset();
   given.points = points_of(result, spec, protocol);
