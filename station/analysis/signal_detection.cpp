@@ -27,7 +27,10 @@ std::optional<YesNo> yes_no(const YesNoCounts& counts) {
       log_linear_proportion(counts.false_alarms, counts.false_alarms + counts.correct_rejections);
   if (!hit || !false_alarm) return std::nullopt;
   const double z_hit = normal_quantile(*hit), z_false = normal_quantile(*false_alarm);
-  return YesNo{z_hit - z_false, -(z_hit + z_false) / 2, *hit, *false_alarm};
+  // With symmetric counts z(p) and z(1 - p) cancel except for their round-off, which is no criterion.
+  const auto without_round_off = [](double sum) { return std::fabs(sum) < 1e-12 ? 0.0 : sum; };
+  return YesNo{without_round_off(z_hit - z_false), without_round_off(-(z_hit + z_false) / 2), *hit,
+               *false_alarm};
 }
 
 namespace {
