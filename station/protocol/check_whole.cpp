@@ -33,7 +33,9 @@ void check_values(const std::vector<Source>& sources, const std::string& name, c
         factor && !set_somewhere ? factor->place : source.block->place,
         phrase("in block \"%1\", %2, \"%3\" has no value",
                {plain(source.block->name), source.what, plain(name)}),
-        phrase("set this factor with a procedure or fixed levels, or give it \"levels\" from which to draw"));
+        phrase(
+            "set this factor with a procedure (\"level\" or \"with\") or fixed levels, or give it \"levels\" "
+            "or \"draw\""));
     if (!set_somewhere) return;
   }
 }
