@@ -241,6 +241,34 @@ void check_adjustment(const Reading& reading) {
   }
 }
 
+// Returns what is wrong with an interval of a comparison that should present `factor` alone: another factor
+// of the procedure that it presents, and the scene through which it does so, or that `factor` is missing.
+core::Phrase wrong_interval(const procedure::Spec& spec, const Protocol& protocol, std::size_t interval,
+                            const std::string& factor) {
+  const auto& scenes = protocol.task.intervals[interval];
+  std::vector<std::string> names{spec.level};
+  names.insert(names.end(), spec.against.begin(), spec.against.end());
+  for (const auto& name : names) {
+    if (name == factor) continue;
+    auto alone = spec;
+    alone.level = name;
+    alone.against.clear();
+    for (const auto& part : parts_of(protocol.task, scenes))
+      for (const auto& scene : part.scenes) {
+        if (presented(protocol, alone, {scene}) != name) continue;
+        const auto known = protocol.scenes.find(scene);
+        const auto base = known == protocol.scenes.end() ? "" : known->second.base;
+        if (!base.empty() && presented(protocol, alone, {base}) == name)
+          return phrase(
+              "interval %1 presents \"%2\": the scene \"%3\" depends on it, as its base \"%4\" does",
+              {plain(interval + 1), plain(name), plain(scene), plain(base)});
+        return phrase("interval %1 presents \"%2\": the scene \"%3\" depends on it",
+                      {plain(interval + 1), plain(name), plain(scene)});
+      }
+  }
+  return phrase("interval %1 does not present \"%2\"", {plain(interval + 1), plain(factor)});
+}
+
 // Each interval of a comparison must present the factor that its procedure sets for it, and no other of them.
 void check_intervals(const procedure::Spec& spec, const Reading& reading) {
   const auto& intervals = reading.protocol.task.intervals;
@@ -249,8 +277,7 @@ void check_intervals(const procedure::Spec& spec, const Reading& reading) {
     if (presented(reading.protocol, spec, intervals[i]) != factor)
       reading.findings.add(
           reading.places.of(key_of(spec, i == 0 ? "level" : "against")),
-          phrase("interval %1 does not present \"%2\", or also presents another factor of \"%3\"",
-                 {plain(i + 1), plain(factor), plain(spec.name)}),
+          wrong_interval(spec, reading.protocol, i, factor),
           phrase(
               "name the factors in the order of \"intervals\", each with a scene that depends on it alone"));
   }

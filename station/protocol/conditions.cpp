@@ -40,10 +40,14 @@ std::string presented(const Protocol& protocol, const procedure::Spec& spec,
   std::set<std::string> found;
   for (const auto& part : parts_of(protocol.task, scenes))
     for (const auto& scene : part.scenes)
-      if (const auto known = protocol.scenes.find(scene); known != protocol.scenes.end())
-        for (const auto& name : factors_of(known->second))
+      if (const auto known = protocol.scenes.find(scene); known != protocol.scenes.end()) {
+        auto felt = known->second;
+        // The tones of a zone are laid out for the friction of its base, but it presents its own.
+        if (felt.zone) felt.zone->design_friction = felt.zone->friction;
+        for (const auto& name : factors_of(felt))
           if (name == spec.level || std::ranges::find(spec.against, name) != spec.against.end())
             found.insert(name);
+      }
   return found.size() == 1 ? *found.begin() : "";
 }
 

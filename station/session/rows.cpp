@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
+#include <string>
 #include <tuple>
 
 #include "station/core/limits.hpp"
@@ -320,6 +322,16 @@ void add_signals(core::TrialRow& row, const std::vector<follow::Recorded>& perio
   row.signal_rows.push_back(envelope.made(rate_Hz, at));
 }
 
+/// The names of faults of two presentations, each once; "ok" and "" are none.
+std::string both(const std::string& earlier, const std::string& later) {
+  std::string names;
+  std::istringstream words(earlier + " " + later);
+  for (std::string word; words >> word;)
+    if (word != "ok" && (" " + names + " ").find(" " + word + " ") == std::string::npos)
+      names += (names.empty() ? "" : " ") + word;
+  return names.empty() ? "ok" : names;
+}
+
 }  // namespace
 
 void add_followed(core::TrialRow& row, const Followed& followed, const FollowPlans& plans,
@@ -327,8 +339,16 @@ void add_followed(core::TrialRow& row, const Followed& followed, const FollowPla
   const auto last =
       std::find_if(plans.rbegin(), plans.rend(), [](const auto& plan) { return plan != nullptr; });
   if (last == plans.rend()) return;
-  row.follow.followed = follow::fault_names(followed.periods, !followed.late.empty());
-  if (followed.not_recorded > 0) row.follow.followed += " unrecorded";
+  auto names = follow::fault_names(followed.periods, !followed.late.empty());
+  if (followed.not_recorded > 0) names += " unrecorded";
+  core::FollowRow found;
+  found.followed = both(row.follow.followed, names);
+  found.envelope_error_dB = row.follow.envelope_error_dB;
+  found.envelope_lag_us = row.follow.envelope_lag_us;
+  row.follow = found;
+  std::erase_if(row.signal_rows, [](const auto& signal) {
+    return signal.stream == core::kFollowStream || signal.stream == core::kEnvelopeStream;
+  });
   if (followed.periods.empty()) return;
   const auto interval = static_cast<std::size_t>(plans.rend() - last - 1);
   std::vector<follow::Recorded> of_last;

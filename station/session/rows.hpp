@@ -61,7 +61,8 @@ void add_forces(core::TrialRow& row, const sensing::TrialForces& forces, const A
 
 /// Adds what the intervals of a trial did that follow the finger: the summary of the interval presented last,
 /// the faults of all, and the signals of updates and gains. `plans` are those of the intervals, null for
-/// those that follow nothing; `ranges` are the frames in which they were presented.
+/// those that follow nothing; `ranges` are the frames in which they were presented. If the row has an earlier
+/// presentation of the trial already, only the names of its faults remain, before the new ones.
 struct FollowedRange {
   std::int64_t first_frame = 0, end_frame = 0;
 };

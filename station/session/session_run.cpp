@@ -429,7 +429,8 @@ void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
     if (!after_ns) return;
     earliest_ns = *after_ns;
   }
-  const auto& bursts = plans_.take(trial.shown).bursts;
+  const auto& planned = plans_.take(trial.shown);
+  const auto& bursts = planned.bursts;
   try {
     trial.onsets = stage_->present(bursts, earliest_ns);
   } catch (const audio::BurstRefused& refused) {
@@ -437,7 +438,8 @@ void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
     return perform(trial.machine.handle({stage_->now_ns(), trial::EventKind::abort, 0}), trial);
   }
   if (trial.onsets.empty()) return;  // the stage has added a fault with the reason to the inputs
-  trial.follows = follow_plans_of(plans_.take(trial.spec).plans);
+  trial.follows = follow_plans_of(planned.plans);
+  trial.presented.clear();
   const auto parts = trial::parts_of(setup_.protocol, trial.spec);
   for (std::size_t i = 0; i < bursts.size(); ++i) {
     const auto on_ns = trial.onsets[i].time_ns;
@@ -455,13 +457,13 @@ void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
 std::optional<std::int64_t> SessionRun::prepare_again(std::int64_t earliest_ns, Running& trial) {
   stage_->close_amplifier();
   if (trial.slider) {
-    trial.shown.factors[setup_.protocol.task.adjusts] = trial.slider->glide(stage_->now_ns());
+    const auto& adjusts = protocol::of_task(setup_.protocol, trial.spec.task).task.adjusts;
+    trial.shown.factors[adjusts] = trial.slider->glide(stage_->now_ns());
     trial.slider->followed();
     plans_.begin(trial.shown);
   }
   cut_tones(trial.row, static_cast<int>(trial.begun) - 1, trial.onsets.back(), surface_.back().off_ns,
             setup_.rig.output.rate_Hz);
-  trial.first = trial.begun;
   leave_surface();
   std::optional<trial::EventKind> cut_by;
   try {
@@ -478,11 +480,18 @@ std::optional<std::int64_t> SessionRun::prepare_again(std::int64_t earliest_ns, 
     stage_->wait_for(
         [&] { return stage_->amplifier() != audio::AmplifierState::enabled && plans_.ready(trial.shown); });
     gate_.keep([&] { log_.presented(trial_index(), stage_->now_ns()); });
+    record_followed(trial);
+    const auto& planned = plans_.take(trial.shown);
+    stage_->follow(follow_plans_of(planned.plans), planned.bursts);
     cut_by = open_amplifier();
   } catch (const LimitExceeded& limit) {
     gate_.stop(limit.what());
     cut_by = trial::EventKind::abort;
+  } catch (const audio::BurstRefused& refused) {
+    gate_.stop(refused.what());
+    cut_by = trial::EventKind::abort;
   }
+  trial.first = trial.begun;
   if (!cut_by) return earliest_ns;
   perform(trial.machine.handle({stage_->now_ns(), *cut_by, 0}), trial);
   return std::nullopt;
@@ -546,15 +555,21 @@ void SessionRun::leave_surface() {
   }
 }
 
+/// Records what the intervals of the last presentation did that follow the finger; once for each
+/// presentation.
+void SessionRun::record_followed(Running& trial) {
+  const auto followed = stage_->followed();
+  auto follows = std::exchange(trial.follows, {});
+  if (trial.onsets.empty()) return;
+  const auto& onset = trial.onsets.front();
+  follows.resize(std::min(follows.size(), trial.begun - trial.first));  // the others were not presented
+  add_followed(trial.row, followed, follows, trial.presented, setup_.rig.output.rate_Hz,
+               {onset.frame, 1e-9 * static_cast<double>(onset.time_ns - started_ns_)});
+}
+
 void SessionRun::finish_row(Running& trial) {
   auto& row = trial.row;
-  const auto followed = stage_->followed();
-  if (!trial.onsets.empty()) {
-    const auto& onset = trial.onsets.front();
-    trial.follows.resize(std::min(trial.follows.size(), trial.begun));  // the others were not presented
-    add_followed(row, followed, trial.follows, trial.presented, setup_.rig.output.rate_Hz,
-                 {onset.frame, 1e-9 * static_cast<double>(onset.time_ns - started_ns_)});
-  }
+  record_followed(trial);
   trial::fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_, trial.value);
   const bool good = row.surface.proof == core::Proof::ok || row.surface.proof == core::Proof::flagged;
   if (good && trial.measured < trial.begun) row.surface.proof = core::Proof::unproven;

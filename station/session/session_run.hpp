@@ -66,8 +66,9 @@ class SessionRun {
     std::optional<double> friction_level = {};
     /// true if the answer came from a button, so that the touch panel's latency does not apply
     bool by_button = false;
-    FollowPlans follows = {};  ///< the plans of the scheduled intervals that follow the finger
-    std::vector<FollowedRange> presented = {};  ///< the frames of the scheduled intervals
+    /// the plans of the intervals of the last presentation that follow the finger; empty once recorded
+    FollowPlans follows = {};
+    std::vector<FollowedRange> presented = {};  ///< the frames of the intervals of the last presentation
   };
   /// Times at which one interval begins and ends on the surface.
   struct OnSurface {
@@ -107,6 +108,7 @@ class SessionRun {
   void interval_begins(Running& trial);
   void ask_observer(const Running& trial, std::int64_t onset_ns);
   void decide(Running& trial);
+  void record_followed(Running& trial);
   void finish_row(Running& trial);
   void keep_raw(Running& trial);
   void leave_surface();

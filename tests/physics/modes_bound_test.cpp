@@ -441,7 +441,7 @@ void Campaign::add(int number, const Surface& s, Normalise normalise, const Coll
 // medians of bound / error. TURNPOINT_SCENES changes the number of scenes.
 template <class Make>
 void compare_scenes(const char* surface, int usual, std::uint64_t seed, const CollocationGrid& finest,
-                    Make make) {
+                    Make make, double share_taken = 0.7) {
   const int count = scenes(usual), first = first_scene();
   Campaign all;
   all.surface = surface;
@@ -466,7 +466,7 @@ void compare_scenes(const char* surface, int usual, std::uint64_t seed, const Co
   CHECK(all.assumed_outside <= count / 10000);
   CHECK(all.map_outside <= count / 10000);
   if (count < std::max(usual, 16)) return;  // the median of a few scenes means nothing
-  CHECK(all.taken >= 0.7 * all.suffices);
+  CHECK(all.taken >= share_taken * all.suffices);
   CHECK(median(all.finer.amplitude) < 10);
   CHECK(median(all.finer.level) < 10);
   CHECK(median(all.finer.boundary) < 10);
@@ -538,7 +538,8 @@ TEST_CASE("the map's bound includes a reflection from a clamped end far beyond t
 }
 
 TEST_CASE("the errors of models and map lie inside their bounds on random thin plates", "[physics]") {
-  compare_scenes("thin", 16, thin_seed, thin_grid, random_thin_plate);
+  // of clamped ones, 61 % (physics/README.md, "What the choice costs")
+  compare_scenes("thin", 16, thin_seed, thin_grid, random_thin_plate, 0.55);
 }
 
 TEST_CASE("the errors of models and map lie inside their bounds on random thick plates", "[physics]") {

@@ -223,3 +223,62 @@ TEST_CASE("in two intervals the level can decide which scene is right", "[protoc
   CHECK_THROWS_AS(two("{ comparison = \"contrast_dB > -15\" }"), core::BadInput);
   CHECK_THROWS_AS(two("{ comparison = \"contrast_dB > 0\", other = \"contrast_dB < 0\" }"), core::BadInput);
 }
+
+TEST_CASE("An interval presents a factor of its own, not the one that its scene replaces in its base",
+          "[protocol]") {
+  const auto pairs = [](const std::string& second) {
+    return R"(format = "friction-protocol/1"
+[protocol]
+id = "pairs"
+version = "1.0.0"
+title = "Pairs"
+languages = ["en"]
+[[factor]]
+name = "a"
+range = [0.3, 0.9]
+[[factor]]
+name = "b"
+range = [0.3, 0.9]
+[scene.first]
+boundary_mm = 185.0
+edge = "p50"
+zone = { from_mm = 60.0, friction = "a", tones = 3 }
+tolerance = { level_dB = 0.1 }
+[scene.second]
+base = "first"
+)" + second +
+           R"(
+[task]
+kind = "comparison"
+intervals = ["first", "second"]
+duration_s = 1.5
+gap_s = 0.8
+device = "touch"
+question = { en = "Which was smoother?" }
+choices = [{ id = "first", label = { en = "First" } }, { id = "second", label = { en = "Second" } }]
+[timing]
+response_zero = "interval_off"
+deadline_s = 6.0
+iti_s = 1.0
+[[procedure]]
+name = "pairs"
+kind = "comparisons"
+level = "a"
+against = ["b"]
+values = [0.4, 0.48, 0.56]
+repeats = 4
+[[block]]
+name = "main"
+procedures = ["pairs"]
+[analysis]
+pairs = "bradley-terry"
+)";
+  };
+  CHECK_NOTHROW(protocol::parse(pairs("zone = { friction = \"b\" }"), "pairs"));
+  CHECK_THROWS_WITH(protocol::parse(pairs("ramp_ms = 60.0"), "pairs"),
+                    Catch::Matchers::ContainsSubstring(
+                        "interval 2 presents \"a\": the scene \"second\" depends on it, as its "
+                        "base \"first\" does"));
+  CHECK_THROWS_WITH(protocol::parse(pairs("zone = { friction = 0.5 }"), "pairs"),
+                    Catch::Matchers::ContainsSubstring("interval 2 does not present \"b\""));
+}

@@ -471,6 +471,32 @@ name = "main"
 procedures = ["settings"]
 )";
 
+/// The same, as the second of two tasks.
+std::string second_task() {
+  auto text = replaced(kMatching, "[task]\n", R"([tasks.judge]
+kind = "single-interval"
+intervals = ["test"]
+duration_s = 0.2
+device = "touch"
+question = { en = "Left?" }
+choices = [{ id = "left", label = { en = "Left" } }, { id = "right", label = { en = "Right" } }]
+correct = { left = "offset_mm < 0", right = "offset_mm > 0" }
+[tasks.match]
+)");
+  text = replaced(text, "[task.parts]", "[tasks.match.parts]");
+  text = replaced(text, "[[procedure]]\n", R"([[procedure]]
+name = "sides"
+task = "judge"
+kind = "constant-stimuli"
+level = "offset_mm"
+values = [-8.0, 8.0]
+repeats = 1
+[[procedure]]
+task = "match"
+)");
+  return text + "[[block]]\nname = \"sides\"\nprocedures = [\"sides\"]\n";
+}
+
 }  // namespace
 
 TEST_CASE("in an adjustment people go back to the standard, and then to the setting that they had made",
@@ -479,7 +505,8 @@ TEST_CASE("in an adjustment people go back to the standard, and then to the sett
   const TemporaryFolder folder;
   live_room::Room room;
   auto setup = live_room::live_setup(folder / "a.sqlite", "touch");
-  setup.protocol = protocol::parse(kMatching, "live.toml");
+  const bool second = GENERATE(false, true);
+  setup.protocol = protocol::parse(second ? second_task() : kMatching, "live.toml");
   constexpr double moved = 4.5;
   /// Asks for the standard again once the surface has followed the slider.
   struct Asking : session::Monitor {
@@ -497,6 +524,7 @@ TEST_CASE("in an adjustment people go back to the standard, and then to the sett
       room.push(session::input::Next{});
     if (page.kind == PageKind::fault)
       room.push(page.amplifier.empty() ? session::input::Any(session::input::Next{}) : session::input::Arm{});
+    if (page.kind == PageKind::response) room.push(session::input::Answer{0}, 100'000'000);
     if (page.kind != PageKind::adjust || page.answers_open) return;
     if (page.slider.setting != moved) {
       CHECK_FALSE(page.slider.moved);
@@ -508,7 +536,7 @@ TEST_CASE("in an adjustment people go back to the standard, and then to the sett
     room.push(session::input::Next{}, 300'000'000);
   };
   const auto summary = session::run(setup, &room, room.inputs, room.devices(), &asking);
-  REQUIRE(summary.answered == 2);
+  REQUIRE(summary.answered == (second ? 4 : 2));
   CHECK(asking.asked >= 2);
   CHECK(returned.size() >= 2);
   for (const auto& page : returned) {
@@ -517,6 +545,10 @@ TEST_CASE("in an adjustment people go back to the standard, and then to the sett
   }
   for (const auto& trial : live_room::trials_of(folder / "a.sqlite", summary)) {
     if (trial.outcome != core::Outcome::answered) continue;
+    if (trial.procedure == "sides") {  // its task does not offer it
+      CHECK_FALSE(trial.given.again);
+      continue;
+    }
     CHECK(trial.given.again == 1);
     CHECK(std::stod(trial.given.response.value()) == moved);
     std::map<std::pair<int, int>, const core::ToneRow*> scenes;
@@ -559,5 +591,40 @@ TEST_CASE("a simulated observer goes back to the standard before it sets the sli
     CHECK(trial.given.again == 2);
     CHECK(trial.given.response == thrice[k].given.response);
     CHECK(trial.timing.duration_s == Approx(thrice[k].timing.duration_s).margin(0.3));
+  }
+}
+
+TEST_CASE("a surface that follows the finger follows it in each presentation, and the trial has the last one",
+          "[session][again][follow]") {
+  const TemporaryFolder folder;
+  auto text = core::read_file(shipped("edge-anywhere"));
+  const auto cut = text.find("[[procedure]]");
+  text = text.substr(0, cut) + "[[block]]\nname = \"short\"\nlevel = \"step\"\nlevels = [0.5]\n";
+  text = replaced(text, "gap_s = 1.0", "gap_s = 1.0\nagain = 1");
+  auto request = simulated_run(written(folder, text), folder / "a.sqlite", 3);
+  request.rig = kSource + "/deploy/rigs/simulated-following.toml";
+  request.observer = "sim:again=1";
+  session::Inputs nobody;
+  const auto summary = session::run(session::prepare(request), nullptr, nobody);
+  REQUIRE(summary.status == core::SessionStatus::completed);
+  const auto trials = trials_of(request.database, summary.session_id);
+  REQUIRE(trials.size() == 1);
+  const auto& trial = trials.front();
+  REQUIRE(trial.given.again == 1);
+  CHECK(trial.follow.followed == "ok");
+  CHECK(trial.follow.share.value() > 0.9);
+  CHECK(trial.surface.proof == core::Proof::ok);  // of all four intervals, with the gains that were commanded
+  CHECK(trial.follow.envelope_error_dB.value() < -20);
+  std::map<int, std::int64_t> onsets;
+  for (const auto& tone : trial.tones) onsets[tone.interval_index] = tone.onset_frame;
+  REQUIRE(onsets.size() == 4);
+  store::Database database(request.database, store::Database::Access::read_only);
+  for (const auto* stream : {core::kFollowStream, core::kEnvelopeStream}) {
+    INFO(stream);
+    store::SignalReader reader(database, summary.session_id, stream);
+    const auto signal = reader.next();
+    REQUIRE(signal);
+    CHECK(std::abs(signal->row.start_frame - onsets.at(2)) < 192);
+    CHECK_FALSE(reader.next());
   }
 }
