@@ -2,12 +2,31 @@
 // NumPy arrays that share memory with C++.
 #include <pybind11/numpy.h>
 
+#include <string>
 #include <utility>
 #include <vector>
 
 namespace turnpoint::physics::python {
 
 namespace py = pybind11;
+
+// Refuses NumPy 2 if this module was built with a pybind11 below 2.12, whose arrays NumPy 2 reads wrongly:
+// all elements would have the value of the first one. Throws ImportError. Without NumPy, nothing is refused.
+inline void require_suitable_numpy() {
+#if PYBIND11_VERSION_HEX < 0x020C0000
+  std::string version;
+  try {
+    version = py::str(py::module_::import("numpy").attr("__version__"));
+  } catch (const py::error_already_set&) {
+    return;
+  }
+  if (version.starts_with("0.") || version.starts_with("1.")) return;
+  throw py::import_error(
+      "this module was built for NumPy 1, and NumPy " + version +
+      " would read its arrays wrongly: use NumPy below 2, or a wheel, which is built with pybind11 "
+      "2.12 or newer");
+#endif
+}
 
 // Returns an array that takes over the memory of `values`.
 template <class Value>

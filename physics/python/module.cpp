@@ -4,6 +4,7 @@
 // Unreachable.
 PYBIND11_MODULE(physics, module) {
   namespace py = pybind11;
+  turnpoint::physics::python::require_suitable_numpy();
   module.doc() =
       "Waves on tapered friction displays: the physics library of Turnpoint. SI units; positions from the "
       "drive edge.";

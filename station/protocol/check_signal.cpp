@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <optional>
 #include <set>
 
@@ -64,6 +65,19 @@ void check_telling_lag(const Reading& reading) {
           reading.places.of("timing.response_signal.after_s"),
           phrase("the time of the signal depends on \"%1\", which decides the right answer", {plain(name)}),
           phrase("other factors"));
+}
+
+/// The lags of the signal are the axis of the curve, which needs several of them in each condition.
+void check_conditions(const Reading& reading) {
+  const auto& by = reading.protocol.analysis.by;
+  for (const auto& name : factors_in(reading.protocol.timing.signal->after_s))
+    if (std::ranges::find(by, name) != by.end())
+      return reading.findings.add(
+          reading.places.of("analysis.by"),
+          phrase(
+              "the time of the signal depends on \"%1\", so each condition would have one lag and no curve",
+              {plain(name)}),
+          phrase("other factors; the report has all lags on one axis without it"));
 }
 
 /// A buzz takes the place of the last scene, which must have been reached, and be long enough before to be
@@ -142,6 +156,7 @@ void check_signal(const Reading& reading) {
   const auto& signal = protocol.timing.signal;
   if (!signal) return;
   check_telling_lag(reading);
+  check_conditions(reading);
   if (signal->by == By::screen) return;
   if (signal->by == By::flash) return check_flash(reading);
   const bool tone = signal->by == By::tone;

@@ -285,7 +285,10 @@ void check_follow(const Reading& reading) {
                phrase("it is what the slider moves, which such a scene cannot do while it is presented"),
                phrase("a staircase, as in matching-held-friction.toml"));
   if (const auto& signal = protocol.timing.signal; signal && signal->by == ResponseSignal::By::buzz)
-    refuse(signal->scene, phrase("it is a buzz"), phrase("a scene that does not follow the finger"));
+    for (const auto& part : last_parts(protocol.task))
+      for (const auto& name : part.scenes)
+        refuse(name, phrase("the response signal is a buzz, which takes its place"),
+               phrase("another response signal, or a scene that does not follow the finger"));
   for (const auto& part : protocol.plan)
     if (const auto& block = block_of(part); block.kind == BlockKind::friction_table)
       refuse(block.strokes.scene, phrase("a friction table is measured with it"),

@@ -483,6 +483,7 @@ void add_scale(py::module_& module) {
 }  // namespace turnpoint::python
 
 PYBIND11_MODULE(_analysis, module) {
+  turnpoint::physics::python::require_suitable_numpy();
   module.doc() = "Fits of the report for arrays. Use turnpoint.analysis.";
   turnpoint::python::add_diffusion(module);
   turnpoint::python::add_speed_accuracy(module);

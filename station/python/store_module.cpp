@@ -118,6 +118,7 @@ py::list signals(const std::string& database, const std::string& session, const 
 
 PYBIND11_MODULE(_store, module) {
   namespace py = pybind11;
+  turnpoint::physics::python::require_suitable_numpy();
   module.doc() =
       "Reads databases of stations and collectors. Use turnpoint.read() and turnpoint.read_signals().";
   static const py::exception<turnpoint::store::StoreError> store_error(module, "StoreError",

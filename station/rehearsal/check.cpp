@@ -256,7 +256,9 @@ void estimate(const Protocol& protocol, std::optional<int> sessions, const std::
 /// How long trials and sessions become if everybody asks for the intervals as often as the task allows: one
 /// session of each visit.
 void estimate_again(const Protocol& protocol, const std::stop_token& stop, Check& check) {
-  if (protocol.task.again == 0) return;
+  if (std::ranges::none_of(protocol::tasks_of(protocol),
+                           [](const auto* seen) { return seen->task.again > 0; }))
+    return;
   constexpr double always = 1;
   double trial_s = 0, session_s = 0;
   for (const auto& visit : protocol::different_visits(protocol)) {

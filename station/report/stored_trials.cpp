@@ -87,7 +87,13 @@ analysis::TrialRecord record_of(const core::TrialRow& row, const core::BlockStar
     record.compared = protocol::compared(*spec, factors);
   if (protocol.timing.signal) record.signal_s = protocol::evaluate(protocol.timing.signal->after_s, factors);
   record.instruction = protocol::condition_of(protocol, factors, block.instruction);
-  if (protocol.analysis.difficulty)
+  const auto known = [&factors](const std::string& name) {
+    const auto found = factors.find(name);
+    return found != factors.end() && std::holds_alternative<double>(found->second);
+  };
+  // a factor may have a value in the trials of some procedures only
+  if (const auto& difficulty = protocol.analysis.difficulty;
+      difficulty && std::ranges::all_of(protocol::factors_in(*difficulty), known))
     record.difficulty = protocol::evaluate(*protocol.analysis.difficulty, factors);
   return record;
 }

@@ -112,7 +112,8 @@ std::string Pages::text(const protocol::Localised& localised) const {
 
 Page Pages::blank(PageKind kind, const protocol::Block* block, const trial::Director* director) const {
   Page page;
-  page.offers_again = setup_.protocol.task.again > 0;
+  page.offers_again = std::ranges::any_of(protocol::tasks_of(setup_.protocol),
+                                          [](const auto* seen) { return seen->task.again > 0; });
   page.kind = kind;
   page.language = setup_.language;
   page.run_mode = store::name(setup_.run_mode);

@@ -33,7 +33,7 @@ void Director::State::enter_block() {
   swapped_orders.clear();
   deviation = {};
   catches_owed = 0;
-  fresh = true;
+  adapted.clear();
   runs.clear();
   const auto* b = now();
   if (b == nullptr) return;
@@ -173,7 +173,7 @@ void Director::record(const TrialEnd& end) {
     throw std::logic_error("director: record() was called although no trial had been given out");
   s.last_counts = false;
   if (end.outcome == core::Outcome::fault || end.outcome == core::Outcome::aborted) return;
-  s.fresh = false;
+  s.adapted.insert(s.current->task);
   s.count_runs(*s.current);
   const auto type = s.current->type;
   s.last_counts = type != core::TrialType::warmup;
@@ -236,7 +236,7 @@ void Director::warm_up(int trials) {
 }
 
 void Director::rested() {
-  state_->fresh = true;
+  state_->adapted.clear();
   if (auto& current = state_->current) current->fresh = state_->is_fresh(current->task);
 }
 

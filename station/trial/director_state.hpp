@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,7 +35,8 @@ struct Director::State {
   int shown = 0, right = 0;
   double spent_s = 0;        ///< duration of the block's trials so far that count
   bool last_counts = false;  ///< whether the last trial counts
-  bool fresh = true;         ///< whether the next trial is the first one of the block, or after a rest
+  /// tasks of which a trial has been presented since the block's beginning or a rest
+  std::set<std::size_t> adapted;
   int warmups = 0, warmups_given = 0;
   int done = 0;
   std::string ended;

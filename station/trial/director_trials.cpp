@@ -141,9 +141,10 @@ int Director::State::order_number(const TrialSpec& spec) const {
   return static_cast<int>(spec.task) * apart + task_trials[spec.task];
 }
 
-/// True if the next trial is the first one of the block or after a rest, and a part is then longer.
+/// True if the next trial is the first one of its task in the block or after a rest, and a part is then
+/// longer.
 bool Director::State::is_fresh(std::size_t task) const {
-  if (!fresh) return false;
+  if (adapted.contains(task)) return false;
   const auto parts = protocol::parts_of(seen_by(task).task);
   return std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part.first_s; });
 }

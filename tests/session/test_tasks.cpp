@@ -186,3 +186,24 @@ TEST_CASE("the order of the intervals of one task tells nothing of those of the 
   // 960 pairs: a half, within four standard errors
   CHECK(std::abs(same - pairs / 2) < 62);
 }
+
+TEST_CASE("the long adaptor comes in the first trial of each task after the block began and after a rest",
+          "[session][tasks]") {
+  const auto before =
+      "before = [{ scene = \"usual\", duration_s = 0.5, first_s = 5.0 }, { silence_s = 0.6 }]\n";
+  const auto text =
+      kHead + kSide + which("smoother") + before + procedure("sides", "side", "offset_mm", "[-8.0, 8.0]") +
+      procedure("steps", "smoother", "weber", "[0.4, 0.8]") + mixed("alternate", "[\"sides\", \"steps\"]");
+  const auto protocol = protocol::parse(text, "p.toml");
+  trial::Director director(protocol, {}, 3);
+  std::vector<int> fresh;  // numbers of the trials with the long adaptor
+  for (int k = 0; k < 20; ++k) {
+    if (k == 7) director.rested();
+    const auto spec = director.next();
+    REQUIRE(spec);
+    REQUIRE(spec->procedure == (k % 2 == 0 ? "sides" : "steps"));
+    if (spec->fresh) fresh.push_back(k);
+    director.record({core::Outcome::answered, 0, *spec->correct == 0});
+  }
+  CHECK(fresh == std::vector<int>{1, 7});
+}
