@@ -179,10 +179,10 @@ TEST_CASE("the tolerance that a cheaper model would miss is named with both figu
   CHECK(has(by_boundary, "boundary up to 0.0"));
   CHECK(by_boundary.ends_with(" mm, tolerance 0.001 mm"));
   CHECK_FALSE(has(by_boundary, "level"));
-  const auto by_friction = cheaper({{}, {}, 0.05}, "en");
+  const auto by_friction = cheaper({{}, {}, 0.02}, "en");
   CAPTURE(by_friction);
   CHECK(has(by_friction, "amplitude up to "));
-  CHECK(by_friction.ends_with(" % (friction 0.05)"));
+  CHECK(by_friction.ends_with(" % (friction 0.02)"));
   CHECK(has(cheaper({0.5, 0.3, {}}, "de"), "verfehlt die Toleranz der Szene: Pegel bis zu 0."));
   CHECK(cheaper({}, "en").empty());
 }
